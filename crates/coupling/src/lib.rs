@@ -1,0 +1,1 @@
+//! The time loop that lets flow and bodies move one another.

@@ -1,0 +1,1 @@
+//! Rigid bodies of any shape: overlap volume, contact forces and motion.

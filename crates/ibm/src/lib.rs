@@ -1,0 +1,1 @@
+//! Hybrid fictitious domain-immersed boundary: solid fraction, surface reconstruction, forcing and loads.

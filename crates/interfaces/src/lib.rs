@@ -1,0 +1,31 @@
+//! The words that the siltflow crates share, and nothing else: where things are ([`Pose`],
+//! [`Aabb`], [`Periods`]), how they move ([`Twist`]) and are pushed ([`Wrench`]), what a body
+//! owes its neighbours ([`Solid`], [`Kinematics`], [`Bodies`], [`Dynamics`]), how a flow shows
+//! its velocity ([`Lattice`], [`VelocityField`]), what a restart needs ([`Checkpoint`]) and the
+//! container of the files that ParaView reads ([`vtk`]).
+//!
+//! The numerical crates depend on this one and on none of each other, so each can be taken
+//! alone; they meet because a type of one implements a trait of this crate that another asks for.
+//! Units are SI throughout. A plane scene lies in z = 0 and its quantities are per metre of depth.
+//!
+//! ```
+//! use interfaces::{Periods, Pose, Vector};
+//! let box_ = Periods::new([Some(1.0), None, None]);
+//! assert!((box_.nearest(Vector::new(0.9, 0.9, 0.0)).x + 0.1).abs() < 1e-15);
+//! let pose = Pose::at([0.0, 1.0, 0.0]);
+//! assert_eq!(pose.to_body([0.0, 3.0, 0.0].into()).y, 2.0);
+//! ```
+#![deny(missing_docs)]
+
+mod bodies;
+mod geometry;
+mod lattice;
+mod restart;
+mod solid;
+pub mod vtk;
+
+pub use bodies::{Bodies, BodyId, Dynamics, Freedom, Inertia, Kinematics, Load};
+pub use geometry::{Aabb, Periods, Point, Pose, Rotation, Twist, Vector, Wrench};
+pub use lattice::{Lattice, VelocityField};
+pub use restart::{Checkpoint, RestartError};
+pub use solid::{Solid, SurfaceElement};

@@ -1,0 +1,75 @@
+//! What a restart needs.
+
+/// State that a later run needs to go on as if it had never stopped, as named arrays.
+///
+/// `restore(save(x))` continues bit for bit. Names are unique within one `Checkpoint`; who holds
+/// several puts a prefix before each.
+pub trait Checkpoint {
+    /// Hands every array to `sink`.
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64]));
+    /// Takes every array from `source`.
+    ///
+    /// # Errors
+    /// When an array is missing or has another length than this object needs; the object is then
+    /// in an unspecified but valid state.
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError>;
+}
+
+impl Checkpoint for () {
+    fn save(&self, _: &mut dyn FnMut(&str, &[f64])) {}
+    fn restore<'a>(&mut self, _: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        Ok(())
+    }
+}
+
+/// Why saved state does not fit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum RestartError {
+    /// The saved state has no array of this name.
+    Missing(String),
+    /// The saved array has another length.
+    Length {
+        /// Its name.
+        name: String,
+        /// The length this run needs.
+        expected: usize,
+        /// The length that was saved.
+        found: usize,
+    },
+}
+
+impl RestartError {
+    /// The array `name` of `source`, when it is there and has `expected` entries.
+    ///
+    /// # Errors
+    /// [`RestartError::Missing`] or [`RestartError::Length`].
+    pub fn take<'a>(
+        source: &dyn Fn(&str) -> Option<&'a [f64]>,
+        name: &str,
+        expected: usize,
+    ) -> Result<&'a [f64], Self> {
+        let found = source(name).ok_or_else(|| Self::Missing(name.into()))?;
+        if found.len() == expected {
+            Ok(found)
+        } else {
+            Err(Self::Length { name: name.into(), expected, found: found.len() })
+        }
+    }
+}
+
+impl std::fmt::Display for RestartError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Missing(name) => {
+                write!(f, "the saved state has no `{name}`; it was written by another set-up")
+            }
+            Self::Length { name, expected, found } => {
+                write!(
+                    f,
+                    "the saved `{name}` has {found} entries where this run needs {expected}; use the grid and bodies it was saved with"
+                )
+            }
+        }
+    }
+}
+impl std::error::Error for RestartError {}

@@ -1,0 +1,59 @@
+//! What a shape owes its neighbours.
+use crate::{Aabb, Point, Vector};
+
+/// A piece of a body's surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceElement {
+    /// Its centre, in the body's frame \[m\].
+    pub point: Point,
+    /// Outward unit normal, in the body's frame.
+    pub normal: Vector,
+    /// Its area \[m²\]; in a plane scene its length \[m\].
+    pub area: f64,
+}
+
+/// A closed shape in its own frame, centre of mass at the origin; negative distances are inside.
+pub trait Solid: Send + Sync {
+    /// Signed distance to the surface \[m\]. Exact where |d| < `band`; beyond it only the sign and
+    /// |d| ≥ `band` are promised.
+    fn signed_distance(&self, x: Point, band: f64) -> f64;
+
+    /// A box that holds the shape, in its own frame. A plane shape has no extent along z.
+    fn aabb(&self) -> Aabb;
+
+    /// Outward unit normal of the level surface through `x`: the gradient of the distance.
+    /// Default: central differences over `band`/1000; zero where the gradient vanishes.
+    fn normal(&self, x: Point, band: f64) -> Vector {
+        let h = 1e-3 * band;
+        let flat = self.aabb().extent().z == 0.0;
+        let mut g = Vector::zeros();
+        for a in 0..if flat { 2 } else { 3 } {
+            let mut e = Vector::zeros();
+            e[a] = h;
+            let near = 4.0 * band;
+            g[a] = self.signed_distance(x + e, near) - self.signed_distance(x - e, near);
+        }
+        g.try_normalize(1e-300).unwrap_or_default()
+    }
+
+    /// Sum of the principal curvatures of the level surface through `x` \[1/m\]: the divergence of
+    /// the normal, positive where the body bulges. Default: central differences over `band`/10.
+    fn curvature(&self, x: Point, band: f64) -> f64 {
+        let h = 0.1 * band;
+        let flat = self.aabb().extent().z == 0.0;
+        let mut sum = 0.0;
+        for a in 0..if flat { 2 } else { 3 } {
+            let mut e = Vector::zeros();
+            e[a] = h;
+            sum += (self.normal(x + e, band)[a] - self.normal(x - e, band)[a]) / (2.0 * h);
+        }
+        sum
+    }
+
+    /// Elements of the level surface at signed distance `offset`, about `spacing` apart, whose
+    /// areas sum to that surface's area. `None` from shapes that cannot tell (the default).
+    fn surface(&self, spacing: f64, offset: f64) -> Option<Vec<SurfaceElement>> {
+        let _ = (spacing, offset);
+        None
+    }
+}

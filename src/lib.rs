@@ -1,1 +1,22 @@
-//! Facade.
+//! Particle-resolved direct numerical simulation of flow laden with solids of any shape.
+//!
+//! A thin facade: each crate can be used alone, and this one re-exports them.
+//!
+//! | module | what it holds | feature |
+//! |---|---|---|
+//! | [`interfaces`] | the traits and words that the others share | always |
+//! | `flow` (crate `fv-mesh`) | grids, operators, pressure solvers, flow | `flow` |
+//! | `ibm` | solid fraction, forcing, loads | `bodies` |
+//! | `dem` | rigid bodies, overlap, contact | `bodies` |
+//! | `coupling` | the time loop, output, ledger, restart | `bodies` |
+#![deny(missing_docs)]
+
+#[cfg(feature = "bodies")]
+pub use coupling;
+#[cfg(feature = "bodies")]
+pub use dem;
+#[cfg(feature = "flow")]
+pub use fv_mesh as flow;
+#[cfg(feature = "bodies")]
+pub use ibm;
+pub use interfaces;

@@ -1,1 +1,25 @@
-//! The time loop that lets flow and bodies move one another.
+//! The time loop in which flow and bodies move one another. Thin: the physics is in `fv-mesh`,
+//! `ibm` and `dem`; here they are put together.
+//!
+//! A step reads as the equations do ([`Simulation::step`]): u* is predicted, the bodies move,
+//! f_ib makes the fluid follow them, the pressure makes it free of divergence. [`Particles`] holds
+//! the strategy that gives the bodies their new velocities with one pressure solution per step;
+//! `()` in its place is the plain flow loop. [`run`] makes the steps and calls [`Observer`]s;
+//! [`Ledger`] keeps the books of momentum and energy; [`save`] and [`load`] keep a run's state.
+#![deny(missing_docs)]
+
+mod checkpoint;
+mod error;
+mod ledger;
+//mod output;
+mod particles;
+mod run;
+mod simulation;
+
+pub use checkpoint::{CheckpointError, load, save};
+pub use error::CouplingError;
+pub use ledger::{Ledger, LedgerReport};
+//pub use output::FileOutput;
+pub use particles::{BodyReport, Particles};
+pub use run::{Observer, RunSummary, Schedule, StepInfo, run};
+pub use simulation::{Immersed, Module, Simulation, Timings, WeightBalance};

@@ -1,1 +1,44 @@
-//! Finite volumes on Cartesian grids: fields, operators, direct pressure solvers and incompressible flow.
+//! Finite volumes on Cartesian grids, in two and three dimensions: [`CartesianGrid`] and fields
+//! with ghost layers, staggered [`Velocity`], direct [`poisson`] solvers and the incompressible
+//! flow algorithm [`Projection`]. It needs no particles and knows of none.
+//!
+//! ```
+//! use fv_mesh::{CartesianGrid, Fluid, Projection, Side};
+//! use std::f64::consts::TAU;
+//!
+//! // Taylor–Green vortices decay by e^(−2νt).
+//! let grid = CartesianGrid::new([32, 32], [TAU, TAU])?;
+//! let fluid = Fluid { density: 1.0, viscosity: 0.1 };
+//! let mut flow = Projection::new(grid, [[Side::Periodic; 2]; 2], fluid)?;
+//! flow.set_velocity(|x| [-x[0].cos() * x[1].sin(), x[0].sin() * x[1].cos()]);
+//! while flow.time() < 0.5 {
+//!     flow.advance(0.02, [0.0, 0.0])?;
+//! }
+//! let decay = flow.statistics().kinetic_energy / (TAU * TAU / 4.0);
+//! assert!((decay - (-4.0 * 0.1 * flow.time()).exp()).abs() < 2e-3);
+//! # Ok::<(), fv_mesh::FlowError>(())
+//! ```
+#![deny(missing_docs)]
+
+mod boundary;
+mod error;
+mod field;
+mod grid;
+mod kernels;
+pub mod poisson;
+mod projection;
+mod statistics;
+#[cfg(test)]
+mod tests;
+mod velocity;
+mod vti;
+mod walls;
+
+pub use boundary::{Side, Sides};
+pub use error::FlowError;
+pub use field::Field;
+pub use grid::CartesianGrid;
+pub use projection::{Fluid, Projection};
+pub use statistics::FlowStatistics;
+pub use velocity::Velocity;
+pub use vti::ImageWriter;

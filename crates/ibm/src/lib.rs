@@ -1,1 +1,29 @@
-//! Hybrid fictitious domain-immersed boundary: solid fraction, surface reconstruction, forcing and loads.
+//! Solids in a flow that is computed on a grid which does not know them: the solid fraction λ
+//! ([`SolidFraction`]), and the forcing f_ib that makes the fluid move with the solid inside and
+//! at its surface (Isoz et al. 2023, equations 1–2), in two forms behind one trait [`Forcing`]:
+//!
+//! * [`Hfdib`]: the paper's hybrid fictitious domain–immersed boundary method: cells with λ > 0
+//!   are forced, those at the surface to a quadratic reconstruction along the surface normal
+//!   (figure 3);
+//! * [`SmoothForcing`]: forces on surface markers spread by a smooth kernel: for bodies that move.
+//!
+//! The crate works on any [`interfaces::VelocityField`] and any [`interfaces::Bodies`].
+#![deny(missing_docs)]
+
+mod error;
+mod forcing;
+mod fraction;
+mod hfdib;
+mod kernel;
+mod smooth;
+mod solid_fraction;
+#[cfg(test)]
+mod testing;
+
+pub use error::IbmError;
+pub use forcing::{Forcing, Layer};
+pub use fraction::{cell_fraction, plane_fraction};
+pub use hfdib::Hfdib;
+pub use kernel::Kernel;
+pub use smooth::SmoothForcing;
+pub use solid_fraction::{SolidFraction, SolidNode};

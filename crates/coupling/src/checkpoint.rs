@@ -1,0 +1,90 @@
+//! State on disk.
+use interfaces::{Checkpoint, RestartError};
+use std::collections::HashMap;
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+
+/// First bytes of every file, with the version of the format.
+const MAGIC: &[u8; 16] = b"siltflow state 1";
+
+/// Why a state could not be written or read.
+#[derive(Debug, thiserror::Error)]
+pub enum CheckpointError {
+    /// The file could not be written or read.
+    #[error("the state in {}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// The file is not a state, is cut off, or was changed.
+    #[error("{} is not a whole saved state ({what}); restart from an older one or from the beginning", path.display())]
+    Corrupt {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        what: &'static str,
+    },
+    /// The state belongs to another set-up.
+    #[error(transparent)]
+    Mismatch(#[from] RestartError),
+}
+
+/// 64-bit FNV-1a.
+fn checksum(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |h, &b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
+}
+
+/// Writes the state of `of` to `path`: first beside it, then renamed, so that a state of that name
+/// is always whole.
+///
+/// # Errors
+/// [`CheckpointError::Io`].
+pub fn save(path: &Path, of: &impl Checkpoint) -> Result<(), CheckpointError> {
+    let mut bytes = MAGIC.to_vec();
+    of.save(&mut |name, values| {
+        bytes.extend((name.len() as u64).to_le_bytes());
+        bytes.extend(name.as_bytes());
+        bytes.extend((values.len() as u64).to_le_bytes());
+        bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
+    });
+    bytes.extend(checksum(&bytes).to_le_bytes());
+    let write = || {
+        let beside = path.with_extension("part");
+        let mut file = std::fs::File::create(&beside)?;
+        file.write_all(&bytes)?;
+        file.sync_all()?;
+        std::fs::rename(&beside, path)
+    };
+    write().map_err(|source| CheckpointError::Io { path: path.into(), source })
+}
+
+/// Reads the state that [`save`] wrote.
+///
+/// # Errors
+/// [`CheckpointError`] when the file cannot be read, is not whole, or belongs to another set-up.
+pub fn load(path: &Path, into: &mut impl Checkpoint) -> Result<(), CheckpointError> {
+    let corrupt = |what| CheckpointError::Corrupt { path: path.into(), what };
+    let mut bytes = Vec::new();
+    std::fs::File::open(path)
+        .and_then(|mut f| f.read_to_end(&mut bytes))
+        .map_err(|source| CheckpointError::Io { path: path.into(), source })?;
+    let (body, sum) = bytes.split_last_chunk::<8>().ok_or_else(|| corrupt("too short"))?;
+    if checksum(body) != u64::from_le_bytes(*sum) {
+        return Err(corrupt("wrong checksum"));
+    }
+    let mut rest = body.strip_prefix(MAGIC.as_slice()).ok_or_else(|| corrupt("unknown version"))?;
+    let mut arrays = HashMap::new();
+    while !rest.is_empty() {
+        let mut take = |n: usize| rest.split_off(..n).ok_or_else(|| corrupt("cut off"));
+        let length = |b: &[u8]| b.try_into().map(u64::from_le_bytes).unwrap_or(0) as usize;
+        let n = length(take(8)?);
+        let name = std::str::from_utf8(take(n)?).map_err(|_| corrupt("unreadable name"))?.to_owned();
+        let n = length(take(8)?);
+        let values = take(n.checked_mul(8).ok_or_else(|| corrupt("cut off"))?)?;
+        let values: Vec<f64> = values.as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b)).collect();
+        arrays.insert(name, values);
+    }
+    Ok(into.restore(&|name| arrays.get(name).map(Vec::as_slice))?)
+}

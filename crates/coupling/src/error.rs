@@ -1,0 +1,89 @@
+//! What can go wrong.
+use fv_mesh::FlowError;
+use ibm::IbmError;
+use interfaces::BodyId;
+
+/// Why a coupled step could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum CouplingError {
+    /// The flow could not go on.
+    #[error(transparent)]
+    Flow(#[from] FlowError),
+    /// The bodies could not be put on the grid.
+    #[error(transparent)]
+    Immersed(#[from] IbmError),
+    /// The bodies could not go on.
+    #[error("the bodies could not be moved at t = {time} s: {source}")]
+    Dynamics {
+        /// When \[s\].
+        time: f64,
+        /// Why.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+    /// A body's equation of motion has no solution.
+    #[error(
+        "body {} has no finite velocity at t = {time} s; the run has diverged: take a smaller time step", body.0
+    )]
+    Motion {
+        /// The body.
+        body: BodyId,
+        /// When \[s\].
+        time: f64,
+    },
+    /// A body does not fit into the box.
+    #[error(
+        "body {} is {size:.3e} m long along axis {axis}, the box only {length:.3e} m: make the body smaller or the box larger", body.0
+    )]
+    TooLarge {
+        /// The body.
+        body: BodyId,
+        /// Axis, 0 for x.
+        axis: usize,
+        /// Extent of the body \[m\].
+        size: f64,
+        /// Length of the box \[m\].
+        length: f64,
+    },
+    /// A body stands outside the box.
+    #[error(
+        "the centre of body {} is at {centre:.3e} m along axis {axis}, outside the box from {:.3e} to {:.3e} m: move it inside", body.0, box_[0], box_[1]
+    )]
+    Outside {
+        /// The body.
+        body: BodyId,
+        /// Axis, 0 for x.
+        axis: usize,
+        /// Where its centre is \[m\].
+        centre: f64,
+        /// Where the box begins and ends \[m\].
+        box_: [f64; 2],
+    },
+    /// Flow and particles were told different densities.
+    #[error(
+        "the flow's density is {flow} kg/m³ but the particles were told {particles} kg/m³; give both the same"
+    )]
+    Density {
+        /// The flow's \[kg/m³\].
+        flow: f64,
+        /// What the particles were told \[kg/m³\].
+        particles: f64,
+    },
+    /// The schedule makes no sense.
+    #[error("the run's {name} is {value}; {remedy}")]
+    Schedule {
+        /// Which value.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What to give instead.
+        remedy: &'static str,
+    },
+    /// An observer could not do its work.
+    #[error("{what}: {source}")]
+    Output {
+        /// What it was doing.
+        what: String,
+        /// Why it failed.
+        source: std::io::Error,
+    },
+}

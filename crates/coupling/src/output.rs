@@ -1,0 +1,141 @@
+//! Files of a run: fields and bodies for ParaView, trajectories for everyone.
+use crate::{CouplingError, Observer, Particles, Simulation, StepInfo};
+use dem::RigidBodies;
+use fv_mesh::ImageWriter;
+use ibm::{Forcing, SolidFraction};
+use interfaces::{Bodies, BodyId, Kinematics, Point, vtk};
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// Writes at every snapshot `fields/NNNNN.vti` (λ, velocity, pressure at the cell centres) and
+/// `bodies/NNNNN.vtp`, the series `fields.pvd` and `bodies.pvd`, and a line per body to
+/// `trajectories.csv`. What is on disk after any snapshot is complete and can be opened.
+pub struct FileOutput {
+    folder: PathBuf,
+    csv: BufWriter<File>,
+    series: [Vec<(f64, usize, String)>; 2],
+    fraction: SolidFraction,
+    lambda: Vec<f64>,
+    seconds: f64,
+}
+
+const CSV_HEADER: &str = "\
+# units: time s; x,y,z m (not wrapped into a periodic box); v m/s; q 1 (unit quaternion); w rad/s; \
+f,fc N (plane scenes N per m of depth); t,tc N m. f,t: load of the fluid without buoyancy; fc,tc: contacts, mean of the last step
+time,body,x,y,z,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,fx,fy,fz,tx,ty,tz,fcx,fcy,fcz,tcx,tcy,tcz";
+
+impl FileOutput {
+    /// Makes the folder and the files in it.
+    ///
+    /// # Errors
+    /// [`CouplingError::Output`] when the folder cannot be made or written to.
+    pub fn new(folder: &Path) -> Result<Self, CouplingError> {
+        let at = |what: &str| {
+            let what = format!(
+                "{what} in {} (choose a folder that you may write to, with room on its disk)",
+                folder.display()
+            );
+            move |source| CouplingError::Output { what, source }
+        };
+        for sub in ["fields", "bodies"] {
+            std::fs::create_dir_all(folder.join(sub)).map_err(at("making the output folder"))?;
+        }
+        let mut csv = BufWriter::new(
+            File::create(folder.join("trajectories.csv")).map_err(at("making trajectories.csv"))?,
+        );
+        writeln!(csv, "{CSV_HEADER}").map_err(at("writing trajectories.csv"))?;
+        Ok(Self {
+            folder: folder.into(),
+            csv,
+            series: [Vec::new(), Vec::new()],
+            fraction: SolidFraction::new(),
+            lambda: Vec::new(),
+            seconds: 0.0,
+        })
+    }
+
+    /// λ at the cell centres at the last snapshot, x fastest.
+    pub fn lambda(&self) -> &[f64] {
+        &self.lambda
+    }
+    /// Wall seconds spent on writing.
+    pub fn seconds(&self) -> f64 {
+        self.seconds
+    }
+
+    fn write<const D: usize, F: Forcing>(
+        &mut self,
+        simulation: &Simulation<D, Particles<F, RigidBodies>>,
+        index: usize,
+        info: &StepInfo,
+    ) -> io::Result<()> {
+        let (flow, particles) = (&simulation.flow, &simulation.particles);
+        let grid = flow.grid();
+        let names = [format!("fields/{index:05}.vti"), format!("bodies/{index:05}.vtp")];
+        let mut file = BufWriter::new(File::create(self.folder.join(&names[0]))?);
+        ImageWriter::new(grid)
+            .scalar("lambda", self.lambda.iter().copied())
+            .vector("velocity", std::array::from_fn(|c| flow.centred_velocity(c)))
+            .scalar("pressure", flow.pressure().values())
+            .write(&mut file)?;
+        file.flush()?;
+
+        let corner = grid.origin();
+        let corner = Point::from(std::array::from_fn(|a| corner.get(a).copied().unwrap_or(0.0)));
+        let mut file = BufWriter::new(File::create(self.folder.join(&names[1]))?);
+        particles.bodies.write_vtp(&mut file, corner)?;
+        file.flush()?;
+
+        for (series, (name, pvd)) in
+            self.series.iter_mut().zip(names.into_iter().zip(["fields.pvd", "bodies.pvd"]))
+        {
+            series.push((info.time, 0, name));
+            vtk::write_series(&mut BufWriter::new(File::create(self.folder.join(pvd))?), series)?;
+        }
+
+        for b in (0..particles.bodies.n_bodies()).map(BodyId) {
+            let (pose, twist) = (particles.bodies.pose(b), particles.bodies.twist(b));
+            let loads = particles.report(b, if info.dt > 0.0 { info.dt } else { 1.0 });
+            write!(self.csv, "{:.9e},{}", info.time, b.0)?;
+            let q = pose.orientation;
+            let columns = [
+                pose.position.coords.as_slice(),
+                twist.linear.as_slice(),
+                &[q.w, q.i, q.j, q.k],
+                twist.angular.as_slice(),
+                loads.hydrodynamic.force.as_slice(),
+                loads.hydrodynamic.torque.as_slice(),
+                loads.contact.force.as_slice(),
+                loads.contact.torque.as_slice(),
+            ];
+            for v in columns.into_iter().flatten() {
+                write!(self.csv, ",{v:.9e}")?;
+            }
+            writeln!(self.csv)?;
+        }
+        self.csv.flush()
+    }
+}
+
+impl<const D: usize, F: Forcing> Observer<Simulation<D, Particles<F, RigidBodies>>> for FileOutput {
+    fn snapshot(
+        &mut self,
+        simulation: &mut Simulation<D, Particles<F, RigidBodies>>,
+        index: usize,
+        info: &StepInfo,
+    ) -> Result<(), CouplingError> {
+        let start = std::time::Instant::now();
+        let lattice = simulation.flow.grid().lattice(None, simulation.flow.sides());
+        self.fraction.update(&lattice, &simulation.particles.bodies)?;
+        self.lambda.clear();
+        self.lambda.resize(simulation.flow.grid().n_cells(), 0.0);
+        self.fraction.add_to_dense(&lattice, &mut self.lambda);
+        let written = self.write(simulation, index, info).map_err(|source| CouplingError::Output {
+            what: format!("writing snapshot {index} to {}", self.folder.display()),
+            source,
+        });
+        self.seconds += start.elapsed().as_secs_f64();
+        written
+    }
+}

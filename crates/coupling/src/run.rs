@@ -1,0 +1,198 @@
+//! The run loop.
+use crate::{CouplingError, Immersed, Simulation};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// How long to run, in which steps, and when to show the state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Schedule {
+    /// End time \[s\].
+    pub end: f64,
+    /// Equal intervals from 0 to the end; observers see the state at both ends of each.
+    pub intervals: usize,
+    /// The time step \[s\]; `None` takes the largest that `courant` and stability allow.
+    pub dt: Option<f64>,
+    /// Courant number that an automatic step may reach.
+    pub courant: f64,
+    /// First step of a start from rest as a share of the time step, and by which factor steps may
+    /// then grow: a body set free in a fluid at rest accelerates like √t.
+    pub ramp: [f64; 2],
+}
+
+impl Default for Schedule {
+    fn default() -> Self {
+        Self { end: 1.0, intervals: 100, dt: None, courant: 0.3, ramp: [0.05, 1.15] }
+    }
+}
+
+impl Schedule {
+    fn check(&self) -> Result<(), CouplingError> {
+        let positive = |x: f64| x.is_finite() && x > 0.0;
+        let tests = [
+            ("end time", self.end, positive(self.end), "give a positive number of seconds"),
+            ("number of intervals", self.intervals as f64, self.intervals > 0, "give at least 1"),
+            (
+                "time step",
+                self.dt.unwrap_or(1.0),
+                self.dt.is_none_or(positive),
+                "give a positive number of seconds, or none",
+            ),
+            ("Courant number", self.courant, positive(self.courant), "give one between 0.05 and 0.5"),
+            (
+                "first step's share",
+                self.ramp[0],
+                positive(self.ramp[0]) && self.ramp[0] <= 1.0,
+                "give at most 1",
+            ),
+            (
+                "growth of steps",
+                self.ramp[1],
+                self.ramp[1].is_finite() && self.ramp[1] > 1.0,
+                "give more than 1",
+            ),
+        ];
+        match tests.into_iter().find(|t| !t.2) {
+            Some((name, value, _, remedy)) => Err(CouplingError::Schedule { name, value, remedy }),
+            None => Ok(()),
+        }
+    }
+
+    /// Time of snapshot `i` \[s\].
+    pub fn time(&self, i: usize) -> f64 {
+        self.end * i as f64 / self.intervals as f64
+    }
+}
+
+/// What observers are told after a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepInfo {
+    /// Steps made.
+    pub step: u64,
+    /// Time \[s\].
+    pub time: f64,
+    /// Length of the step \[s\].
+    pub dt: f64,
+    /// Courant number of the step.
+    pub courant: f64,
+}
+
+/// Someone who looks on: progress, output, probes, statistics. `()` sees nothing; pairs of
+/// observers are observers.
+pub trait Observer<S> {
+    /// After every step.
+    ///
+    /// # Errors
+    /// What it could not do; the run then ends with that error.
+    fn step(&mut self, _simulation: &mut S, _info: &StepInfo) -> Result<(), CouplingError> {
+        Ok(())
+    }
+    /// At the start (`index` 0) and the end of every interval.
+    ///
+    /// # Errors
+    /// What it could not do; the run then ends with that error.
+    fn snapshot(
+        &mut self,
+        _simulation: &mut S,
+        _index: usize,
+        _info: &StepInfo,
+    ) -> Result<(), CouplingError> {
+        Ok(())
+    }
+}
+
+impl<S> Observer<S> for () {}
+
+impl<S, A: Observer<S>, B: Observer<S>> Observer<S> for (A, B) {
+    fn step(&mut self, simulation: &mut S, info: &StepInfo) -> Result<(), CouplingError> {
+        self.0.step(simulation, info)?;
+        self.1.step(simulation, info)
+    }
+    fn snapshot(&mut self, simulation: &mut S, index: usize, info: &StepInfo) -> Result<(), CouplingError> {
+        self.0.snapshot(simulation, index, info)?;
+        self.1.snapshot(simulation, index, info)
+    }
+}
+
+impl<S, A: Observer<S>> Observer<S> for &mut A {
+    fn step(&mut self, simulation: &mut S, info: &StepInfo) -> Result<(), CouplingError> {
+        (**self).step(simulation, info)
+    }
+    fn snapshot(&mut self, simulation: &mut S, index: usize, info: &StepInfo) -> Result<(), CouplingError> {
+        (**self).snapshot(simulation, index, info)
+    }
+}
+
+/// How a run went.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RunSummary {
+    /// Steps made.
+    pub steps: u64,
+    /// Shortest and longest step \[s\] that was not shortened to meet a snapshot or by the ramp.
+    pub dt: [f64; 2],
+    /// Largest Courant number.
+    pub courant: f64,
+    /// Did `stop` end it?
+    pub stopped: bool,
+}
+
+/// Runs to the schedule's end, or until `stop` is set. Call it inside a rayon pool
+/// (`pool.install(|| run(…))`): then steps do not allocate.
+///
+/// # Errors
+/// The first error of a step or an observer; the simulation is left at the last step.
+pub fn run<const D: usize, P: Immersed<D>>(
+    simulation: &mut Simulation<D, P>,
+    schedule: &Schedule,
+    observer: &mut impl Observer<Simulation<D, P>>,
+    stop: &AtomicBool,
+) -> Result<RunSummary, CouplingError> {
+    schedule.check()?;
+    let mut summary = RunSummary { dt: [f64::INFINITY, 0.0], ..RunSummary::default() };
+    let mut info = StepInfo {
+        step: simulation.flow.steps(),
+        time: simulation.flow.time(),
+        dt: simulation.flow.last_dt(),
+        courant: 0.0,
+    };
+    let mut index = (0..=schedule.intervals).take_while(|&i| schedule.time(i) <= info.time).count() - 1;
+    if info.step == 0 {
+        observer.snapshot(simulation, 0, &info)?;
+    }
+    while index < schedule.intervals {
+        let target = schedule.time(index + 1);
+        loop {
+            if stop.load(Ordering::Relaxed) {
+                summary.stopped = true;
+                return Ok(summary);
+            }
+            let flow = &simulation.flow;
+            let full = schedule.dt.unwrap_or_else(|| flow.stable_dt(schedule.courant));
+            let grown = if info.step == 0 { full * schedule.ramp[0] } else { info.dt * schedule.ramp[1] };
+            // Equal steps to the end of the interval, up to round-off in the number of steps.
+            let left = target - flow.time();
+            let steps = (left / full.min(grown) - 1e-6).ceil().max(1.0);
+            let dt = left / steps;
+            simulation.step(dt)?;
+            if steps == 1.0 {
+                simulation.flow.set_time(target);
+            }
+            info = StepInfo {
+                step: simulation.flow.steps(),
+                time: simulation.flow.time(),
+                dt,
+                courant: simulation.flow.courant(dt),
+            };
+            summary.steps += 1;
+            if grown >= full {
+                summary.dt = [summary.dt[0].min(dt), summary.dt[1].max(dt)];
+            }
+            summary.courant = summary.courant.max(info.courant);
+            observer.step(simulation, &info)?;
+            if steps == 1.0 {
+                break;
+            }
+        }
+        index += 1;
+        observer.snapshot(simulation, index, &info)?;
+    }
+    Ok(summary)
+}

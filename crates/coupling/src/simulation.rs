@@ -1,0 +1,178 @@
+//! Flow and what is immersed in it.
+use crate::CouplingError;
+use fv_mesh::Projection;
+use interfaces::{Checkpoint, RestartError, Vector};
+use std::time::{Duration, Instant};
+
+/// What is immersed in a flow; `()` is nothing.
+pub trait Immersed<const D: usize>: Checkpoint {
+    /// Between predictor and end of a step: moves what is immersed, forces the velocity and makes
+    /// it free of divergence.
+    ///
+    /// # Errors
+    /// [`CouplingError`] when flow or bodies cannot go on.
+    fn couple(
+        &mut self,
+        flow: &mut Projection<D>,
+        dt: f64,
+        timings: &mut Timings,
+    ) -> Result<(), CouplingError>;
+
+    /// Can this be immersed in this flow?
+    ///
+    /// # Errors
+    /// [`CouplingError`] that names what does not fit and why.
+    fn check(&self, _flow: &Projection<D>) -> Result<(), CouplingError> {
+        Ok(())
+    }
+
+    /// Σ (ρ_s − ρ_f) V g \[N\], what gravity pulls beyond buoyancy.
+    fn net_weight(&self) -> Vector {
+        Vector::zeros()
+    }
+}
+
+impl<const D: usize> Immersed<D> for () {
+    fn couple(
+        &mut self,
+        flow: &mut Projection<D>,
+        dt: f64,
+        timings: &mut Timings,
+    ) -> Result<(), CouplingError> {
+        timings.measure(Module::Pressure, || flow.project(dt))?;
+        Ok(())
+    }
+}
+
+/// What holds up the net weight of bodies in a periodic box, which would else fall ever faster
+/// together with the fluid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WeightBalance {
+    /// Nothing: for boxes with walls, which bear it as pressure.
+    None,
+    /// The uniform body force −Σ(ρ_s − ρ_f) V g / V_Ω: the momentum of fluid and bodies together
+    /// stays what it was, and ∫_Ω u dV stays within Σ(ρ_s − ρ_f)/ρ_f · V U of zero.
+    #[default]
+    NetWeight,
+    /// The uniform body force that holds ∫_Ω u dV over fluid and solid at zero exactly.
+    ZeroFlow,
+}
+
+/// The parts of a step whose time is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Module {
+    /// Convection, diffusion and the old pressure gradient.
+    Advance,
+    /// Motion of the bodies and their contacts.
+    Contact,
+    /// λ, markers and stencils of bodies that moved.
+    SolidFraction,
+    /// Reading and forcing the velocity, and the bodies' new velocities.
+    Forcing,
+    /// Divergence, pressure solution, correction.
+    Pressure,
+    /// Extremes, clock.
+    Finish,
+}
+
+impl Module {
+    /// All of them, in order.
+    pub const ALL: [Self; 6] =
+        [Self::Advance, Self::Contact, Self::SolidFraction, Self::Forcing, Self::Pressure, Self::Finish];
+    /// A name for tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Advance => "advance",
+            Self::Contact => "contact",
+            Self::SolidFraction => "lambda",
+            Self::Forcing => "forcing",
+            Self::Pressure => "pressure",
+            Self::Finish => "finish",
+        }
+    }
+}
+
+/// Wall time by module.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Timings([Duration; 6]);
+
+impl Timings {
+    /// Runs `f` on the account of `module`.
+    pub fn measure<R>(&mut self, module: Module, f: impl FnOnce() -> R) -> R {
+        let start = Instant::now();
+        let out = f();
+        self.0[module as usize] += start.elapsed();
+        out
+    }
+    /// Seconds spent in `module`.
+    pub fn seconds(&self, module: Module) -> f64 {
+        self.0[module as usize].as_secs_f64()
+    }
+}
+
+/// A flow and what is immersed in it (`P`; `()` for nothing).
+pub struct Simulation<const D: usize, P = ()> {
+    /// The flow.
+    pub flow: Projection<D>,
+    /// What is immersed.
+    pub particles: P,
+    balance: WeightBalance,
+    force: Vector,
+    timings: Timings,
+}
+
+impl<const D: usize, P: Immersed<D>> Simulation<D, P> {
+    /// Puts the two together.
+    ///
+    /// # Errors
+    /// [`CouplingError`] when the two do not fit ([`Immersed::check`]).
+    pub fn new(flow: Projection<D>, particles: P, balance: WeightBalance) -> Result<Self, CouplingError> {
+        particles.check(&flow)?;
+        Ok(Self { flow, particles, balance, force: Vector::zeros(), timings: Timings::default() })
+    }
+
+    /// One step of length `dt` \[s\].
+    ///
+    /// # Errors
+    /// [`CouplingError`] when flow or bodies cannot go on.
+    pub fn step(&mut self, dt: f64) -> Result<(), CouplingError> {
+        let Self { flow, particles, timings, .. } = self;
+        self.force = match self.balance {
+            WeightBalance::None => Vector::zeros(),
+            WeightBalance::NetWeight => {
+                -particles.net_weight() / (flow.fluid().density * flow.grid().volume())
+            }
+            // What brings back the flow that the last step left, and the net weight ahead.
+            WeightBalance::ZeroFlow => {
+                let volume = flow.grid().volume();
+                -particles.net_weight() / (flow.fluid().density * volume)
+                    - flow.statistics().volume_flow / (volume * dt)
+            }
+        };
+        let force = std::array::from_fn(|a| self.force[a]);
+        timings.measure(Module::Advance, || flow.predict(dt, force))?;
+        particles.couple(flow, dt, timings)?;
+        timings.measure(Module::Finish, || flow.finish(dt))?;
+        Ok(())
+    }
+
+    /// The body force of the last step, per mass \[m/s²\].
+    pub fn body_force(&self) -> Vector {
+        self.force
+    }
+    /// Where the time went.
+    pub fn timings(&self) -> &Timings {
+        &self.timings
+    }
+}
+
+impl<const D: usize, P: Immersed<D>> Checkpoint for Simulation<D, P> {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        self.flow.save(&mut |name, values| sink(&format!("flow.{name}"), values));
+        self.particles.save(&mut |name, values| sink(&format!("particles.{name}"), values));
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        self.flow.restore(&|name| source(&format!("flow.{name}")))?;
+        self.particles.restore(&|name| source(&format!("particles.{name}")))
+    }
+}

@@ -1,0 +1,70 @@
+//! What can go wrong.
+use crate::poisson::PoissonError;
+
+/// Why a grid, a field or a step could not be made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FlowError {
+    /// The grid makes no sense.
+    #[error("the grid asks for {what}")]
+    Grid {
+        /// What is wrong and what to give instead.
+        what: String,
+    },
+    /// The boundary conditions make no sense.
+    #[error("the boundary conditions ask for {what}")]
+    Boundary {
+        /// What is wrong and what to give instead.
+        what: String,
+    },
+    /// A fluid property is not physical.
+    #[error("the fluid's {name} is {value} {unit}; it must be positive and finite")]
+    Fluid {
+        /// Which property.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
+    /// The step's length is unusable.
+    #[error("a time step of {dt} s was asked for at t = {time} s; it must be positive and finite")]
+    TimeStep {
+        /// The step \[s\].
+        dt: f64,
+        /// When \[s\].
+        time: f64,
+    },
+    /// The step is longer than explicit diffusion is stable for.
+    #[error(
+        "a time step of {dt:.3e} s is beyond the stability limit of explicit diffusion, {limit:.3e} s on this grid; take at most that, or a coarser grid"
+    )]
+    Unstable {
+        /// The step \[s\].
+        dt: f64,
+        /// The longest stable one \[s\].
+        limit: f64,
+    },
+    /// The velocity is no longer finite.
+    #[error(
+        "the velocity is not finite any more in step {step} (t = {time} s, dt = {dt} s, last Courant number {courant:.3}); take a smaller time step: the last good state is the last file written"
+    )]
+    Diverged {
+        /// Step number.
+        step: u64,
+        /// Time \[s\].
+        time: f64,
+        /// Step length \[s\].
+        dt: f64,
+        /// Courant number of the last good step.
+        courant: f64,
+    },
+    /// The pressure solver could not work.
+    #[error(transparent)]
+    Poisson(PoissonError),
+}
+
+impl From<PoissonError> for FlowError {
+    fn from(e: PoissonError) -> Self {
+        Self::Poisson(e)
+    }
+}

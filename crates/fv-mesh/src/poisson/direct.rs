@@ -1,0 +1,354 @@
+//! The direct solver: transforms across the layers, sweeps along the last axis.
+use super::modes::Modes;
+use super::transform::AxisTransform;
+use super::tridiagonal::{LANES, Sweep};
+use super::{AxisBounds, PoissonError, PoissonInfo, PoissonSolver, column};
+use pulp::bytemuck;
+use rayon::prelude::*;
+use rustfft::num_complex::Complex;
+
+/// Parts that the layers are shared out in, whatever the number of threads.
+const CHUNKS: usize = 16;
+/// Columns that are transformed along y at once.
+const GROUP: usize = 8;
+
+/// Direct solver of `Σ_a (φ_{i−1} − 2 φ_i + φ_{i+1}) / h_a² − s φ = f` on a uniform box; see the
+/// [module](super) for the equation.
+///
+/// All memory is taken when the solver is made: about two doubles per cell. The work is shared out
+/// over the rayon pool that a solve runs in and the result does not depend on the number of threads,
+/// bit by bit. Inside a pool (`ThreadPool::install`) a solve allocates nothing; a solve called from
+/// outside of one enters the global pool, which does.
+///
+/// The residual is that of rounding φ, about 1e-16 (|f| + |φ|/h²).
+pub struct DirectPoisson<const D: usize> {
+    layout: Layout,
+    last: AxisBounds,
+    sweep: Sweep,
+    /// No φ exists unless f has zero mean.
+    singular: bool,
+    /// The mode that is constant across a layer has no eigenvalue, so the sweep leaves it out.
+    bare: bool,
+    /// Factor of the right-hand side in the sweeps.
+    scale: f64,
+    /// Complex layers, transformed.
+    spectra: Vec<Complex<f64>>,
+    /// Solutions of the sweeps, block by block.
+    solutions: Vec<f64>,
+    /// Constant mode of every layer.
+    column: Vec<f64>,
+    scratch: Vec<Scratch>,
+}
+
+/// What the transforms of a layer need to know.
+struct Layout {
+    x: AxisTransform,
+    /// In three dimensions.
+    y: Option<AxisTransform>,
+    modes: Modes,
+    nx: usize,
+    /// Rows of a layer.
+    rows: usize,
+    /// Layers of the box.
+    layers: usize,
+    /// Complex layers per chunk.
+    chunk: usize,
+}
+
+/// Work space of a chunk.
+struct Scratch {
+    /// Two real rows.
+    rows: Vec<f64>,
+    fft: Vec<Complex<f64>>,
+    /// Columns along y.
+    columns: Vec<Complex<f64>>,
+}
+
+impl<const D: usize> DirectPoisson<D> {
+    /// Solver for `cells` cells of size `spacing` \[m\] along each axis; D is 2 or 3.
+    ///
+    /// # Errors
+    ///
+    /// [`PoissonError::NoCells`], [`PoissonError::Spacing`] and [`PoissonError::MixedEnds`].
+    pub fn new(cells: [usize; D], spacing: [f64; D], bounds: [AxisBounds; D]) -> Result<Self, PoissonError> {
+        Self::new_helmholtz(cells, spacing, bounds, 0.0)
+    }
+
+    /// The same with a `shift` s ≥ 0 \[1/m²\].
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::new`] and [`PoissonError::Shift`].
+    pub fn new_helmholtz(
+        cells: [usize; D],
+        spacing: [f64; D],
+        bounds: [AxisBounds; D],
+        shift: f64,
+    ) -> Result<Self, PoissonError> {
+        const { assert!(D == 2 || D == 3, "boxes have two or three dimensions") };
+        for axis in 0..D {
+            let (h, ends) = (spacing[axis], bounds[axis]);
+            if cells[axis] == 0 {
+                return Err(PoissonError::NoCells { axis });
+            }
+            if !(h > 0.0 && h.is_finite()) {
+                return Err(PoissonError::Spacing { axis, spacing: h });
+            }
+            if axis < D - 1 && matches!(ends, AxisBounds::NeumannDirichlet | AxisBounds::DirichletNeumann) {
+                return Err(PoissonError::MixedEnds { axis, bounds: ends });
+            }
+        }
+        if !(shift >= 0.0 && shift.is_finite()) {
+            return Err(PoissonError::Shift { shift });
+        }
+
+        let x = AxisTransform::new(cells[0], bounds[0]);
+        let y = (D == 3).then(|| AxisTransform::new(cells[1], bounds[1]));
+        let modes = Modes::new(&x, y.as_ref());
+        let (nx, rows, layers) = (cells[0], if D == 3 { cells[1] } else { 1 }, cells[D - 1]);
+        let complex_layers = layers.div_ceil(2);
+
+        let h2 = spacing.map(|h| h * h);
+        let scale = h2[D - 1] / (nx * rows) as f64;
+        let lambda = |kx: usize, ky: usize| {
+            let along_y = y.as_ref().map_or(0.0, |y| y.eigenvalue(ky) / h2[1]);
+            (x.eigenvalue(kx) / h2[0] + along_y + shift) * h2[D - 1]
+        };
+        let bare = lambda(0, 0) == 0.0;
+        let sweep = Sweep::new(layers, bounds[D - 1], scale, &modes, lambda);
+
+        let zero = Complex::default();
+        let chunk = complex_layers.div_ceil(CHUNKS);
+        let fft = x.scratch_len().max(y.as_ref().map_or(0, AxisTransform::scratch_len));
+        let scratch = || Scratch {
+            rows: vec![0.0; 2 * nx],
+            fft: vec![zero; fft],
+            columns: vec![zero; if D == 3 { GROUP * rows } else { 0 }],
+        };
+        Ok(Self {
+            last: bounds[D - 1],
+            singular: bare && column::free(bounds[D - 1]),
+            bare,
+            scale,
+            spectra: vec![zero; complex_layers * modes.layer_stride],
+            solutions: vec![0.0; modes.blocks.len() * complex_layers * LANES],
+            column: vec![0.0; layers],
+            scratch: (0..complex_layers.div_ceil(chunk)).map(|_| scratch()).collect(),
+            layout: Layout { x, y, modes, nx, rows, layers, chunk },
+            sweep,
+        })
+    }
+
+    /// Solves for the right-hand side that `fill` makes row by row: `fill(r, row)` has to write all
+    /// values of x-row r = j + n_y k to `row`, which holds anything before. `phi` (dense, x fastest)
+    /// receives the solution; what it held does not matter.
+    ///
+    /// Each row is asked for once, in any order and from any thread of the pool.
+    ///
+    /// # Errors
+    ///
+    /// [`PoissonError::Length`] and [`PoissonError::NonFinite`]; `phi` is then left as it was.
+    pub fn solve_rows<F>(&mut self, fill: F, phi: &mut [f64]) -> Result<PoissonInfo, PoissonError>
+    where
+        F: Fn(usize, &mut [f64]) + Sync,
+    {
+        self.check_length(phi)?;
+        self.transform(fill);
+        let info = self.take_column()?;
+        self.sweep();
+        self.transform_back(phi);
+        Ok(info)
+    }
+
+    fn check_length(&self, field: &[f64]) -> Result<(), PoissonError> {
+        let cells = self.layout.nx * self.layout.rows * self.layout.layers;
+        if field.len() == cells { Ok(()) } else { Err(PoissonError::Length { length: field.len(), cells }) }
+    }
+
+    /// Right-hand side to spectra.
+    fn transform<F: Fn(usize, &mut [f64]) + Sync>(&mut self, fill: F) {
+        let layout = &self.layout;
+        let stride = layout.modes.layer_stride;
+        let chunks = self.spectra.par_chunks_mut(layout.chunk * stride);
+        chunks.zip(&mut self.scratch).enumerate().for_each(|(c, (spectra, scratch))| {
+            pulp::Arch::new().dispatch(
+                #[inline(always)]
+                || {
+                    for (i, layer) in spectra.chunks_exact_mut(stride).enumerate() {
+                        layout.transform_layer(c * layout.chunk + i, layer, scratch, &fill);
+                    }
+                },
+            );
+        });
+    }
+
+    /// Gathers the mode that is constant across the layers, makes sure that the right-hand side is
+    /// finite and solves for that mode if the sweeps cannot.
+    fn take_column(&mut self) -> Result<PoissonInfo, PoissonError> {
+        let layers = self.column.len();
+        let (front, stride) = (self.layout.modes.front, self.layout.modes.layer_stride);
+        for (low, layer) in self.spectra.chunks_exact(stride).enumerate() {
+            let (z, high) = (layer[front], layers - 1 - low);
+            if !(z.re.is_finite() && z.im.is_finite()) {
+                let sum = if z.re.is_finite() { z.im } else { z.re };
+                return Err(PoissonError::NonFinite { low, high, sum });
+            }
+            self.column[low] = z.re;
+            self.column[high] = z.im;
+        }
+        let per_layer = (self.layout.nx * self.layout.rows) as f64;
+        let mean = if self.singular { self.column.iter().sum::<f64>() / layers as f64 } else { 0.0 };
+        if self.bare {
+            self.column.iter_mut().for_each(|g| *g = self.scale * (*g - mean));
+            column::solve(self.last, &mut self.column);
+        }
+        Ok(PoissonInfo { removed_mean: mean / per_layer })
+    }
+
+    /// Spectra to solutions.
+    fn sweep(&mut self) {
+        let (sweep, modes) = (&self.sweep, &self.layout.modes);
+        let spectra = bytemuck::cast_slice(&self.spectra);
+        let block = self.layout.layers.div_ceil(2) * LANES;
+        self.solutions.par_chunks_exact_mut(block).enumerate().for_each(|(b, out)| {
+            pulp::Arch::new().dispatch(
+                #[inline(always)]
+                || sweep.solve_block(b, modes, spectra, out),
+            );
+        });
+        if self.bare {
+            // The constant mode is the first one of the first block.
+            for (s, row) in self.solutions[..block].chunks_exact_mut(LANES).enumerate() {
+                row[0] = self.column[s];
+                row[1] = self.column[self.column.len() - 1 - s];
+            }
+        }
+    }
+
+    /// Solutions to φ, by way of the spectra.
+    fn transform_back(&mut self, phi: &mut [f64]) {
+        let layout = &self.layout;
+        let cells = layout.nx * layout.rows;
+        let (front, back) = phi.split_at_mut(layout.layers.div_ceil(2) * cells);
+        let part = layout.chunk * cells;
+        let stride = layout.modes.layer_stride;
+        let solutions = &self.solutions;
+        // Without its middle layer the back may have one part less.
+        let none: &mut [f64] = &mut [];
+        let back = back.par_rchunks_mut(part).chain(rayon::iter::once(none));
+        let chunks = front.par_chunks_mut(part).zip(back).zip(self.spectra.par_chunks_mut(layout.chunk * stride));
+        chunks.zip(&mut self.scratch).enumerate().for_each(|(c, (((front, back), spectra), scratch))| {
+            pulp::Arch::new().dispatch(
+                #[inline(always)]
+                || {
+                    let mut back = back.rchunks_exact_mut(cells);
+                    let front = front.chunks_exact_mut(cells);
+                    for (i, (layer, front)) in spectra.chunks_exact_mut(stride).zip(front).enumerate() {
+                        layout.modes.gather(c * layout.chunk + i, solutions, layer);
+                        layout.transform_layer_back(layer, scratch, front, back.next().unwrap_or_default());
+                    }
+                },
+            );
+        });
+    }
+}
+
+impl<const D: usize> PoissonSolver<D> for DirectPoisson<D> {
+    fn solve(&mut self, rhs_in_phi_out: &mut [f64]) -> Result<PoissonInfo, PoissonError> {
+        self.check_length(rhs_in_phi_out)?;
+        let (nx, rhs) = (self.layout.nx, &*rhs_in_phi_out);
+        self.transform(|r, row| row.copy_from_slice(&rhs[r * nx..(r + 1) * nx]));
+        let info = self.take_column()?;
+        self.sweep();
+        self.transform_back(rhs_in_phi_out);
+        Ok(info)
+    }
+}
+
+impl Layout {
+    /// Fills and transforms complex layer `s`, which carries layer s as real and its mirror across
+    /// the centre of the last axis as imaginary part.
+    #[inline(always)]
+    fn transform_layer(
+        &self,
+        s: usize,
+        layer: &mut [Complex<f64>],
+        scratch: &mut Scratch,
+        fill: &impl Fn(usize, &mut [f64]),
+    ) {
+        let mirror = self.layers - 1 - s;
+        let (a, b) = scratch.rows.split_at_mut(self.nx);
+        for j in 0..self.rows {
+            fill(s * self.rows + j, a);
+            if mirror == s {
+                b.copy_from_slice(a);
+            } else {
+                fill(mirror * self.rows + j, b);
+            }
+            let row = self.row(j, layer);
+            self.x.pack(a, b, row);
+            self.x.forward(row, &mut scratch.fft);
+        }
+        if let Some(y) = &self.y {
+            self.along_y(y, layer, scratch, true);
+        }
+        if self.x.periodic() {
+            for row in layer.chunks_exact_mut(self.modes.row_stride).take(self.rows) {
+                row[self.modes.front + self.nx] = row[self.modes.front];
+            }
+        }
+    }
+
+    /// Transforms a complex layer back and writes its real layers.
+    #[inline(always)]
+    fn transform_layer_back(
+        &self,
+        layer: &mut [Complex<f64>],
+        scratch: &mut Scratch,
+        a: &mut [f64],
+        b: &mut [f64],
+    ) {
+        if let Some(y) = &self.y {
+            self.along_y(y, layer, scratch, false);
+        }
+        for j in 0..self.rows {
+            let row = self.row(j, layer);
+            self.x.inverse(row, &mut scratch.fft);
+            let cells = j * self.nx..(j + 1) * self.nx;
+            self.x.unpack(row, &mut a[cells.clone()], b.get_mut(cells).unwrap_or_default());
+        }
+    }
+
+    #[inline(always)]
+    fn row<'a>(&self, j: usize, layer: &'a mut [Complex<f64>]) -> &'a mut [Complex<f64>] {
+        let start = j * self.modes.row_stride + self.modes.front;
+        &mut layer[start..start + self.nx]
+    }
+
+    /// Transforms the columns of a layer, several at a time in contiguous memory.
+    #[inline(always)]
+    fn along_y(&self, y: &AxisTransform, layer: &mut [Complex<f64>], scratch: &mut Scratch, forward: bool) {
+        let n = self.rows;
+        for start in (0..self.nx).step_by(GROUP) {
+            let width = GROUP.min(self.nx - start);
+            let columns = &mut scratch.columns[..width * n];
+            for j in 0..n {
+                let (slot, sign) = if forward { y.slot(j) } else { (j, 1.0) };
+                for (c, z) in self.row(j, layer)[start..start + width].iter().enumerate() {
+                    columns[c * n + slot] = z.scale(sign);
+                }
+            }
+            if forward {
+                y.forward(columns, &mut scratch.fft);
+            } else {
+                y.inverse(columns, &mut scratch.fft);
+            }
+            for j in 0..n {
+                let (slot, sign) = if forward { (j, 1.0) } else { y.slot(j) };
+                for (c, z) in self.row(j, layer)[start..start + width].iter_mut().enumerate() {
+                    *z = columns[c * n + slot].scale(sign);
+                }
+            }
+        }
+    }
+}

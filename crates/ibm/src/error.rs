@@ -1,0 +1,37 @@
+//! What can go wrong.
+use interfaces::BodyId;
+
+/// Why bodies could not be put on a grid.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum IbmError {
+    /// The shape offers no surface elements.
+    #[error(
+        "body {} offers no surface elements, which the smooth forcing needs; give its shape a `Solid::surface`, or use `Hfdib`", body.0
+    )]
+    NoSurface {
+        /// The body.
+        body: BodyId,
+    },
+    /// The body is too small for the grid.
+    #[error(
+        "body {} is {size:.3e} m across, {:.1} cells of {spacing:.3e} m; at least {least} are needed: refine the grid or take larger bodies", body.0, size / spacing
+    )]
+    TooCoarse {
+        /// The body.
+        body: BodyId,
+        /// Its smallest extent \[m\].
+        size: f64,
+        /// Cell size \[m\].
+        spacing: f64,
+        /// Cells that are needed.
+        least: f64,
+    },
+    /// A body's place is not finite.
+    #[error("body {} stands at {position:?}, which is not finite; the run has diverged: take a smaller time step", body.0)]
+    Lost {
+        /// The body.
+        body: BodyId,
+        /// Where it is.
+        position: [f64; 3],
+    },
+}

@@ -1,0 +1,137 @@
+//! Bodies and lattices for the unit tests.
+use interfaces::{
+    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Lattice, Point, Pose, Solid, SurfaceElement, Twist,
+    Vector, VelocityField,
+};
+use std::f64::consts::{PI, TAU};
+
+/// A disc (2D) or sphere (3D).
+pub(crate) struct Ball {
+    dim: usize,
+    radius: f64,
+}
+
+impl Solid for Ball {
+    fn signed_distance(&self, x: Point, _: f64) -> f64 {
+        x.coords.norm() - self.radius
+    }
+    fn aabb(&self) -> Aabb {
+        let r = self.radius;
+        Aabb::around(Point::origin(), Vector::new(r, r, if self.dim == 2 { 0.0 } else { r }))
+    }
+    fn surface(&self, spacing: f64, offset: f64) -> Option<Vec<SurfaceElement>> {
+        let r = self.radius + offset;
+        let n = (TAU * r / spacing).round() as usize;
+        let at = |i: usize| (i as f64 / n as f64 * TAU).sin_cos();
+        let ring = (0..n).map(|i| {
+            let normal = Vector::new(at(i).1, at(i).0, 0.0);
+            SurfaceElement { point: Point::from(r * normal), normal, area: TAU * r / n as f64 }
+        });
+        (self.dim == 2).then(|| ring.collect())
+    }
+}
+
+/// Equal balls that move as they are told.
+pub(crate) struct Balls {
+    ball: Ball,
+    poses: Vec<Pose>,
+    pub(crate) twists: Vec<Twist>,
+    moves: Vec<u64>,
+}
+
+impl Balls {
+    pub(crate) fn new(dim: usize, radius: f64, centres: Vec<[f64; 3]>) -> Self {
+        let n = centres.len();
+        Self {
+            ball: Ball { dim, radius },
+            poses: centres.into_iter().map(Pose::at).collect(),
+            twists: vec![Twist::default(); n],
+            moves: vec![0; n],
+        }
+    }
+    pub(crate) fn shift(&mut self, b: usize, by: Vector) {
+        self.poses[b].position += by;
+        self.moves[b] += 1;
+    }
+}
+
+impl Kinematics for Balls {
+    fn n_bodies(&self) -> usize {
+        self.poses.len()
+    }
+    fn pose(&self, b: BodyId) -> Pose {
+        self.poses[b.0]
+    }
+    fn twist(&self, b: BodyId) -> Twist {
+        self.twists[b.0]
+    }
+}
+
+impl Bodies for Balls {
+    fn solid(&self, _: BodyId) -> &dyn Solid {
+        &self.ball
+    }
+    fn inertia(&self, _: BodyId) -> Inertia {
+        let r = self.ball.radius;
+        let volume = if self.ball.dim == 2 { PI * r * r } else { 4.0 / 3.0 * PI * r.powi(3) };
+        Inertia { mass: volume, volume, tensor: nalgebra::Matrix3::identity() }
+    }
+    fn freedom(&self, _: BodyId) -> Freedom {
+        Freedom::FREE
+    }
+    fn moves(&self, b: BodyId) -> u64 {
+        self.moves[b.0]
+    }
+}
+
+/// A periodic lattice of cell centres of about this spacing in a box of edge `length`.
+pub(crate) fn lattice(dim: usize, spacing: [f64; 3], length: f64) -> Lattice {
+    let mut l = Lattice {
+        origin: [0.0; 3],
+        spacing: [1.0; 3],
+        shape: [1; 3],
+        periodic: [false; 3],
+        base: 0,
+        stride: [0; 3],
+    };
+    let mut stride = 1;
+    for a in 0..dim {
+        l.shape[a] = (length / spacing[a]).round() as usize;
+        l.spacing[a] = length / l.shape[a] as f64;
+        l.origin[a] = 0.5 * l.spacing[a];
+        l.periodic[a] = true;
+        l.stride[a] = stride;
+        stride *= l.shape[a];
+    }
+    l
+}
+
+/// A collocated velocity field on one lattice.
+pub(crate) struct Collocated {
+    pub(crate) lattice: Lattice,
+    pub(crate) values: Vec<Vec<f64>>,
+}
+
+impl Collocated {
+    pub(crate) fn new(lattice: Lattice, u: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
+        let [nx, ny, nz] = lattice.shape;
+        let cells = (0..nx * ny * nz).map(|c| [c % nx, c / nx % ny, c / (nx * ny)].map(|i| i as isize));
+        let points: Vec<_> = cells.map(|i| u(lattice.position(i))).collect();
+        Self { lattice, values: (0..lattice.dim()).map(|c| points.iter().map(|u| u[c]).collect()).collect() }
+    }
+}
+
+impl VelocityField for Collocated {
+    fn dim(&self) -> usize {
+        self.values.len()
+    }
+    fn lattice(&self, _: usize) -> &Lattice {
+        &self.lattice
+    }
+    fn component(&self, c: usize) -> &[f64] {
+        &self.values[c]
+    }
+    fn component_mut(&mut self, c: usize) -> &mut [f64] {
+        &mut self.values[c]
+    }
+}

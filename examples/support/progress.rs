@@ -1,0 +1,156 @@
+//! How far a run has come: a bar on a terminal, about ten plain lines elsewhere. Both go to stderr.
+
+use std::io::{IsTerminal, stderr};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::cpu::readable;
+
+/// Steps between two looks at the clock.
+const STRIDE: u64 = 4;
+/// Least time between two updates of the bar.
+const PAUSE: Duration = Duration::from_millis(100);
+/// Plain lines in a run without a terminal.
+const LINES: f64 = 10.0;
+/// Resolution of the bar.
+const TICKS: f64 = 10_000.0;
+
+/// What one update shows.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Status {
+    /// Simulated time in seconds.
+    pub(crate) time: f64,
+    /// Time step in seconds.
+    pub(crate) dt: f64,
+    /// Courant number.
+    pub(crate) courant: f64,
+    /// What is left of the divergence.
+    pub(crate) divergence: f64,
+}
+
+/// The progress of a run from its first instant to its last.
+pub(crate) struct Progress {
+    bar: Option<ProgressBar>,
+    begin: f64,
+    end: f64,
+    started: Instant,
+    shown: Instant,
+    /// Unknown until the first step: a run may be the continuation of another.
+    shown_step: Option<u64>,
+    shown_time: f64,
+    steps_per_second: f64,
+    simulated_per_second: f64,
+    next_line: f64,
+}
+
+impl Progress {
+    /// Begins at simulated time `begin`; the run is over at `end`.
+    pub(crate) fn new(begin: f64, end: f64) -> Self {
+        let bar = stderr().is_terminal().then(|| {
+            let bar =
+                ProgressBar::with_draw_target(Some(TICKS as u64), ProgressDrawTarget::stderr_with_hz(60));
+            let style = ProgressStyle::with_template("{prefix} {wide_bar:.cyan/black.bright} {msg}");
+            bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("━╸━"))
+        });
+        let now = Instant::now();
+        Self {
+            bar,
+            begin,
+            end,
+            started: now,
+            shown: now,
+            shown_step: None,
+            shown_time: begin,
+            steps_per_second: 0.0,
+            simulated_per_second: 0.0,
+            next_line: 1.0 / LINES,
+        }
+    }
+
+    /// To be called after every step with the count of steps done; `status` is asked only when something is
+    /// shown, at most ten times a second.
+    #[inline]
+    pub(crate) fn step(&mut self, step: u64, status: impl FnOnce() -> Status) {
+        if step.is_multiple_of(STRIDE) {
+            let now = Instant::now();
+            if now.duration_since(self.shown) >= PAUSE {
+                self.show(step, status(), now);
+            }
+        }
+    }
+
+    fn show(&mut self, step: u64, status: Status, now: Instant) {
+        let seconds = now.duration_since(self.shown).as_secs_f64();
+        if let Some(before) = self.shown_step {
+            // Rates forget with a time of two seconds; the first one takes what it sees.
+            let keep = if self.steps_per_second == 0.0 { 0.0 } else { (-seconds / 2.0).exp() };
+            let blend = |old: f64, new: f64| keep * old + (1.0 - keep) * new / seconds;
+            self.steps_per_second = blend(self.steps_per_second, step.saturating_sub(before) as f64);
+            self.simulated_per_second = blend(self.simulated_per_second, status.time - self.shown_time);
+        }
+        (self.shown, self.shown_step, self.shown_time) = (now, Some(step), status.time);
+
+        let done = ((status.time - self.begin) / (self.end - self.begin)).clamp(0.0, 1.0);
+        let line = self.bar.is_none() && done >= self.next_line;
+        if line {
+            self.next_line = ((done * LINES).floor() + 1.0) / LINES;
+        }
+        if self.bar.is_none() && !line {
+            return;
+        }
+        let position = format!("t = {:.4} of {:.4} s", status.time, self.end);
+        let left = (self.end - status.time) / self.simulated_per_second;
+        let left = Duration::try_from_secs_f64(left).map_or_else(|_| "?".into(), readable);
+        let message = format!(
+            "step {step}  dt {:.2e} s  Co {:.2}  div {:.1e}  {:.0} steps/s  {left} left",
+            status.dt, status.courant, status.divergence, self.steps_per_second
+        );
+        match &self.bar {
+            Some(bar) => {
+                bar.set_prefix(position);
+                bar.set_position((done * TICKS) as u64);
+                bar.set_message(message);
+            }
+            None => eprintln!("{:3.0} %  {position}  {message}", 100.0 * done),
+        }
+    }
+
+    /// A line of its own, above the bar if there is one.
+    pub(crate) fn say(&self, line: &str) {
+        match &self.bar {
+            Some(bar) => bar.println(line),
+            None => eprintln!("{line}"),
+        }
+    }
+
+    /// Takes the bar away and leaves one line behind: how many steps, how long, and `message`.
+    pub(crate) fn finish(self, steps: u64, message: &str) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+        let wall = self.started.elapsed();
+        let rate = steps as f64 / wall.as_secs_f64().max(1e-9);
+        eprintln!("{message}: {steps} steps in {} ({rate:.0} steps/s)", readable(wall));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn status_is_asked_seldom() {
+        let mut progress = Progress::new(0.0, 1.0);
+        let mut asked = 0;
+        let started = Instant::now();
+        for step in 1..=100_000u64 {
+            progress.step(step, || {
+                asked += 1;
+                Status { time: step as f64 * 1e-5, ..Status::default() }
+            });
+        }
+        assert!(f64::from(asked) <= 1.0 + started.elapsed().as_secs_f64() / PAUSE.as_secs_f64());
+        progress.finish(100_000, "done");
+    }
+}

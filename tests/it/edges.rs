@@ -1,0 +1,35 @@
+//! The crates may depend on one another only as docs/architecture.md draws it.
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::process::Command;
+
+#[test]
+fn crates_meet_only_through_interfaces() {
+    let out = Command::new(env!("CARGO"))
+        .args(["metadata", "--format-version", "1", "--no-deps", "--offline"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("cargo metadata runs");
+    let metadata: Value = serde_json::from_slice(&out.stdout).expect("cargo metadata prints JSON");
+    let packages = metadata["packages"].as_array().expect("packages");
+    let name = |p: &Value| p["name"].as_str().expect("name").to_owned();
+    let all: BTreeSet<String> = packages.iter().map(name).collect();
+    for crate_ in ["siltflow", "interfaces", "fv-mesh", "ibm", "dem", "coupling"] {
+        assert!(all.contains(crate_), "{crate_} is gone");
+    }
+    for package in packages {
+        let from = name(package);
+        for dependency in package["dependencies"].as_array().expect("dependencies") {
+            let to = name(dependency);
+            if all.contains(&to) {
+                let allowed = match from.as_str() {
+                    "siltflow" => true,
+                    "coupling" => to != "siltflow",
+                    "interfaces" => false,
+                    _ => to == "interfaces",
+                };
+                assert!(allowed, "{from} must not depend on {to}");
+            }
+        }
+    }
+}

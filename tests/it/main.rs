@@ -1,0 +1,2 @@
+//! Tests across crates, in one binary.
+mod edges;

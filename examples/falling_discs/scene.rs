@@ -1,15 +1,150 @@
 //! The scene as data, and its parts put together; tests and benches use it too.
-use dem::{DemError, Disc, HalfSpace, Material, RigidBodies};
-use fv_mesh::{CartesianGrid, Fluid, Projection, Side};
-use ibm::Forcing;
-use interfaces::{Freedom, Periods, Pose, Twist, Vector};
+// Not every user of this file needs all of it.
+#![allow(dead_code)]
+
 use siltflow::coupling::{CouplingError, Particles, Simulation, WeightBalance};
-use siltflow::{dem, flow as fv_mesh, ibm, interfaces};
-use std::sync::Arc;
+use siltflow::dem::{DemError, Disc, HalfSpace, Material, RigidBodies};
+use siltflow::flow::{CartesianGrid, FlowError, Fluid, Projection, Side};
+use siltflow::ibm::Forcing;
+use siltflow::interfaces::{Freedom, Periods, Point, Pose, Twist, Vector};
 
 /// Box \[m\]: 10 × 20 of the paper's diameters.
 pub(crate) const BOX: [f64; 2] = [10e-3, 20e-3];
-/// The fluid: water.
+/// The fluid is water.
 pub(crate) const FLUID: Fluid = Fluid { density: 1000.0, viscosity: 1e-6 };
-/// Gravity \[m/s²\].
+/// Gravity \[m/s²\], along −y.
 pub(crate) const GRAVITY: f64 = 9.81;
+/// What discs and floor are made of: soft enough for the contact to be cheap, hard enough for the discs to sink
+/// less than a thousandth of their radius into the floor under their own weight.
+pub(crate) const MATERIAL: Material =
+    Material { density: 1000.0, youngs_modulus: 1e6, poisson_ratio: 0.3, damping: 0.5, friction: 0.3 };
+/// Fewer cells across a disc cannot hold its markers.
+pub(crate) const LEAST_CELLS: usize = 4;
+
+/// What may vary.
+#[derive(Clone, Debug)]
+pub(crate) struct Scene {
+    pub(crate) cells_per_diameter: usize,
+    pub(crate) bodies: usize,
+    pub(crate) densities: Vec<f64>,
+    pub(crate) diameter: f64,
+    pub(crate) floor: bool,
+    pub(crate) balance: WeightBalance,
+    pub(crate) freedom: Freedom,
+    /// Virtual mass of the coupling in displaced masses.
+    pub(crate) virtual_mass: f64,
+    /// Moves everything by this much \[m\] against the grid.
+    pub(crate) shift: [f64; 2],
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Self {
+            cells_per_diameter: 15,
+            bodies: 2,
+            densities: vec![1060.0, 1030.0],
+            diameter: 1e-3,
+            floor: false,
+            balance: WeightBalance::NetWeight,
+            freedom: Freedom::PLANAR,
+            virtual_mass: 0.0,
+            shift: [0.0; 2],
+        }
+    }
+}
+
+/// Why the scene cannot be built.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum SceneError {
+    #[error(transparent)]
+    Flow(#[from] FlowError),
+    #[error(transparent)]
+    Bodies(#[from] DemError),
+    #[error(transparent)]
+    Coupling(#[from] CouplingError),
+    #[error(
+        "{found} cells across a disc; at least {LEAST_CELLS} are needed, and 10 or more are advised: raise --cells-per-diameter"
+    )]
+    TooCoarse { found: usize },
+    #[error("{found} bodies; give between 1 and {most}: what fits into the box in rows two diameters apart")]
+    Count { found: usize, most: usize },
+    #[error("no densities were given; give at least one, as in --densities 1060,1030")]
+    NoDensity,
+    #[error("a diameter of {found} m; give a positive one")]
+    Diameter { found: f64 },
+}
+
+impl Scene {
+    /// Cells along x and y: the cell size is that of the paper's disc, 1 mm.
+    pub(crate) fn cells(&self) -> [usize; 2] {
+        BOX.map(|l| (l / self.diameter * self.cells_per_diameter as f64).round().max(1.0) as usize)
+    }
+
+    /// Where the discs start: the paper's two, further ones in rows from the top.
+    pub(crate) fn centres(&self) -> Result<Vec<[f64; 2]>, SceneError> {
+        let d = self.diameter;
+        let mut all = vec![[5e-3, 16e-3], [5.05e-3, 13.5e-3]];
+        let per_row = ((BOX[0] / (2.0 * d)).floor() as usize).min(1000);
+        let rows = ((11e-3 / (2.0 * d)).floor() as usize).min(1000);
+        for k in 0..if self.bodies > 2 { per_row * rows } else { 0 } {
+            let (row, place) = ((k / per_row) as f64, (k % per_row) as f64);
+            all.push([d * (2.0 * place + 1.0), 11e-3 - 2.0 * d * (row + 0.5)]);
+        }
+        if self.bodies == 0 || self.bodies > all.len() {
+            return Err(SceneError::Count { found: self.bodies, most: 2 + per_row * rows });
+        }
+        all.truncate(self.bodies);
+        Ok(all.into_iter().map(|[x, y]| [x + self.shift[0], y + self.shift[1]]).collect())
+    }
+
+    /// The fluid alone.
+    pub(crate) fn flow(&self) -> Result<Projection<2>, SceneError> {
+        if !(self.diameter.is_finite() && self.diameter > 0.0) {
+            return Err(SceneError::Diameter { found: self.diameter });
+        }
+        if self.cells_per_diameter < LEAST_CELLS {
+            return Err(SceneError::TooCoarse { found: self.cells_per_diameter });
+        }
+        let grid = CartesianGrid::new(self.cells(), BOX)?;
+        let vertical = if self.floor { [Side::WALL; 2] } else { [Side::Periodic; 2] };
+        Ok(Projection::new(grid, [[Side::Periodic; 2], vertical], FLUID)?)
+    }
+
+    /// The discs alone, without fluid.
+    pub(crate) fn discs(&self) -> Result<RigidBodies, SceneError> {
+        let periods = Periods::new([Some(BOX[0]), (!self.floor).then_some(BOX[1]), None]);
+        let mut bodies = RigidBodies::new(periods);
+        if self.densities.is_empty() {
+            return Err(SceneError::NoDensity);
+        }
+        let material = |density: f64| Material { density, ..MATERIAL };
+        for (centre, &density) in self.centres()?.into_iter().zip(self.densities.iter().cycle()) {
+            bodies.add(
+                Disc::new(0.5 * self.diameter)?,
+                material(density),
+                Pose::at([centre[0], centre[1], 0.0]),
+                Twist::default(),
+                self.freedom,
+            )?;
+        }
+        if self.floor {
+            bodies.add_wall(HalfSpace::new(Point::origin(), Vector::y())?, MATERIAL)?;
+            bodies.add_wall(HalfSpace::new(Point::new(0.0, BOX[1], 0.0), -Vector::y())?, MATERIAL)?;
+        }
+        bodies.check_overlaps()?;
+        Ok(bodies)
+    }
+
+    /// Everything.
+    pub(crate) fn build<F: Forcing>(
+        &self,
+        forcing: F,
+    ) -> Result<Simulation<2, Particles<F, RigidBodies>>, SceneError> {
+        let flow = self.flow()?;
+        let gravity = Vector::new(0.0, -GRAVITY, 0.0);
+        let particles = Particles::new(self.discs()?, forcing, FLUID.density, gravity)
+            .with_virtual_mass(self.virtual_mass);
+        let balance = if self.floor { WeightBalance::None } else { self.balance };
+        Ok(Simulation::new(flow, particles, balance)?)
+    }
+}

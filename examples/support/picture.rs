@@ -18,17 +18,13 @@ use text::Type;
 
 pub(crate) use summary::{Moment, Summary, Track};
 
-/// A field at the centres of a uniform grid over `[0, width] × [0, height]`: x runs fastest, y upwards.
+/// A field at the cell centres of a uniform grid over the [`Domain`]: x runs fastest, y upwards.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scalar<'a> {
     /// Cells along x.
     pub(crate) nx: usize,
     /// Cells along y.
     pub(crate) ny: usize,
-    /// Extent along x in metres.
-    pub(crate) width: f64,
-    /// Extent along y in metres.
-    pub(crate) height: f64,
     /// One value per cell.
     pub(crate) values: &'a [f64],
 }

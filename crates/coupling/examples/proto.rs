@@ -141,7 +141,10 @@ impl<F: Forcing> Observer<Simulation<2, Particles<F, Discs>>> for Log {
         Ok(())
     }
 }
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() {
+    rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(|| go().unwrap())
+}
+fn go() -> Result<(), Box<dyn std::error::Error>> {
     let a: Vec<String> = std::env::args().collect();
     let get = |k: &str, d: f64| a.iter().position(|x| x == k).map_or(d, |i| a[i + 1].parse().unwrap());
     let n = get("n", 15.0) as usize;

@@ -1,7 +1,7 @@
 //! The books of momentum and energy.
 use crate::{CouplingError, Immersed, Observer, Particles, Simulation, StepInfo};
 use ibm::Forcing;
-use interfaces::{Bodies, BodyId, Dynamics, Kinematics, Vector};
+use interfaces::{BodyId, Dynamics, Vector};
 
 /// Keeps, step by step, the momentum of fluid and bodies against the impulses on them, the kinetic
 /// energy against work and dissipation, and the divergence.

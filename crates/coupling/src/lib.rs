@@ -11,7 +11,7 @@
 mod checkpoint;
 mod error;
 mod ledger;
-//mod output;
+mod output;
 mod particles;
 mod run;
 mod simulation;
@@ -19,7 +19,7 @@ mod simulation;
 pub use checkpoint::{CheckpointError, load, save};
 pub use error::CouplingError;
 pub use ledger::{Ledger, LedgerReport};
-//pub use output::FileOutput;
+pub use output::FileOutput;
 pub use particles::{BodyReport, Particles};
 pub use run::{Observer, RunSummary, Schedule, StepInfo, run};
 pub use simulation::{Immersed, Module, Simulation, Timings, WeightBalance};

@@ -3,7 +3,7 @@ use crate::{CouplingError, Observer, Particles, Simulation, StepInfo};
 use dem::RigidBodies;
 use fv_mesh::ImageWriter;
 use ibm::{Forcing, SolidFraction};
-use interfaces::{Bodies, BodyId, Kinematics, Point, vtk};
+use interfaces::{BodyId, Kinematics, Point, vtk};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -14,11 +14,15 @@ use std::path::{Path, PathBuf};
 pub struct FileOutput {
     folder: PathBuf,
     csv: BufWriter<File>,
-    series: [Vec<(f64, usize, String)>; 2],
+    series: [Series; 2],
     fraction: SolidFraction,
     lambda: Vec<f64>,
     seconds: f64,
 }
+
+/// Time, part and file of the entries of a `.pvd`.
+type Series = Vec<(f64, usize, String)>;
+const SERIES: [&str; 2] = ["fields.pvd", "bodies.pvd"];
 
 const CSV_HEADER: &str = "\
 # units: time s; x,y,z m (not wrapped into a periodic box); v m/s; q 1 (unit quaternion); w rad/s; \
@@ -45,14 +49,47 @@ impl FileOutput {
             File::create(folder.join("trajectories.csv")).map_err(at("making trajectories.csv"))?,
         );
         writeln!(csv, "{CSV_HEADER}").map_err(at("writing trajectories.csv"))?;
-        Ok(Self {
-            folder: folder.into(),
-            csv,
-            series: [Vec::new(), Vec::new()],
-            fraction: SolidFraction::new(),
-            lambda: Vec::new(),
-            seconds: 0.0,
+        Ok(Self::with(folder, csv, [Vec::new(), Vec::new()]))
+    }
+
+    /// Goes on in a folder that an earlier run wrote up to `time` \[s\] at least; what it wrote
+    /// later is dropped.
+    ///
+    /// # Errors
+    /// [`CouplingError::Output`] when its files cannot be read or written.
+    pub fn resume(folder: &Path, time: f64) -> Result<Self, CouplingError> {
+        let path = folder.join("trajectories.csv");
+        let go_on = || {
+            // Times are written with ten digits.
+            let past = |t: &str| t.parse::<f64>().is_ok_and(|t| t > time * (1.0 + 1e-9));
+            let text = std::fs::read_to_string(&path)?;
+            let mut csv = BufWriter::new(File::create(&path)?);
+            for line in text.lines().filter(|l| !l.split(',').next().is_some_and(past)) {
+                writeln!(csv, "{line}")?;
+            }
+            csv.flush()?;
+            let mut series = [Vec::new(), Vec::new()];
+            for (series, name) in series.iter_mut().zip(SERIES) {
+                for line in std::fs::read_to_string(folder.join(name))?.lines() {
+                    let field = |key: &str| line.split_once(key)?.1.split('"').nth(1);
+                    if let (Some(t), Some(file)) = (field("timestep="), field("file="))
+                        && !past(t)
+                    {
+                        series.push((t.parse().unwrap_or(0.0), 0, file.to_owned()));
+                    }
+                }
+            }
+            Ok(Self::with(folder, csv, series))
+        };
+        go_on().map_err(|source| CouplingError::Output {
+            what: format!("going on in {} (was a run interrupted there?)", folder.display()),
+            source,
         })
+    }
+
+    fn with(folder: &Path, csv: BufWriter<File>, series: [Series; 2]) -> Self {
+        let folder = folder.into();
+        Self { folder, csv, series, fraction: SolidFraction::new(), lambda: Vec::new(), seconds: 0.0 }
     }
 
     /// λ at the cell centres at the last snapshot, x fastest.
@@ -87,9 +124,7 @@ impl FileOutput {
         particles.bodies.write_vtp(&mut file, corner)?;
         file.flush()?;
 
-        for (series, (name, pvd)) in
-            self.series.iter_mut().zip(names.into_iter().zip(["fields.pvd", "bodies.pvd"]))
-        {
+        for (series, (name, pvd)) in self.series.iter_mut().zip(names.into_iter().zip(SERIES)) {
             series.push((info.time, 0, name));
             vtk::write_series(&mut BufWriter::new(File::create(self.folder.join(pvd))?), series)?;
         }

@@ -2,10 +2,7 @@
 use crate::{CouplingError, Immersed, Module, Timings};
 use fv_mesh::Projection;
 use ibm::Forcing;
-use interfaces::{
-    Bodies, BodyId, Checkpoint, Dynamics, Kinematics, Load, RestartError, Twist, Vector, VelocityField,
-    Wrench,
-};
+use interfaces::{BodyId, Checkpoint, Dynamics, Load, RestartError, Twist, Vector, VelocityField, Wrench};
 use nalgebra::{Matrix6, Vector6};
 
 /// Bodies `B` immersed by the forcing `F`, moved by the flow, gravity and one another.

@@ -76,7 +76,7 @@ pub struct StepInfo {
 }
 
 /// Someone who looks on: progress, output, probes, statistics. `()` sees nothing; pairs of
-/// observers are observers.
+/// observers, and one that may be absent (`Option`), are observers.
 pub trait Observer<S> {
     /// After every step.
     ///
@@ -109,6 +109,15 @@ impl<S, A: Observer<S>, B: Observer<S>> Observer<S> for (A, B) {
     fn snapshot(&mut self, simulation: &mut S, index: usize, info: &StepInfo) -> Result<(), CouplingError> {
         self.0.snapshot(simulation, index, info)?;
         self.1.snapshot(simulation, index, info)
+    }
+}
+
+impl<S, A: Observer<S>> Observer<S> for Option<A> {
+    fn step(&mut self, simulation: &mut S, info: &StepInfo) -> Result<(), CouplingError> {
+        self.as_mut().map_or(Ok(()), |a| a.step(simulation, info))
+    }
+    fn snapshot(&mut self, simulation: &mut S, index: usize, info: &StepInfo) -> Result<(), CouplingError> {
+        self.as_mut().map_or(Ok(()), |a| a.snapshot(simulation, index, info))
     }
 }
 

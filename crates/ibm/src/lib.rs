@@ -24,6 +24,6 @@ pub use error::IbmError;
 pub use forcing::{Forcing, Layer};
 pub use fraction::{cell_fraction, plane_fraction};
 pub use hfdib::Hfdib;
-pub use kernel::Kernel;
+pub use kernel::{Kernel, WIDEST};
 pub use smooth::SmoothForcing;
 pub use solid_fraction::{SolidFraction, SolidNode};

@@ -1,9 +1,10 @@
 //! The direct solver: transforms across the layers, sweeps along the last axis.
+use super::aligned::Aligned;
 use super::modes::Modes;
 use super::transform::AxisTransform;
-use super::tridiagonal::{LANES, Sweep};
+use super::tridiagonal::{BlockSolve, LANES, Sweep};
 use super::{AxisBounds, PoissonError, PoissonInfo, PoissonSolver, column};
-use pulp::bytemuck;
+use pulp::{Simd, WithSimd, bytemuck};
 use rayon::prelude::*;
 use rustfft::num_complex::Complex;
 
@@ -32,9 +33,9 @@ pub struct DirectPoisson<const D: usize> {
     /// Factor of the right-hand side in the sweeps.
     scale: f64,
     /// Complex layers, transformed.
-    spectra: Vec<Complex<f64>>,
+    spectra: Aligned<Complex<f64>>,
     /// Solutions of the sweeps, block by block.
-    solutions: Vec<f64>,
+    solutions: Aligned<f64>,
     /// Constant mode of every layer.
     column: Vec<f64>,
     scratch: Vec<Scratch>,
@@ -130,8 +131,8 @@ impl<const D: usize> DirectPoisson<D> {
             singular: bare && column::free(bounds[D - 1]),
             bare,
             scale,
-            spectra: vec![zero; complex_layers * modes.layer_stride],
-            solutions: vec![0.0; modes.blocks.len() * complex_layers * LANES],
+            spectra: Aligned::new(complex_layers * modes.layer_stride),
+            solutions: Aligned::new(modes.blocks.len() * complex_layers * LANES),
             column: vec![0.0; layers],
             scratch: (0..complex_layers.div_ceil(chunk)).map(|_| scratch()).collect(),
             layout: Layout { x, y, modes, nx, rows, layers, chunk },
@@ -171,14 +172,8 @@ impl<const D: usize> DirectPoisson<D> {
         let stride = layout.modes.layer_stride;
         let chunks = self.spectra.par_chunks_mut(layout.chunk * stride);
         chunks.zip(&mut self.scratch).enumerate().for_each(|(c, (spectra, scratch))| {
-            pulp::Arch::new().dispatch(
-                #[inline(always)]
-                || {
-                    for (i, layer) in spectra.chunks_exact_mut(stride).enumerate() {
-                        layout.transform_layer(c * layout.chunk + i, layer, scratch, &fill);
-                    }
-                },
-            );
+            let first = c * layout.chunk;
+            pulp::Arch::new().dispatch(Forward { layout, first, fill: &fill, spectra, scratch });
         });
     }
 
@@ -211,18 +206,8 @@ impl<const D: usize> DirectPoisson<D> {
         let spectra = bytemuck::cast_slice(&self.spectra);
         let block = self.layout.layers.div_ceil(2) * LANES;
         self.solutions.par_chunks_exact_mut(block).enumerate().for_each(|(b, out)| {
-            pulp::Arch::new().dispatch(
-                #[inline(always)]
-                || sweep.solve_block(b, modes, spectra, out),
-            );
+            pulp::Arch::new().dispatch(BlockSolve { sweep, modes, b, spectra, out });
         });
-        if self.bare {
-            // The constant mode is the first one of the first block.
-            for (s, row) in self.solutions[..block].chunks_exact_mut(LANES).enumerate() {
-                row[0] = self.column[s];
-                row[1] = self.column[self.column.len() - 1 - s];
-            }
-        }
     }
 
     /// Solutions to φ, by way of the spectra.
@@ -232,24 +217,24 @@ impl<const D: usize> DirectPoisson<D> {
         let (front, back) = phi.split_at_mut(layout.layers.div_ceil(2) * cells);
         let part = layout.chunk * cells;
         let stride = layout.modes.layer_stride;
-        let solutions = &self.solutions;
+        let (solutions, column) = (&*self.solutions, self.bare.then_some(&*self.column));
         // Without its middle layer the back may have one part less.
         let none: &mut [f64] = &mut [];
         let back = back.par_rchunks_mut(part).chain(rayon::iter::once(none));
         let chunks = front.par_chunks_mut(part).zip(back).zip(self.spectra.par_chunks_mut(layout.chunk * stride));
         chunks.zip(&mut self.scratch).enumerate().for_each(|(c, (((front, back), spectra), scratch))| {
-            pulp::Arch::new().dispatch(
-                #[inline(always)]
-                || {
-                    let mut back = back.rchunks_exact_mut(cells);
-                    let front = front.chunks_exact_mut(cells);
-                    for (i, (layer, front)) in spectra.chunks_exact_mut(stride).zip(front).enumerate() {
-                        layout.modes.gather(c * layout.chunk + i, solutions, layer);
-                        layout.transform_layer_back(layer, scratch, front, back.next().unwrap_or_default());
-                    }
-                },
-            );
+            let first = c * layout.chunk;
+            let task = Backward { layout, first, solutions, column, spectra, scratch, front, back };
+            pulp::Arch::new().dispatch(task);
         });
+    }
+}
+
+impl<const D: usize> std::fmt::Debug for DirectPoisson<D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Layout { nx, rows, layers, .. } = self.layout;
+        let cells = if D == 3 { vec![nx, rows, layers] } else { vec![nx, layers] };
+        f.debug_struct("DirectPoisson").field("cells", &cells).finish_non_exhaustive()
     }
 }
 
@@ -262,6 +247,66 @@ impl<const D: usize> PoissonSolver<D> for DirectPoisson<D> {
         self.sweep();
         self.transform_back(rhs_in_phi_out);
         Ok(info)
+    }
+}
+
+/// Transforms a chunk of complex layers.
+struct Forward<'a, F> {
+    layout: &'a Layout,
+    /// First complex layer.
+    first: usize,
+    fill: &'a F,
+    spectra: &'a mut [Complex<f64>],
+    scratch: &'a mut Scratch,
+}
+
+// These are types because `pulp` can inline only their body into code for the processor at hand.
+impl<F: Fn(usize, &mut [f64])> WithSimd for Forward<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { layout, first, fill, spectra, scratch } = self;
+        for (i, layer) in spectra.chunks_exact_mut(layout.modes.layer_stride).enumerate() {
+            layout.transform_layer(first + i, layer, scratch, fill);
+        }
+    }
+}
+
+/// Transforms a chunk of complex layers back.
+struct Backward<'a> {
+    layout: &'a Layout,
+    /// First complex layer.
+    first: usize,
+    solutions: &'a [f64],
+    /// Solution of the constant mode if it is not among the others.
+    column: Option<&'a [f64]>,
+    spectra: &'a mut [Complex<f64>],
+    scratch: &'a mut Scratch,
+    /// Layers of φ from the low end, ascending.
+    front: &'a mut [f64],
+    /// Their mirrors, which descend from the high end.
+    back: &'a mut [f64],
+}
+
+impl WithSimd for Backward<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { layout, first, solutions, column, spectra, scratch, front, back } = self;
+        let cells = layout.nx * layout.rows;
+        let mut back = back.rchunks_exact_mut(cells);
+        let layers = spectra.chunks_exact_mut(layout.modes.layer_stride).zip(front.chunks_exact_mut(cells));
+        for (i, (layer, front)) in layers.enumerate() {
+            let s = first + i;
+            layout.modes.gather(s, solutions, layer);
+            if let Some(column) = column {
+                let (re, im) = (column[s], column[layout.layers - 1 - s]);
+                layer[layout.modes.front] = Complex { re, im };
+            }
+            layout.transform_layer_back(layer, scratch, front, back.next().unwrap_or_default());
+        }
     }
 }
 

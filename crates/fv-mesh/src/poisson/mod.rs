@@ -25,6 +25,7 @@
 //! # Ok::<(), fv_mesh::poisson::PoissonError>(())
 //! ```
 
+mod aligned;
 mod column;
 mod direct;
 mod modes;

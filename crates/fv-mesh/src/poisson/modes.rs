@@ -5,6 +5,8 @@ use rustfft::num_complex::Complex;
 
 /// Modes in a row that a block takes from one place of a layer; it takes two such segments.
 pub(super) const SEGMENT: usize = 4;
+/// Complex numbers of a cache line.
+const LINE: usize = 4;
 /// Modes of a block.
 pub(super) const WIDTH: usize = 2 * SEGMENT;
 
@@ -49,14 +51,16 @@ impl Modes {
         };
         let first = segments.iter().flatten().fold(0, |a, &k| a.min(k));
         let end = segments.iter().flatten().fold(n as isize, |a, &k| a.max(k + SEGMENT as isize));
-        let (front, row_stride) = ((-first) as usize, (end - first) as usize);
+        // Mode 0 of every row begins a cache line.
+        let front = ((-first) as usize).next_multiple_of(LINE);
+        let row_stride = (front + end as usize).next_multiple_of(LINE);
         let place = |row: usize, k: isize| row * row_stride + (front as isize + k) as usize;
         let blocks = (0..rows_swept)
             .flat_map(|row| segments.iter().map(move |s| (row, s)))
             .map(|(row, &[low, high])| [place(row, low), place(mirror_row(row), high)])
             .collect();
         // An odd number of cache lines spreads the layers over the sets of the caches.
-        let layer_stride = ((rows * row_stride).div_ceil(4) | 1) * 4;
+        let layer_stride = (rows * row_stride / LINE | 1) * LINE;
         Self { n, front, row_stride, layer_stride, blocks, mirror }
     }
 

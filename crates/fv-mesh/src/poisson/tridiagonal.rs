@@ -16,6 +16,7 @@
 //! centre; r^m cuts that sum short for all but the lowest modes, where it closes after n terms.
 use super::AxisBounds;
 use super::modes::{Modes, SEGMENT, WIDTH};
+use pulp::{Simd, WithSimd};
 
 /// Real numbers of a block in one layer.
 pub(super) const LANES: usize = 2 * WIDTH;
@@ -41,6 +42,33 @@ pub(super) struct Sweep {
     /// Factor of the right-hand side.
     scale: f64,
     blocks: Vec<Block>,
+}
+
+/// Task for `pulp`: solves all modes of a block.
+pub(super) struct BlockSolve<'a> {
+    pub(super) sweep: &'a Sweep,
+    pub(super) modes: &'a Modes,
+    /// Which block.
+    pub(super) b: usize,
+    /// Real view of the transformed layers.
+    pub(super) spectra: &'a [f64],
+    /// Receives the solutions, layer by layer.
+    pub(super) out: &'a mut [f64],
+}
+
+impl WithSimd for BlockSolve<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        // Registers that hold a block.
+        match LANES / S::F64_LANES {
+            2 => self.solve::<S, 2>(simd),
+            4 => self.solve::<S, 4>(simd),
+            8 => self.solve::<S, 8>(simd),
+            _ => self.solve::<S, LANES>(simd),
+        }
+    }
 }
 
 impl Sweep {
@@ -71,110 +99,142 @@ impl Sweep {
         let blocks = modes.blocks.iter().map(block).collect();
         Self { bounds, layers, odd: n % 2 == 1, scale, blocks }
     }
+}
 
-    /// Solves all modes of block `b`: reads them from the layers of `spectra`, which are `stride`
-    /// real numbers apart, and writes them to the rows of `out`.
+impl BlockSolve<'_> {
     #[inline(always)]
-    pub(super) fn solve_block(&self, b: usize, modes: &Modes, spectra: &[f64], out: &mut [f64]) {
-        let Block { ratio: r, power, terms } = &self.blocks[b];
-        let segments = modes.blocks[b].map(|place| 2 * place);
-        let stride = 2 * modes.layer_stride;
-        let layer = |s: usize| load(&spectra[s * stride..(s + 1) * stride], segments);
-        let swap = |z: &Lanes| swapped(z, &modes.mirror);
-        let reflect = |z: &Lanes| reflected(z, &modes.mirror, self.bounds);
+    fn solve<S: Simd, const N: usize>(self, simd: S) {
+        let Sweep { bounds, layers, odd, scale, ref blocks } = *self.sweep;
+        let block = &blocks[self.b];
+        let mirror = &self.modes.mirror;
+        let segments = self.modes.blocks[self.b].map(|place| 2 * place);
+        let stride = 2 * self.modes.layer_stride;
+        let r: [S::f64s; N] = to_registers::<S, N>(simd, &block.ratio);
 
         // The starting sum.
-        let mut sum = [0.0; LANES];
-        for s in (0..self.layers.min(*terms)).rev() {
-            recur(&mut sum, r, &layer(s));
+        let mut sum = [simd.splat_f64s(0.0); N];
+        for s in (0..layers.min(block.terms)).rev() {
+            recur(simd, &mut sum, &r, &load(simd, self.spectra, s * stride, segments));
         }
-        if *terms > self.layers {
-            let mut beyond = [0.0; LANES];
-            for s in 0..self.layers - usize::from(self.odd) {
-                recur(&mut beyond, r, &layer(s));
+        let mut sum = to_lanes::<S, N>(&sum);
+        if block.terms > layers {
+            let mut beyond = [simd.splat_f64s(0.0); N];
+            for s in 0..layers - usize::from(odd) {
+                recur(simd, &mut beyond, &r, &load(simd, self.spectra, s * stride, segments));
             }
-            self.close(r, power, &mut sum, &swap(&beyond), |z| swap(&reflect(z)));
+            self.sweep.close(block, &mut sum, &swapped(&to_lanes::<S, N>(&beyond), mirror), mirror);
         }
 
-        // From the outer end to the centre and back.
-        let mut w = reflect(&sum);
+        // From the outer end to the centre.
+        let mut w = to_registers::<S, N>(simd, &reflected(&sum, mirror, bounds));
         let mut last = w;
-        let mut rows = out.chunks_exact_mut(LANES).enumerate();
-        for (s, row) in rows.by_ref() {
+        for (s, row) in self.out.chunks_exact_mut(LANES).enumerate() {
             last = w;
-            recur(&mut w, r, &layer(s));
-            row.copy_from_slice(&w);
+            recur(simd, &mut w, &r, &load(simd, self.spectra, s * stride, segments));
+            S::as_mut_simd_f64s(row).0.copy_from_slice(&w);
         }
-        let ghost = swap(if self.odd { &last } else { &w });
-        let mut v: Lanes = std::array::from_fn(|i| (w[i] + r[i] * ghost[i]) / (1.0 - r[i] * r[i]));
-        let factor = r.map(|r| -r * self.scale);
-        let mut rows = out.chunks_exact_mut(LANES).rev();
-        if let Some(row) = rows.next() {
-            row.copy_from_slice(&std::array::from_fn::<_, LANES, _>(|i| factor[i] * v[i]));
+        // The centre.
+        let mut v = to_lanes::<S, N>(&w);
+        let ghost = swapped(&to_lanes::<S, N>(if odd { &last } else { &w }), mirror);
+        for (v, (ghost, r)) in v.iter_mut().zip(ghost.iter().zip(&block.ratio)) {
+            *v = (*v + r * ghost) / (1.0 - r * r);
         }
-        for row in rows {
-            for i in 0..LANES {
-                v[i] = v[i].mul_add(r[i], row[i]);
-                row[i] = factor[i] * v[i];
+        // And back; the centre's own row needs no recurrence.
+        let mut v = to_registers::<S, N>(simd, &v);
+        let mut factor = r;
+        for f in &mut factor {
+            *f = simd.mul_f64s(*f, simd.splat_f64s(-scale));
+        }
+        for (s, row) in self.out.chunks_exact_mut(LANES).enumerate().rev() {
+            let row = S::as_mut_simd_f64s(row).0;
+            for q in 0..N {
+                if s + 1 < layers {
+                    v[q] = simd.mul_add_e_f64s(v[q], r[q], row[q]);
+                }
+                row[q] = simd.mul_f64s(factor[q], v[q]);
             }
-        }
-    }
-
-    /// Adds the terms beyond the centre to the starting sum Y. After n terms Y comes back as Q Y with
-    /// Q = `around`, so Y = G + ρ Q Y with ρ = r^n and Y = (G + ρ Q G) / (1 − ρ² Q²); Q² is ±1.
-    #[inline(always)]
-    fn close(&self, r: &Lanes, power: &Lanes, sum: &mut Lanes, beyond: &Lanes, around: impl Fn(&Lanes) -> Lanes) {
-        let mixed = matches!(self.bounds, AxisBounds::NeumannDirichlet | AxisBounds::DirichletNeumann);
-        let square = if mixed { -1.0 } else { 1.0 };
-        for i in 0..LANES {
-            sum[i] += power[i] * beyond[i];
-        }
-        let turned = around(sum);
-        for i in 0..LANES {
-            // Zero ratios belong to no mode.
-            let ahead = if self.odd && r[i] > 0.0 { power[i] / r[i] } else { power[i] };
-            let rho = power[i] * ahead;
-            sum[i] = (sum[i] + rho * turned[i]) / (1.0 - square * rho * rho);
         }
     }
 }
 
-/// The block's modes in one layer.
+impl Sweep {
+    /// Adds the terms beyond the centre to the starting sum Y. After n terms Y comes back as Q Y with
+    /// Q = `around`, so Y = G + ρ Q Y with ρ = r^n and Y = (G + ρ Q G) / (1 − ρ² Q²); Q² is ±1.
+    #[inline(always)]
+    fn close(&self, block: &Block, sum: &mut Lanes, beyond: &Lanes, mirror: &[usize; WIDTH]) {
+        let mixed = matches!(self.bounds, AxisBounds::NeumannDirichlet | AxisBounds::DirichletNeumann);
+        let square = if mixed { -1.0 } else { 1.0 };
+        for i in 0..LANES {
+            sum[i] += block.power[i] * beyond[i];
+        }
+        let around = swapped(&reflected(sum, mirror, self.bounds), mirror);
+        for i in 0..LANES {
+            let (r, power) = (block.ratio[i], block.power[i]);
+            // Zero ratios belong to no mode.
+            let rho = if self.odd && r > 0.0 { power * (power / r) } else { power * power };
+            sum[i] = (sum[i] + rho * around[i]) / (1.0 - square * rho * rho);
+        }
+    }
+}
+
+/// The block's modes in the layer that begins at `start`.
 #[inline(always)]
-fn load(layer: &[f64], segments: [usize; 2]) -> Lanes {
-    let [low, high] = segments.map(|at| &layer[at..at + 2 * SEGMENT]);
-    std::array::from_fn(|i| if i < 2 * SEGMENT { low[i] } else { high[i - 2 * SEGMENT] })
+fn load<S: Simd, const N: usize>(simd: S, spectra: &[f64], start: usize, segments: [usize; 2]) -> [S::f64s; N] {
+    let [(low, _), (high, _)] = segments.map(|at| S::as_simd_f64s(&spectra[start + at..][..2 * SEGMENT]));
+    let mut z = [simd.splat_f64s(0.0); N];
+    z[..N / 2].copy_from_slice(low);
+    z[N / 2..].copy_from_slice(high);
+    z
 }
 
 /// w ← r w + z.
 #[inline(always)]
-fn recur(w: &mut Lanes, r: &Lanes, z: &Lanes) {
-    for i in 0..LANES {
-        w[i] = w[i].mul_add(r[i], z[i]);
+fn recur<S: Simd, const N: usize>(simd: S, w: &mut [S::f64s; N], r: &[S::f64s; N], z: &[S::f64s; N]) {
+    for q in 0..N {
+        w[q] = simd.mul_add_e_f64s(w[q], r[q], z[q]);
     }
+}
+
+#[inline(always)]
+fn to_registers<S: Simd, const N: usize>(simd: S, lanes: &Lanes) -> [S::f64s; N] {
+    let mut registers = [simd.splat_f64s(0.0); N];
+    registers.copy_from_slice(S::as_simd_f64s(lanes).0);
+    registers
+}
+
+#[inline(always)]
+fn to_lanes<S: Simd, const N: usize>(registers: &[S::f64s; N]) -> Lanes {
+    let mut lanes = [0.0; LANES];
+    S::as_mut_simd_f64s(&mut lanes).0.copy_from_slice(registers);
+    lanes
 }
 
 /// a + ib → b + ia.
 #[inline(always)]
 fn swapped(z: &Lanes, mirror: &[usize; WIDTH]) -> Lanes {
-    std::array::from_fn(|i| z[2 * mirror[i / 2] + 1 - i % 2])
+    let mut swapped = [0.0; LANES];
+    for (pair, &lane) in swapped.chunks_exact_mut(2).zip(mirror) {
+        pair[0] = z[2 * lane + 1];
+        pair[1] = z[2 * lane];
+    }
+    swapped
 }
 
 /// What a + ib looks like behind the outer ends.
 #[inline(always)]
 fn reflected(z: &Lanes, mirror: &[usize; WIDTH], bounds: AxisBounds) -> Lanes {
-    // a − ib.
-    let conjugate = |sign: f64| {
-        std::array::from_fn(|i| {
-            let part = sign * z[2 * mirror[i / 2] + i % 2];
-            if i % 2 == 0 { part } else { -part }
-        })
+    // ±(a − ib) and so on.
+    let (re, im) = match bounds {
+        AxisBounds::Periodic => return swapped(z, mirror),
+        AxisBounds::Neumann => return *z,
+        AxisBounds::Dirichlet => return z.map(|z| -z),
+        AxisBounds::NeumannDirichlet => (1.0, -1.0),
+        AxisBounds::DirichletNeumann => (-1.0, 1.0),
     };
-    match bounds {
-        AxisBounds::Periodic => swapped(z, mirror),
-        AxisBounds::Neumann => *z,
-        AxisBounds::Dirichlet => z.map(|z| -z),
-        AxisBounds::NeumannDirichlet => conjugate(1.0),
-        AxisBounds::DirichletNeumann => conjugate(-1.0),
+    let mut reflected = [0.0; LANES];
+    for (pair, &lane) in reflected.chunks_exact_mut(2).zip(mirror) {
+        pair[0] = re * z[2 * lane];
+        pair[1] = im * z[2 * lane + 1];
     }
+    reflected
 }

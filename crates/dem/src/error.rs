@@ -1,0 +1,95 @@
+//! What can go wrong.
+use interfaces::BodyId;
+
+/// Why a shape, a body or a step could not be made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DemError {
+    /// A size is not a length.
+    #[error("the {what} is {value} m; give a positive, finite length")]
+    Length {
+        /// Which size.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A direction has no length.
+    #[error("the normal {normal:?} has no direction; give a finite vector that is not zero")]
+    Direction {
+        /// The vector.
+        normal: [f64; 3],
+    },
+    /// A material property is not physical.
+    #[error("the {property} of the material is {value}; {remedy}")]
+    Material {
+        /// Which property.
+        property: &'static str,
+        /// Its value.
+        value: f64,
+        /// What to give instead.
+        remedy: &'static str,
+    },
+    /// Start position or velocity is not finite.
+    #[error("body {} would start at {position:?} m; give finite numbers", body.0)]
+    Start {
+        /// The body.
+        body: BodyId,
+        /// Where.
+        position: [f64; 3],
+    },
+    /// A body is too large for its periodic box.
+    #[error(
+        "body {} is {size:.3e} m long along axis {axis}, more than half the period of {period:.3e} m, so it would touch itself or one neighbour twice: take a smaller body or a longer period", body.0
+    )]
+    Period {
+        /// The body.
+        body: BodyId,
+        /// Axis, 0 for x.
+        axis: usize,
+        /// Extent \[m\].
+        size: f64,
+        /// Period \[m\].
+        period: f64,
+    },
+    /// Two bodies overlap before the first step.
+    #[error("bodies {} and {} overlap by {depth:.3e} m at the start; move them at least that much apart", a.0, b.0)]
+    OverlappingStart {
+        /// One body.
+        a: BodyId,
+        /// The other one.
+        b: BodyId,
+        /// How far \[m\].
+        depth: f64,
+    },
+    /// A body stands in a wall before the first step.
+    #[error("body {} stands {depth:.3e} m deep in wall {wall} at the start; move it out by at least that much", body.0)]
+    InWall {
+        /// The body.
+        body: BodyId,
+        /// Number of the wall.
+        wall: usize,
+        /// How deep \[m\].
+        depth: f64,
+    },
+    /// No formula for this pair of shapes.
+    #[error("the overlap of a {a} and a {b} is not supported; use shapes of one dimension")]
+    Unsupported {
+        /// One shape.
+        a: &'static str,
+        /// The other one.
+        b: &'static str,
+    },
+    /// The step's length is unusable.
+    #[error("a step of {dt} s was asked for; it must be positive and finite")]
+    TimeStep {
+        /// The step \[s\].
+        dt: f64,
+    },
+    /// A body is lost.
+    #[error("body {} moves at {velocity:?} m/s, which is not finite; take a smaller time step or softer contacts", body.0)]
+    Diverged {
+        /// The body.
+        body: BodyId,
+        /// Its velocity.
+        velocity: [f64; 3],
+    },
+}

@@ -1,0 +1,109 @@
+//! Discs and spheres, with one another and with plane walls: lenses, segments and caps.
+use super::Overlap;
+use interfaces::{Point, Vector};
+use std::f64::consts::PI;
+
+/// A part of a disc or sphere of radius `r` beyond a plane, `s` deep: its volume, the distance of
+/// its centroid from the centre, and the area of the cut.
+struct Part {
+    volume: f64,
+    centroid: f64,
+    cut: f64,
+}
+
+/// Circular segment: area ½r²(2α − sin 2α) with cos α = 1 − s/r.
+fn segment(r: f64, s: f64) -> Part {
+    let half = (s * (2.0 * r - s)).sqrt();
+    let twice = 4.0 * (s / (2.0 * r)).sqrt().min(1.0).asin();
+    // 2α − sin 2α without cancellation.
+    let bulge = if twice < 0.3 {
+        let x2 = twice * twice;
+        twice * x2 / 6.0 * (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0 * (1.0 - x2 / 110.0))))
+    } else {
+        twice - twice.sin()
+    };
+    let volume = 0.5 * r * r * bulge;
+    // ∫ x dA = ⅔ half³.
+    let centroid = if volume > 0.0 { 2.0 / 3.0 * half.powi(3) / volume } else { r };
+    Part { volume, centroid, cut: 2.0 * half }
+}
+
+/// Spherical cap: V = πs²(3r − s)/3, centroid at ¾(2r − s)²/(3r − s).
+fn cap(r: f64, s: f64) -> Part {
+    Part {
+        volume: PI * s * s * (3.0 * r - s) / 3.0,
+        centroid: 0.75 * (2.0 * r - s).powi(2) / (3.0 * r - s),
+        cut: PI * s * (2.0 * r - s),
+    }
+}
+
+pub(super) fn discs(ra: f64, a: Point, rb: f64, b: Point) -> Option<Overlap> {
+    pair(ra, a, rb, b, segment, |r| PI * r * r)
+}
+
+pub(super) fn spheres(ra: f64, a: Point, rb: f64, b: Point) -> Option<Overlap> {
+    pair(ra, a, rb, b, cap, |r| 4.0 / 3.0 * PI * r.powi(3))
+}
+
+pub(super) fn disc_wall(r: f64, at: Point, distance: f64, normal: Vector) -> Option<Overlap> {
+    wall(r, at, distance, normal, segment, PI * r * r)
+}
+
+pub(super) fn sphere_wall(r: f64, at: Point, distance: f64, normal: Vector) -> Option<Overlap> {
+    wall(r, at, distance, normal, cap, 4.0 / 3.0 * PI * r.powi(3))
+}
+
+fn pair(
+    ra: f64,
+    a: Point,
+    rb: f64,
+    b: Point,
+    part: impl Fn(f64, f64) -> Part,
+    whole: impl Fn(f64) -> f64,
+) -> Option<Overlap> {
+    let apart = a - b;
+    let d = apart.norm();
+    let depth = ra + rb - d;
+    if depth <= 0.0 {
+        return None;
+    }
+    let normal = apart.try_normalize(0.0).unwrap_or(Vector::x());
+    if d <= (ra - rb).abs() {
+        // One inside the other: no force from the gradient, but the volume is known.
+        let (r, centroid) = if ra < rb { (ra, a) } else { (rb, b) };
+        return Some(Overlap { volume: whole(r), centroid, normal, area: 0.0, depth });
+    }
+    // Depth of each one's part beyond the plane of the common circle, without cancellation.
+    let (sa, sb) = (depth * (2.0 * rb - depth) / (2.0 * d), depth * (2.0 * ra - depth) / (2.0 * d));
+    let (pa, pb) = (part(ra, sa), part(rb, sb));
+    let volume = pa.volume + pb.volume;
+    let from_a = a - normal * pa.centroid;
+    let from_b = b + normal * pb.centroid;
+    let share = if volume > 0.0 { pb.volume / volume } else { 0.5 };
+    Some(Overlap {
+        volume,
+        centroid: from_a + (from_b - from_a) * share,
+        normal,
+        area: if sa < sb { pa.cut } else { pb.cut },
+        depth,
+    })
+}
+
+fn wall(
+    r: f64,
+    at: Point,
+    distance: f64,
+    normal: Vector,
+    part: impl Fn(f64, f64) -> Part,
+    whole: f64,
+) -> Option<Overlap> {
+    let depth = r - distance;
+    if depth <= 0.0 {
+        None
+    } else if depth >= 2.0 * r {
+        Some(Overlap { volume: whole, centroid: at, normal, area: 0.0, depth })
+    } else {
+        let p = part(r, depth);
+        Some(Overlap { volume: p.volume, centroid: at - normal * p.centroid, normal, area: p.cut, depth })
+    }
+}

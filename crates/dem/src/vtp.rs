@@ -1,0 +1,82 @@
+//! Bodies for ParaView.
+use crate::{RigidBodies, Shape};
+use interfaces::vtk::{self, DataArray};
+use interfaces::{BodyId, Kinematics, Point, Vector};
+use std::f64::consts::TAU;
+use std::io::{self, Write};
+
+/// Corners of a drawn disc, and of a drawn sphere's equator.
+const CORNERS: usize = 64;
+
+impl RigidBodies {
+    /// Writes the bodies as one `.vtp` file (VTK polygonal data): discs as polygons with a line from centre to
+    /// rim that shows how far they have turned, spheres as three such circles. Periodic bodies are drawn at
+    /// their image next after `corner`. Cell data: body number, velocity \[m/s\], angular velocity \[rad/s\].
+    ///
+    /// # Errors
+    /// What the writer answers.
+    pub fn write_vtp(&self, out: &mut impl Write, corner: Point) -> io::Result<()> {
+        let (mut points, mut lines, mut owners) = (Vec::<Point>::new(), Vec::<usize>::new(), Vec::new());
+        let mut connectivity = Vec::new();
+        for b in 0..self.n_bodies() {
+            let pose = self.pose(BodyId(b));
+            let centre = self.periods().wrap(pose.position, corner);
+            let shape = self.shape(BodyId(b));
+            let r = shape.bounding_radius();
+            let planes: &[[Vector; 2]] = match shape {
+                Shape::Disc(_) => &[[Vector::new(1.0, 0.0, 0.0), Vector::new(0.0, 1.0, 0.0)]],
+                Shape::Sphere(_) => &[
+                    [Vector::new(1.0, 0.0, 0.0), Vector::new(0.0, 1.0, 0.0)],
+                    [Vector::new(0.0, 1.0, 0.0), Vector::new(0.0, 0.0, 1.0)],
+                    [Vector::new(0.0, 0.0, 1.0), Vector::new(1.0, 0.0, 0.0)],
+                ],
+            };
+            for [e1, e2] in planes {
+                let first = points.len();
+                points.push(centre);
+                for i in 0..CORNERS {
+                    let (sin, cos) = (TAU * i as f64 / CORNERS as f64).sin_cos();
+                    points.push(centre + pose.orientation * ((e1 * cos + e2 * sin) * r));
+                }
+                // From the centre to the rim and once round.
+                connectivity.extend((first..first + CORNERS + 1).map(|i| i as i64));
+                connectivity.push(first as i64 + 1);
+                lines.push(connectivity.len());
+                owners.push(b);
+            }
+        }
+        let twists = || owners.iter().map(|&b| self.twist(BodyId(b)));
+        let vectors = |pick: fn(&interfaces::Twist) -> Vector| {
+            twists().flat_map(move |t| <[f64; 3]>::from(pick(&t))).collect::<Vec<_>>()
+        };
+        let cell_data = vec![
+            DataArray::int64("body", owners.iter().map(|&b| b as i64)),
+            DataArray::float64("velocity", 3, vectors(|t| t.linear)),
+            DataArray::float64("angular_velocity", 3, vectors(|t| t.angular)),
+        ];
+        let coordinates = points.iter().flat_map(|p| <[f64; 3]>::from(*p)).collect::<Vec<_>>();
+        let piece = format!(
+            "NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" NumberOfPolys=\"0\"",
+            points.len(),
+            lines.len()
+        );
+        vtk::write(
+            out,
+            "PolyData",
+            "",
+            &piece,
+            &[
+                ("CellData", "", cell_data),
+                ("Points", "", vec![DataArray::float64("points", 3, coordinates)]),
+                (
+                    "Lines",
+                    "",
+                    vec![
+                        DataArray::int64("connectivity", connectivity),
+                        DataArray::int64("offsets", lines.iter().map(|&l| l as i64)),
+                    ],
+                ),
+            ],
+        )
+    }
+}

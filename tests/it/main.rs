@@ -1,2 +1,16 @@
-//! Tests across crates, in one binary.
+//! Tests across crates, in one binary. Their scene is that of the example `falling_discs`.
+mod bad_input;
 mod edges;
+mod files;
+mod frame;
+mod physics;
+mod restart;
+mod skipping;
+
+#[path = "../../examples/falling_discs/scene.rs"]
+mod scene;
+
+/// Runs `f` where the examples run: inside a pool of so many threads.
+fn with_threads<R: Send>(threads: usize, f: impl FnOnce() -> R + Send) -> R {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool").install(f)
+}

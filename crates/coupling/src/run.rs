@@ -20,7 +20,7 @@ pub struct Schedule {
 
 impl Default for Schedule {
     fn default() -> Self {
-        Self { end: 1.0, intervals: 100, dt: None, courant: 0.3, ramp: [0.05, 1.15] }
+        Self { end: 1.0, intervals: 100, dt: None, courant: 0.1, ramp: [0.05, 1.15] }
     }
 }
 
@@ -135,7 +135,7 @@ impl<S, A: Observer<S>> Observer<S> for &mut A {
 pub struct RunSummary {
     /// Steps made.
     pub steps: u64,
-    /// Shortest and longest step \[s\] that was not shortened to meet a snapshot or by the ramp.
+    /// Shortest and longest step \[s\] that was not shortened by the ramp.
     pub dt: [f64; 2],
     /// Largest Courant number.
     pub courant: f64,
@@ -175,10 +175,11 @@ pub fn run<const D: usize, P: Immersed<D>>(
             }
             let flow = &simulation.flow;
             let full = schedule.dt.unwrap_or_else(|| flow.stable_dt(schedule.courant));
-            let grown = if info.step == 0 { full * schedule.ramp[0] } else { info.dt * schedule.ramp[1] };
+            let [first, growth] = schedule.ramp;
+            let share = (first * growth.powf(info.step as f64)).min(1.0);
             // Equal steps to the end of the interval, up to round-off in the number of steps.
             let left = target - flow.time();
-            let steps = (left / full.min(grown) - 1e-6).ceil().max(1.0);
+            let steps = (left / (full * share) - 1e-6).ceil().max(1.0);
             let dt = left / steps;
             simulation.step(dt)?;
             if steps == 1.0 {
@@ -191,7 +192,7 @@ pub fn run<const D: usize, P: Immersed<D>>(
                 courant: simulation.flow.courant(dt),
             };
             summary.steps += 1;
-            if grown >= full {
+            if share == 1.0 {
                 summary.dt = [summary.dt[0].min(dt), summary.dt[1].max(dt)];
             }
             summary.courant = summary.courant.max(info.courant);

@@ -97,7 +97,8 @@ impl<const D: usize> CartesianGrid<D> {
         self.cells[1..D - 1].iter().product()
     }
 
-    /// The lattice of the cell centres, or of the faces normal to axis `face`.
+    /// The lattice of the cell centres, or of the faces normal to axis `face` that carry an unknown:
+    /// all but those on bounded sides.
     pub fn lattice(&self, face: Option<usize>, sides: &Sides<D>) -> Lattice {
         let (h, stride) = (self.spacing(), self.stride());
         let mut l = Lattice {
@@ -109,13 +110,14 @@ impl<const D: usize> CartesianGrid<D> {
             stride: [0; 3],
         };
         for a in 0..D {
-            let shift = if face == Some(a) { 0.0 } else { 0.5 * h[a] };
-            l.origin[a] = self.origin[a] + shift;
             l.spacing[a] = h[a];
             l.periodic[a] = sides.periodic(a);
-            // A bounded axis has one more face than cells.
-            l.shape[a] = self.cells[a] + usize::from(face == Some(a) && !l.periodic[a]);
             l.stride[a] = stride[a];
+            let walled = usize::from(face == Some(a) && !l.periodic[a]);
+            let shift = if face == Some(a) { walled as f64 } else { 0.5 };
+            l.origin[a] = self.origin[a] + shift * h[a];
+            l.shape[a] = self.cells[a] - walled;
+            l.base += walled * stride[a];
         }
         l
     }

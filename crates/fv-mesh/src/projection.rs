@@ -90,20 +90,15 @@ impl<const D: usize> Projection<D> {
 
     /// Sets every velocity component to `u(x)[c]` at its nodes \[m/s\].
     pub fn set_velocity(&mut self, u: impl Fn([f64; D]) -> [f64; D]) {
-        let n = self.grid.cells();
         for c in 0..D {
             let lattice = *self.velocity.lattice(c);
-            let shape = lattice.shape;
+            let [nx, ny, nz] = lattice.shape;
             let data = self.velocity.components[c].data_mut();
-            for k in 0..if D == 3 { n[2] } else { 1 } {
-                for j in 0..n[1].min(shape[1]) {
-                    for i in 0..n[0].min(shape[0]) {
-                        let index = [i, j, k].map(|i| i as isize);
-                        let x = lattice.position(index);
-                        if let Some(o) = lattice.index(index) {
-                            data[o] = u(std::array::from_fn(|a| x[a]))[c];
-                        }
-                    }
+            for node in 0..nx * ny * nz {
+                let index = [node % nx, node / nx % ny, node / (nx * ny)].map(|i| i as isize);
+                let x = lattice.position(index);
+                if let Some(o) = lattice.index(index) {
+                    data[o] = u(std::array::from_fn(|a| x[a]))[c];
                 }
             }
         }

@@ -40,11 +40,11 @@ struct SurfaceCell {
 }
 
 impl Hfdib {
-    /// Three rounds of forcing and pressure per step in a fluid of `density` \[kg/m³\].
+    /// Two rounds of forcing and pressure per step in a fluid of `density` \[kg/m³\].
     pub fn new(density: f64) -> Self {
         Self {
             density,
-            rounds: 3,
+            rounds: 2,
             inside: Default::default(),
             bodies: Vec::new(),
             forced: Vec::new(),
@@ -56,6 +56,10 @@ impl Hfdib {
     pub fn with_rounds(mut self, rounds: usize) -> Self {
         self.rounds = rounds.max(1);
         self
+    }
+    /// How often λ of a body was computed, over all velocity components.
+    pub fn updates(&self) -> u64 {
+        self.inside.iter().map(SolidFraction::updates).sum()
     }
     /// How many surface cells had to do with less than two fluid points so far.
     pub fn lowered(&self) -> u64 {
@@ -120,6 +124,11 @@ impl Forcing for Hfdib {
             for (b, cells) in self.bodies.iter_mut().enumerate() {
                 let (solid, pose) = (bodies.solid(BodyId(b)), bodies.pose(BodyId(b)));
                 cells.surface[c].clear();
+                // Twice what is there now, so that a moving body allocates nothing.
+                let room = self.inside[c].nodes(BodyId(b)).len();
+                if cells.surface[c].capacity() < room {
+                    cells.surface[c].reserve(2 * room);
+                }
                 for node in self.inside[c].nodes(BodyId(b)).iter().filter(|n| n.fraction < 1.0) {
                     let local = pose.to_body(pose.position + node.arm);
                     let normal = pose.orientation * solid.normal(local, h);

@@ -88,6 +88,9 @@ fn project<B: Bodies + ?Sized>(
     // Beyond half a diagonal a cell is all fluid or all solid.
     let reach = 0.5 * h.norm();
     let bounds = bodies.aabb(b).grown(reach);
+    // Room for as many nodes as the box may ever cover, so that a moving body allocates nothing.
+    let extent = bounds.extent();
+    nodes.reserve((0..lattice.dim()).map(|a| (extent[a] / h[a]) as usize + 2).product());
     let range: [_; 3] = std::array::from_fn(|a| lattice.range(a, bounds.min[a], bounds.max[a]));
     let to_body = pose.orientation.inverse().to_rotation_matrix();
     for k in range[2].clone() {

@@ -28,6 +28,7 @@
 mod aligned;
 mod column;
 mod direct;
+mod layers;
 mod modes;
 #[cfg(test)]
 mod tests;
@@ -69,7 +70,9 @@ pub enum PoissonError {
         axis: usize,
     },
     /// A cell size that is not a length.
-    #[error("the cell size along axis {axis} is {spacing} m; it must be positive and finite")]
+    #[error(
+        "the cell size along axis {axis} is {spacing} m; it must be positive and finite, and so must its square"
+    )]
     Spacing {
         /// Axis, 0 for x.
         axis: usize,
@@ -94,7 +97,9 @@ pub enum PoissonError {
         shift: f64,
     },
     /// A slice of the wrong size.
-    #[error("the field has {length} values but the box has {cells} cells; give one value per cell, x fastest")]
+    #[error(
+        "the field has {length} values but the box has {cells} cells; give one value per cell, x fastest"
+    )]
     Length {
         /// Values in the slice.
         length: usize,
@@ -104,7 +109,7 @@ pub enum PoissonError {
     /// Infinities or NaN in the right-hand side. The solution was not written.
     #[error(
         "the right-hand side sums to {sum} in layer {low} or {high} (of the last axis): it holds a \
-         value that is not finite; look for the step where the fields it is made of diverged"
+         value that is not finite, or too large to add up; look for the step where the fields it is made of diverged"
     )]
     NonFinite {
         /// One of the two layers that are transformed together.

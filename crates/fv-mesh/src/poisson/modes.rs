@@ -60,7 +60,7 @@ impl Modes {
             .map(|(row, &[low, high])| [place(row, low), place(mirror_row(row), high)])
             .collect();
         // An odd number of cache lines spreads the layers over the sets of the caches.
-        let layer_stride = (rows * row_stride / LINE | 1) * LINE;
+        let layer_stride = ((rows * row_stride / LINE) | 1) * LINE;
         Self { n, front, row_stride, layer_stride, blocks, mirror }
     }
 

@@ -71,9 +71,9 @@ fn check<const D: usize>(cells: [usize; D], spacing: [f64; D], bounds: [AxisBoun
         .zip(&rhs)
         .map(|(a, f)| a - (f - info.removed_mean))
         .collect();
-    // Rounding φ alone costs this much.
-    let rounding = spacing.iter().map(|h| 4.0 * f64::EPSILON * largest(&phi) / (h * h)).sum::<f64>();
-    let limit = (1e-13_f64).max(rounding) * largest(&rhs).max(1.0);
+    // Nothing can be better than the rounding of φ allows.
+    let rounding = spacing.iter().map(|h| 16.0 * f64::EPSILON * largest(&phi) / (h * h)).sum::<f64>();
+    let limit = rounding.max(1e-13 * largest(&rhs));
     assert!(largest(&residual) < limit, "{what}: residual {:e}", largest(&residual));
 }
 
@@ -96,7 +96,8 @@ fn the_residual_is_round_off_in_the_plane() {
 
 #[test]
 fn the_residual_is_round_off_in_space() {
-    let sizes = [[1, 1, 1], [1, 5, 2], [6, 1, 4], [4, 3, 1], [8, 12, 10], [5, 7, 11], [13, 2, 3], [16, 9, 17]];
+    let sizes =
+        [[1, 1, 1], [1, 5, 2], [6, 1, 4], [4, 3, 1], [8, 12, 10], [5, 7, 11], [13, 2, 3], [16, 9, 17]];
     for cells in sizes {
         for bx in TRANSFORMED {
             for by in TRANSFORMED {
@@ -110,7 +111,9 @@ fn the_residual_is_round_off_in_space() {
 
 #[test]
 fn large_stretched_and_shifted_boxes_are_solved_as_well() {
-    for (bx, by) in [(Periodic, Periodic), (Neumann, Neumann), (Periodic, Dirichlet), (Dirichlet, DirichletNeumann)] {
+    for (bx, by) in
+        [(Periodic, Periodic), (Neumann, Neumann), (Periodic, Dirichlet), (Dirichlet, DirichletNeumann)]
+    {
         check([150, 300], [1.0, 1.0], [bx, by], 0.0);
         check([256, 97], [1.0, 10.0], [bx, by], 0.0);
         check([97, 256], [10.0, 1.0], [bx, by], 0.0);
@@ -120,7 +123,12 @@ fn large_stretched_and_shifted_boxes_are_solved_as_well() {
 }
 
 /// Gaussian elimination with the operator's matrix, made column by column.
-fn dense<const D: usize>(cells: [usize; D], spacing: [f64; D], bounds: [AxisBounds; D], rhs: &[f64]) -> Vec<f64> {
+fn dense<const D: usize>(
+    cells: [usize; D],
+    spacing: [f64; D],
+    bounds: [AxisBounds; D],
+    rhs: &[f64],
+) -> Vec<f64> {
     let n = rhs.len();
     let columns: Vec<_> = (0..n)
         .map(|c| {
@@ -200,8 +208,15 @@ fn solving_again_and_row_by_row_gives_the_same() {
 fn nonsense_is_refused() {
     let new = |cells, spacing, bounds| DirectPoisson::<2>::new(cells, spacing, bounds).map(|_| ());
     assert_eq!(new([4, 0], [1.0; 2], [Periodic; 2]), Err(PoissonError::NoCells { axis: 1 }));
-    assert_eq!(new([4, 4], [-1.0, 1.0], [Periodic; 2]), Err(PoissonError::Spacing { axis: 0, spacing: -1.0 }));
-    assert!(matches!(new([4, 4], [1.0, f64::NAN], [Periodic; 2]), Err(PoissonError::Spacing { axis: 1, .. })));
+    assert_eq!(
+        new([4, 4], [-1.0, 1.0], [Periodic; 2]),
+        Err(PoissonError::Spacing { axis: 0, spacing: -1.0 })
+    );
+    assert!(matches!(
+        new([4, 4], [1.0, f64::NAN], [Periodic; 2]),
+        Err(PoissonError::Spacing { axis: 1, .. })
+    ));
+    assert!(matches!(new([4, 4], [1e200, 1.0], [Periodic; 2]), Err(PoissonError::Spacing { axis: 0, .. })));
     let bounds = NeumannDirichlet;
     assert_eq!(new([4, 4], [1.0; 2], [bounds, Periodic]), Err(PoissonError::MixedEnds { axis: 0, bounds }));
     let shifted = DirectPoisson::new_helmholtz([4, 4], [1.0; 2], [Periodic; 2], -1.0);
@@ -221,20 +236,4 @@ fn nonsense_is_refused() {
         // The solver is as good as new.
         assert!(solver.solve(&mut noise(42)).is_ok());
     }
-}
-#[test]
-fn dbg() {
-    for (cells, spacing) in [([64usize, 64usize],[1.0,1.0]), ([1024,1024],[1.0,1.0]), ([64,64],[100.0,1.0]), ([64,64],[1.0,100.0]), ([512,64],[100.0,1.0]),([64,512],[100.0,1.0]), ([64,2048],[1.0,1.0]), ([2048,64],[1.0,1.0]), ([64,2048],[1.0,100.0]), ([300,300],[1.0,30.0])] {
-    for smooth in [false, true] {
-    for by in ALL {
-    let bounds = [Periodic, by];
-    let n = cells[0] * cells[1];
-    let rhs = if smooth { (0..n).map(|c| ((c % cells[0]) as f64 * 6.283185307 / cells[0] as f64).cos() + ((c / cells[0]) as f64 * 6.283 / cells[1] as f64).cos() ).collect() } else { noise(n) };
-    let mut phi = rhs.clone();
-    let mut solver = DirectPoisson::new(cells, spacing, bounds).unwrap();
-    let info = solver.solve(&mut phi).unwrap();
-    let res: Vec<f64> = apply(cells, spacing, bounds, 0.0, &phi).iter().zip(&rhs).map(|(a, f)| a - (f - info.removed_mean)).collect();
-    let floor = f64::EPSILON * (largest(&rhs) + largest(&phi) * spacing.iter().map(|h: &f64| 1.0 / (h * h)).sum::<f64>());
-    println!("{cells:?} {spacing:?} {by:?} {smooth} res {:e} over floor {:.1}", largest(&res), largest(&res) / floor);
-    }}}
 }

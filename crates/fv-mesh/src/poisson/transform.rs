@@ -160,7 +160,7 @@ impl AxisTransform {
         for ((low, high), &w) in low.iter_mut().zip(high.iter_mut().rev()).zip(&self.twist[1..]) {
             (*low, *high) = turn(w, *low, *high);
         }
-        if self.n % 2 == 0 {
+        if self.n.is_multiple_of(2) {
             let middle = low[half - 1];
             low[half - 1] = turn(self.twist[half], middle, middle).0;
         }

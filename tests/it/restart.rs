@@ -1,0 +1,91 @@
+//! A run that is stopped goes on as if it had not been.
+use crate::scene::{FLUID, Scene};
+use crate::with_threads;
+use siltflow::coupling::{self, CheckpointError, Particles, Schedule, Simulation};
+use siltflow::dem::RigidBodies;
+use siltflow::ibm::SmoothForcing;
+use siltflow::interfaces::{BodyId, Kinematics};
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+
+type Fall = Simulation<2, Particles<SmoothForcing, RigidBodies>>;
+
+fn scratch(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("siltflow-restart-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    folder.join(name)
+}
+
+/// Two discs, or one that lands on the floor and is in contact when the run is cut.
+fn build(floor: bool) -> Fall {
+    let mut scene = Scene { cells_per_diameter: 8, floor, ..Scene::default() };
+    if floor {
+        scene.bodies = 1;
+        scene.densities = vec![8000.0];
+        scene.shift = [0.0, -15.45e-3];
+    }
+    scene.build(SmoothForcing::new(FLUID.density)).unwrap()
+}
+
+fn bits(fall: &Fall) -> Vec<u64> {
+    let bodies = &fall.particles.bodies;
+    let motion = (0..bodies.n_bodies()).flat_map(|b| {
+        let (pose, twist) = (bodies.pose(BodyId(b)), bodies.twist(BodyId(b)));
+        let q = pose.orientation;
+        [pose.position.x, pose.position.y, q.w, q.k, twist.linear.x, twist.linear.y, twist.angular.z]
+    });
+    let field = fall.flow.pressure().values().chain(fall.flow.velocity().field(1).values());
+    motion.chain(field).chain([fall.flow.time()]).map(f64::to_bits).collect()
+}
+
+#[test]
+fn n_steps_are_k_and_then_n_minus_k() {
+    with_threads(1, || {
+        for floor in [false, true] {
+            let schedule = Schedule { end: 0.06, intervals: 6, ..Schedule::default() };
+            let stop = AtomicBool::new(false);
+            let mut whole = build(floor);
+            coupling::run(&mut whole, &schedule, &mut (), &stop).unwrap();
+
+            let half = Schedule { end: 0.03, intervals: 3, ..schedule };
+            let mut first = build(floor);
+            coupling::run(&mut first, &half, &mut (), &stop).unwrap();
+            assert!(!floor || first.particles.bodies.n_contacts() == 1, "in contact when the run is cut");
+            let path = scratch(if floor { "floor.bin" } else { "box.bin" });
+            coupling::save(&path, &first).unwrap();
+            let mut second = build(floor);
+            coupling::load(&path, &mut second).unwrap();
+            assert_eq!(bits(&first), bits(&second));
+            coupling::run(&mut second, &schedule, &mut (), &stop).unwrap();
+            assert!(bits(&whole) == bits(&second), "floor {floor}");
+        }
+    });
+}
+
+#[test]
+fn a_damaged_or_foreign_state_is_refused() {
+    let path = scratch("damaged.bin");
+    let mut fall = build(false);
+    fall.step(1e-4).unwrap();
+    coupling::save(&path, &fall).unwrap();
+    let good = std::fs::read(&path).unwrap();
+
+    let mut bytes = good.clone();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    std::fs::write(&path, &bytes).unwrap();
+    let error = coupling::load(&path, &mut fall).unwrap_err();
+    assert!(matches!(error, CheckpointError::Corrupt { what: "wrong checksum", .. }), "{error}");
+
+    for cut in [0, 5, 20, good.len() - 1] {
+        std::fs::write(&path, &good[..cut]).unwrap();
+        assert!(matches!(coupling::load(&path, &mut fall), Err(CheckpointError::Corrupt { .. })), "{cut}");
+    }
+
+    std::fs::write(&path, &good).unwrap();
+    let mut other =
+        Scene { cells_per_diameter: 9, ..Scene::default() }.build(SmoothForcing::new(1000.0)).unwrap();
+    assert!(matches!(coupling::load(&path, &mut other), Err(CheckpointError::Mismatch(_))));
+    let missing = scratch("is-not-there.bin");
+    assert!(matches!(coupling::load(&missing, &mut fall), Err(CheckpointError::Io { .. })));
+}

@@ -3,7 +3,7 @@
 use crate::field::row_start;
 use crate::grid::GHOSTS;
 use crate::{CartesianGrid, Field};
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 /// Layers of the last axis that one task works on.
@@ -62,38 +62,51 @@ pub(crate) fn advance_component<const D: usize>(
 ) {
     let u: [&[f64]; D] = std::array::from_fn(|b| velocity[b].data());
     let p = pressure.data();
-    let row = match c {
-        0 => advance_rows::<D, 0>,
-        1 => advance_rows::<D, 1>,
-        _ => advance_rows::<D, 2>,
-    };
     for_layers(grid, next, tendency, |rows, start, next, tendency| {
-        row(grid, rows, start, k, u, p, next, tendency);
+        let job = AdvanceRows { grid, rows, start, k, u, p, next, tendency };
+        match c {
+            0 => job.run::<0>(),
+            1 => job.run::<1>(),
+            _ => job.run::<2>(),
+        }
     });
 }
 
-#[expect(clippy::too_many_arguments, reason = "a kernel's operands")]
-fn advance_rows<const D: usize, const C: usize>(
-    grid: &CartesianGrid<D>,
+/// [`advance_component`] for a run of rows.
+struct AdvanceRows<'a, const D: usize> {
+    grid: &'a CartesianGrid<D>,
     rows: std::ops::Range<usize>,
+    /// Storage index of the first entry of `next` and `tendency`.
     start: usize,
     k: Advance,
-    u: [&[f64]; D],
-    p: &[f64],
-    next: &mut [f64],
-    tendency: &mut [f64],
-) {
-    Arch::new().dispatch(
-        #[inline(always)]
-        || {
-            let n = grid.cells()[0];
-            for r in rows {
-                let o = row_start(grid, r);
-                let local = o - start..o - start + n;
-                advance_row::<D, C>(grid, o, k, u, p, &mut next[local.clone()], &mut tendency[local]);
-            }
-        },
-    );
+    u: [&'a [f64]; D],
+    p: &'a [f64],
+    next: &'a mut [f64],
+    tendency: &'a mut [f64],
+}
+
+impl<const D: usize> AdvanceRows<'_, D> {
+    fn run<const C: usize>(self) {
+        Arch::new().dispatch(OfComponent::<D, C>(self));
+    }
+}
+
+// Types rather than closures: `pulp` compiles the body of `with_simd` for the processor at hand, while a
+// closure that may be called more than once is compiled for the oldest.
+struct OfComponent<'a, const D: usize, const C: usize>(AdvanceRows<'a, D>);
+
+impl<const D: usize, const C: usize> WithSimd for OfComponent<'_, D, C> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let AdvanceRows { grid, rows, start, k, u, p, next, tendency } = self.0;
+        let n = grid.cells()[0];
+        for r in rows {
+            let o = row_start(grid, r);
+            let local = o - start..o - start + n;
+            advance_row::<D, C>(grid, o, k, u, p, &mut next[local.clone()], &mut tendency[local]);
+        }
+    }
 }
 
 /// One row; `o` is the storage index of its first cell.
@@ -167,8 +180,7 @@ pub(crate) fn divergence_row<const D: usize>(
     }
 }
 
-/// u_c −= dt ∂φ/∂x_c /ρ on every face but those on the boundary (they are set afterwards); `phi`
-/// is dense, x fastest. With component 0 goes p += φ.
+/// u_c −= dt ∂φ/∂x_c /ρ on every face but those on the boundary; `phi` is dense, x fastest.
 pub(crate) fn correct_component<const D: usize>(
     grid: &CartesianGrid<D>,
     c: usize,
@@ -187,34 +199,54 @@ pub(crate) fn correct_component<const D: usize>(
     component.layers_mut().par_chunks_mut(layer * per_task).enumerate().for_each(|(task, out)| {
         let first = task * per_task;
         let end = (first + per_task).min(n[D - 1]);
-        Arch::new().dispatch(
-            #[inline(always)]
-            || {
-                for r in first * rows_per_layer..end * rows_per_layer {
-                    let local = row_start(grid, r) - (GHOSTS + first) * layer;
-                    let out = &mut out[local..local + n[0]];
-                    let here = &phi[r * n[0]..][..n[0]];
-                    if c == 0 {
-                        out[0] -= scale * (here[0] - here[if periodic { n[0] - 1 } else { 0 }]);
-                        for i in 1..n[0] {
-                            out[i] -= scale * (here[i] - here[i - 1]);
-                        }
-                    } else {
-                        let along = (r / step) % n[c];
-                        let below = match (along, periodic) {
-                            (0, true) => r + (n[c] - 1) * step,
-                            (0, false) => continue,
-                            _ => r - step,
-                        };
-                        let below = &phi[below * n[0]..][..n[0]];
-                        for i in 0..n[0] {
-                            out[i] -= scale * (here[i] - below[i]);
-                        }
-                    }
-                }
-            },
-        );
+        let rows = first * rows_per_layer..end * rows_per_layer;
+        let start = (GHOSTS + first) * layer;
+        Arch::new().dispatch(CorrectRows { grid, c, periodic, scale, step, rows, start, phi, out });
     });
+}
+
+/// [`correct_component`] for a run of rows.
+struct CorrectRows<'a, const D: usize> {
+    grid: &'a CartesianGrid<D>,
+    c: usize,
+    periodic: bool,
+    scale: f64,
+    step: usize,
+    rows: std::ops::Range<usize>,
+    /// Storage index of the first entry of `out`.
+    start: usize,
+    phi: &'a [f64],
+    out: &'a mut [f64],
+}
+
+impl<const D: usize> WithSimd for CorrectRows<'_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { grid, c, periodic, scale, step, rows, start, phi, out } = self;
+        let n = grid.cells();
+        for r in rows {
+            let local = row_start(grid, r) - start;
+            let out = &mut out[local..local + n[0]];
+            let here = &phi[r * n[0]..][..n[0]];
+            if c == 0 {
+                out[0] -= scale * (here[0] - here[if periodic { n[0] - 1 } else { 0 }]);
+                for i in 1..n[0] {
+                    out[i] -= scale * (here[i] - here[i - 1]);
+                }
+            } else {
+                let below = match ((r / step) % n[c], periodic) {
+                    (0, true) => r + (n[c] - 1) * step,
+                    (0, false) => continue,
+                    _ => r - step,
+                };
+                let below = &phi[below * n[0]..][..n[0]];
+                for i in 0..n[0] {
+                    out[i] -= scale * (here[i] - below[i]);
+                }
+            }
+        }
+    }
 }
 
 /// p += φ.

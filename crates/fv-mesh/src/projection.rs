@@ -161,12 +161,9 @@ impl<const D: usize> Projection<D> {
         let scale = self.fluid.density / dt;
         let (grid, velocity) = (&self.grid, &self.velocity.components);
         let solved = self.poisson.solve_rows(
-            |r, row| {
-                pulp::Arch::new().dispatch(
-                    #[inline(always)]
-                    || kernels::divergence_row(grid, r, velocity, scale, row),
-                );
-            },
+            // Called from code that is compiled for the processor at hand.
+            #[inline(always)]
+            |r, row: &mut [f64]| kernels::divergence_row(grid, r, velocity, scale, row),
             &mut self.phi,
         );
         if let Err(error) = solved {

@@ -1,6 +1,7 @@
 //! Sums over the flow field.
 use crate::{CartesianGrid, Field, kernels};
 use interfaces::Vector;
+use pulp::{Arch, Simd, WithSimd};
 
 /// Integrals and extremes of a velocity field.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -36,31 +37,68 @@ fn lanes(n: usize, mut term: impl FnMut(usize) -> f64) -> f64 {
 
 /// Largest |u_c| over all rows, or NaN if any value is not finite.
 pub(crate) fn largest<const D: usize>(u: &Field<D>) -> f64 {
-    pulp::Arch::new().dispatch(
-        #[inline(always)]
-        || {
-            let mut top = [0.0_f64; LANES];
-            // x − x is 0 for every finite x and NaN for the others.
-            let mut check = [0.0_f64; LANES];
-            for r in 0..u.n_rows() {
-                let row = u.row(r);
-                let (whole, rest) = row.as_chunks::<LANES>();
-                for x in whole {
-                    for l in 0..LANES {
-                        let a = x[l].abs();
-                        top[l] = if a > top[l] { a } else { top[l] };
-                        check[l] += x[l] - x[l];
-                    }
-                }
-                for (l, x) in rest.iter().enumerate() {
-                    let a = x.abs();
-                    top[l] = if a > top[l] { a } else { top[l] };
-                    check[l] += x - x;
-                }
+    Arch::new().dispatch(Largest(u))
+}
+
+struct Largest<'a, const D: usize>(&'a Field<D>);
+
+impl<const D: usize> WithSimd for Largest<'_, D> {
+    type Output = f64;
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> f64 {
+        let mut top = [0.0_f64; LANES];
+        // x − x is 0 for every finite x and NaN for the others.
+        let mut check = [0.0_f64; LANES];
+        let mut take = |x: &[f64]| {
+            for (l, x) in x.iter().enumerate() {
+                let a = x.abs();
+                top[l] = if a > top[l] { a } else { top[l] };
+                check[l] += x - x;
             }
-            top.into_iter().fold(0.0, f64::max) + check.into_iter().sum::<f64>()
-        },
-    )
+        };
+        for r in 0..self.0.n_rows() {
+            let (whole, rest) = self.0.row(r).as_chunks::<LANES>();
+            whole.iter().for_each(|x| take(x));
+            take(rest);
+        }
+        top.into_iter().fold(0.0, f64::max) + check.into_iter().sum::<f64>()
+    }
+}
+
+/// Sums of one row: per component Σu; Σu², Σ(difference/h)², max |∇·u| over all components.
+struct RowSums<'a, const D: usize> {
+    grid: &'a CartesianGrid<D>,
+    velocity: &'a [Field<D>; D],
+    row: usize,
+    scratch: &'a mut [f64],
+}
+
+impl<const D: usize> WithSimd for RowSums<'_, D> {
+    type Output = ([f64; D], f64, f64, f64);
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        let Self { grid, velocity, row, scratch } = self;
+        let (n, s, h) = (grid.cells()[0], grid.stride(), grid.spacing());
+        let o = velocity[0].row_start(row);
+        let (mut sum, mut square, mut gradient) = ([0.0; D], 0.0, 0.0);
+        for c in 0..D {
+            let u = velocity[c].data();
+            let here = &u[o..][..n];
+            sum[c] = lanes(n, |i| here[i]);
+            square += lanes(n, |i| here[i] * here[i]);
+            for b in 0..D {
+                let below = &u[o - s[b]..][..n];
+                gradient += lanes(n, |i| (here[i] - below[i]) * (here[i] - below[i])) / (h[b] * h[b]);
+            }
+        }
+        kernels::divergence_row(grid, row, velocity, 1.0, scratch);
+        let mut top = 0.0;
+        for d in scratch.iter() {
+            let d = d.abs();
+            top = if d > top { d } else { top };
+        }
+        (sum, square, gradient, top)
+    }
 }
 
 pub(crate) fn measure<const D: usize>(
@@ -70,34 +108,11 @@ pub(crate) fn measure<const D: usize>(
     viscosity: f64,
     scratch: &mut [f64],
 ) -> FlowStatistics {
-    let (n, s, h, volume) = (grid.cells()[0], grid.stride(), grid.spacing(), grid.cell_volume());
+    let (n, volume) = (grid.cells()[0], grid.cell_volume());
     let mut out = FlowStatistics::default();
-    let scratch = &mut scratch[..n];
-    for r in 0..velocity[0].n_rows() {
-        let o = velocity[0].row_start(r);
-        let (sum, square, gradient, divergence) = pulp::Arch::new().dispatch(
-            #[inline(always)]
-            || {
-                let (mut sum, mut square, mut gradient) = ([0.0; D], 0.0, 0.0);
-                for c in 0..D {
-                    let u = velocity[c].data();
-                    let here = &u[o..][..n];
-                    sum[c] = lanes(n, |i| here[i]);
-                    square += lanes(n, |i| here[i] * here[i]);
-                    for b in 0..D {
-                        let below = &u[o - s[b]..][..n];
-                        gradient += lanes(n, |i| (here[i] - below[i]) * (here[i] - below[i])) / (h[b] * h[b]);
-                    }
-                }
-                kernels::divergence_row(grid, r, velocity, 1.0, scratch);
-                let mut top = 0.0;
-                for &d in scratch.iter() {
-                    let d = d.abs();
-                    top = if d > top { d } else { top };
-                }
-                (sum, square, gradient, top)
-            },
-        );
+    for row in 0..velocity[0].n_rows() {
+        let sums = RowSums { grid, velocity, row, scratch: &mut scratch[..n] };
+        let (sum, square, gradient, divergence) = Arch::new().dispatch(sums);
         for c in 0..D {
             out.volume_flow[c] += sum[c] * volume;
         }

@@ -15,8 +15,8 @@
 //! cargo run --release --example falling_discs -- --forcing hfdib      # the paper's forcing
 //! ```
 //!
-//! 1. The flags (cli.rs) become a scene (scene.rs). 2. `coupling::run` makes the steps and calls the
-//! observers: files, ledger, progress, pictures, saved state. 3. What came out is drawn and told (report.rs).
+//! The flags (cli.rs) become a scene (scene.rs); `coupling::run` makes the steps and calls the observers: files,
+//! ledger, progress, pictures, saved state (observers.rs); what came out is drawn and told (report.rs).
 mod cli;
 mod observers;
 mod report;

@@ -148,6 +148,9 @@ impl<F: Forcing> Observer<Fall<F>> for History {
     }
 }
 
+/// Time, λ, speed and discs of a moment.
+type Kept = (f64, Vec<f64>, Vec<f64>, Vec<Disc>);
+
 /// PNG frames, and the fields of a few moments for the summary figure.
 pub(crate) struct Pictures {
     folder: PathBuf,
@@ -156,7 +159,7 @@ pub(crate) struct Pictures {
     fraction: SolidFraction,
     lambda: Vec<f64>,
     speed: Vec<f64>,
-    moments: Vec<(f64, Vec<f64>, Vec<f64>, Vec<Disc>)>,
+    moments: Vec<Kept>,
     /// Snapshots of which a moment is kept.
     keep: [usize; 3],
     seconds: f64,

@@ -47,13 +47,13 @@ impl<const D: usize> WithSimd for Largest<'_, D> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> f64 {
         let mut top = [0.0_f64; LANES];
-        // x − x is 0 for every finite x and NaN for the others.
+        // 0·x is 0 for every finite x and NaN for the others.
         let mut check = [0.0_f64; LANES];
         let mut take = |x: &[f64]| {
             for (l, x) in x.iter().enumerate() {
                 let a = x.abs();
                 top[l] = if a > top[l] { a } else { top[l] };
-                check[l] += x - x;
+                check[l] += 0.0 * x;
             }
         };
         for r in 0..self.0.n_rows() {

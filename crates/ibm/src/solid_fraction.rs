@@ -60,7 +60,7 @@ impl SolidFraction {
         let [nx, ny, _] = lattice.shape;
         for node in self.bodies.iter().flat_map(|(_, nodes)| nodes) {
             let offset = node.index - lattice.base;
-            let k = if lattice.stride[2] == 0 { 0 } else { offset / lattice.stride[2] };
+            let k = offset.checked_div(lattice.stride[2]).unwrap_or(0);
             let rest = offset - k * lattice.stride[2];
             let (j, i) = (rest / lattice.stride[1], rest % lattice.stride[1]);
             let cell = &mut out[i + nx * (j + ny * k)];

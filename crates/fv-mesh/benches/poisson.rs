@@ -1,4 +1,4 @@
-//! Times the direct Poisson solver on one thread: `cargo run --release --example poisson_timing`.
+//! Times the direct Poisson solver on one thread: `cargo bench -p fv-mesh --bench poisson`.
 use fv_mesh::poisson::AxisBounds::{self, Dirichlet, Neumann, Periodic};
 use fv_mesh::poisson::DirectPoisson;
 use std::time::Instant;

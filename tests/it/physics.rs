@@ -104,6 +104,29 @@ fn books_are_kept() {
     }
 }
 
+/// With the parabola extrapolated into the body this run diverges.
+#[test]
+fn the_papers_forcing_is_stable_at_small_steps() {
+    let scene = Scene { cells_per_diameter: 10, virtual_mass: 1.0, ..Scene::default() };
+    let (speeds, report) = run(&scene, 0.15, Some(5e-5), Hfdib::new(FLUID.density));
+    let (reference, _) = run(&scene, 0.15, None, smooth());
+    for (a, b) in speeds.iter().zip(&reference) {
+        assert!((a / b - 1.0).abs() < 0.05, "{speeds:?} {reference:?}");
+    }
+    assert!(report.momentum_step < 1e-10);
+}
+
+/// A velocity that runs away ends in an error, not in ever smaller steps.
+#[test]
+fn a_collapsing_step_is_an_error() {
+    let mut simulation = Scene { cells_per_diameter: 5, ..Scene::default() }.build(smooth()).unwrap();
+    simulation.flow.set_velocity(|_| [1e9, 0.0]);
+    simulation.step(1e-20).unwrap();
+    let error =
+        coupling::run(&mut simulation, &Schedule::default(), &mut (), &AtomicBool::new(false)).unwrap_err();
+    assert!(matches!(error, coupling::CouplingError::Collapsed { .. }), "{error}");
+}
+
 #[test]
 fn the_balanced_box_holds_its_mean_flow() {
     use siltflow::coupling::WeightBalance;

@@ -78,6 +78,18 @@ pub enum CouplingError {
         /// What to give instead.
         remedy: &'static str,
     },
+    /// The velocity has grown so much that time stands still.
+    #[error(
+        "a Courant number of {courant} allows no more than dt = {dt:.3e} s at t = {time:.6} s: the run is diverging; start again with a smaller Courant number or time step, or a finer grid"
+    )]
+    Collapsed {
+        /// The step \[s\].
+        dt: f64,
+        /// When \[s\].
+        time: f64,
+        /// The Courant number asked for.
+        courant: f64,
+    },
     /// An observer could not do its work.
     #[error("{what}: {source}")]
     Output {

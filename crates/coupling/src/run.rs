@@ -130,6 +130,9 @@ impl<S, A: Observer<S>> Observer<S> for &mut A {
     }
 }
 
+/// A step that the Courant number makes this much shorter than diffusion alone would is no step.
+const COLLAPSED: f64 = 1e-6;
+
 /// How a run went.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RunSummary {
@@ -175,6 +178,10 @@ pub fn run<const D: usize, P: Immersed<D>>(
             }
             let flow = &simulation.flow;
             let full = schedule.dt.unwrap_or_else(|| flow.stable_dt(schedule.courant));
+            if full < COLLAPSED * flow.viscous_limit().min(schedule.end) {
+                let time = flow.time();
+                return Err(CouplingError::Collapsed { dt: full, time, courant: schedule.courant });
+            }
             let [first, growth] = schedule.ramp;
             let share = (first * growth.powf(info.step as f64)).min(1.0);
             // Equal steps to the end of the interval, up to round-off in the number of steps.

@@ -104,6 +104,29 @@ fn books_are_kept() {
     }
 }
 
+/// A run may go on under another schedule whose times differ by round-off, and after a very short step.
+#[test]
+fn other_schedules_and_very_short_steps_do_no_harm() {
+    let scene = Scene { cells_per_diameter: 10, ..Scene::default() };
+    let stop = AtomicBool::new(false);
+    let mut simulation = scene.build(smooth()).unwrap();
+    // 0.03 and 0.2·30/200 differ in the last bit.
+    for (end, intervals) in [(0.03, 30), (0.2, 200)] {
+        let schedule = Schedule { end: f64::min(end, 0.2), intervals, ..Schedule::default() };
+        coupling::run(&mut simulation, &schedule, &mut (), &stop).unwrap();
+    }
+    let speed = simulation.particles.bodies.twist(BodyId(0)).linear.norm();
+    let (reference, _) = run(&scene, 0.2, None, smooth());
+    assert!((speed / reference[0] - 1.0).abs() < 2e-3, "{speed} {reference:?}");
+
+    simulation.step(1e-12).unwrap();
+    for _ in 0..20 {
+        simulation.step(2e-4).unwrap();
+    }
+    let after = simulation.particles.bodies.twist(BodyId(0)).linear.norm();
+    assert!((after / speed - 1.0).abs() < 0.03, "{after} after {speed}");
+}
+
 /// With the parabola extrapolated into the body this run diverges.
 #[test]
 fn the_papers_forcing_is_stable_at_small_steps() {

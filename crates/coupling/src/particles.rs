@@ -27,6 +27,7 @@ pub struct Particles<F, B> {
     density: f64,
     virtual_mass: f64,
     states: Vec<State>,
+    last_dt: f64,
     /// Momentum (later: foreseen impulse) and velocity of every body before the step.
     scratch: Vec<(Vector6<f64>, Vector6<f64>)>,
 }
@@ -70,7 +71,16 @@ impl<F: Forcing, B: Dynamics> Particles<F, B> {
     /// Bodies and their forcing in a fluid of `density` \[kg/m³\] under `gravity` \[m/s²\].
     pub fn new(bodies: B, forcing: F, density: f64, gravity: Vector) -> Self {
         let states = vec![State::default(); bodies.n_bodies()];
-        Self { bodies, forcing, gravity, density, virtual_mass: 0.0, states, scratch: Vec::new() }
+        Self {
+            bodies,
+            forcing,
+            gravity,
+            density,
+            virtual_mass: 0.0,
+            states,
+            last_dt: 0.0,
+            scratch: Vec::new(),
+        }
     }
     /// The virtual mass C as a multiple of the displaced fluid's; light bodies need it.
     #[must_use]
@@ -95,7 +105,12 @@ impl<F: Forcing, B: Dynamics> Particles<F, B> {
 
     /// Moves the bodies to where they are at the end of the step.
     fn advance(&mut self, dt: f64, time: f64) -> Result<(), CouplingError> {
-        for (b, s) in self.states.iter().enumerate() {
+        // Differences over a much shorter step say nothing about this one: no load is held then.
+        let known = dt <= LONGEST_GROWTH * self.last_dt;
+        self.last_dt = dt;
+        for (b, s) in
+            self.states.iter().enumerate().map(|(b, s)| (b, if known { *s } else { State::default() }))
+        {
             let load = Load { wrench: wrench(s.load), added_mass: s.added[0], added_moment: s.added[1] };
             self.bodies.apply(BodyId(b), load);
         }
@@ -276,9 +291,11 @@ impl<F: Forcing, B: Dynamics> Checkpoint for Particles<F, B> {
             values.extend_from_slice(&s.added);
         }
         sink("coupling", &values);
+        sink("last_dt", &[self.last_dt]);
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         self.bodies.restore(&|name| source(&format!("bodies.{name}")))?;
+        self.last_dt = RestartError::take(source, "last_dt", 1)?[0];
         let values = RestartError::take(source, "coupling", self.bodies.n_bodies() * STATE)?;
         self.states.clear();
         for v in values.chunks_exact(STATE) {
@@ -296,6 +313,9 @@ impl<F: Forcing, B: Dynamics> Checkpoint for Particles<F, B> {
         Ok(())
     }
 }
+
+/// Loads are held over a step at most so many times longer than the last.
+const LONGEST_GROWTH: f64 = 10.0;
 
 /// Saved numbers per body.
 const STATE: usize = 6 * 6 + 2;

@@ -133,6 +133,9 @@ impl<S, A: Observer<S>> Observer<S> for &mut A {
 /// A step that the Courant number makes this much shorter than diffusion alone would is no step.
 const COLLAPSED: f64 = 1e-6;
 
+/// Share of a step or an interval below which a rest of time is round-off.
+const ROUND_OFF: f64 = 1e-6;
+
 /// How a run went.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RunSummary {
@@ -165,7 +168,9 @@ pub fn run<const D: usize, P: Immersed<D>>(
         dt: simulation.flow.last_dt(),
         courant: 0.0,
     };
-    let mut index = (0..=schedule.intervals).take_while(|&i| schedule.time(i) <= info.time).count() - 1;
+    // Ends of intervals that are behind, up to round-off: other schedules cut time otherwise.
+    let behind = info.time + ROUND_OFF * schedule.end / schedule.intervals as f64;
+    let mut index = (0..=schedule.intervals).take_while(|&i| schedule.time(i) <= behind).count() - 1;
     if info.step == 0 {
         observer.snapshot(simulation, 0, &info)?;
     }
@@ -186,7 +191,7 @@ pub fn run<const D: usize, P: Immersed<D>>(
             let share = (first * growth.powf(info.step as f64)).min(1.0);
             // Equal steps to the end of the interval, up to round-off in the number of steps.
             let left = target - flow.time();
-            let steps = (left / (full * share) - 1e-6).ceil().max(1.0);
+            let steps = (left / (full * share) - ROUND_OFF).ceil().max(1.0);
             let dt = left / steps;
             simulation.step(dt)?;
             if steps == 1.0 {

@@ -44,6 +44,9 @@ pub struct Projection<const D: usize> {
     wall_impulse: Vector,
 }
 
+/// Adams–Bashforth is used while a step is at most so many times longer than the last.
+const LONGEST_GROWTH: f64 = 10.0;
+
 impl<const D: usize> Projection<D> {
     /// Fluid at rest in a box; `sides[axis]` are its lower and upper side.
     ///
@@ -118,7 +121,8 @@ impl<const D: usize> Projection<D> {
         if dt > self.viscous_limit() {
             return Err(FlowError::Unstable { dt, limit: self.viscous_limit() });
         }
-        let r = if self.step == 0 { 0.0 } else { dt / self.last_dt };
+        // At the start, and after a step so short that extrapolating from it would amplify round-off, Euler's.
+        let r = if self.step == 0 || dt > LONGEST_GROWTH * self.last_dt { 0.0 } else { dt / self.last_dt };
         let weights = [1.0 + 0.5 * r, -0.5 * r];
         let friction =
             walls::friction(&self.grid, &self.sides, &self.velocity.components, self.fluid.viscosity);

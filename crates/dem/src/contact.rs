@@ -40,7 +40,8 @@ pub(crate) struct Touch {
     pub(crate) overlap: Overlap,
     /// Velocity of the first body against the second at the contact \[m/s\].
     pub(crate) velocity: Vector,
-    /// Reduced mass M \[kg\].
+    /// Reduced mass M \[kg\]; in a plane scene that of a slice as deep as L_c, so that bodies of all sizes rebound
+    /// alike and no unit of depth enters.
     pub(crate) mass: f64,
     /// Characteristic length L_c \[m\].
     pub(crate) length: f64,
@@ -56,7 +57,8 @@ pub(crate) struct Touch {
 /// and along the surface a spring that grows with the sliding and a dashpot, both `tangential` times the
 /// normal ones (Y A/L_c per length, γ√(YM/L_c³) A per velocity, A = |∂V/∂x|), together at most μ|F_n|.
 /// `spring` is the elastic part of the last step's tangential force: it is turned into the present tangent
-/// plane and updated. In a plane scene V is an area and all forces are per metre of depth.
+/// plane and updated. In a plane scene V is an area, all forces are per metre of
+/// depth, and M is the mass of a slice as deep as L_c: the dashpot is γ √(Y M′)/L_c dV/dt with the mass M′ per metre.
 pub(crate) fn force(p: &PairProperties, t: &Touch, spring: &mut Vector, dt: f64) -> Vector {
     let n = t.overlap.normal;
     let dashpot = p.damping * (p.stiffness * t.mass / t.length.powi(3)).sqrt();

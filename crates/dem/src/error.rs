@@ -28,13 +28,29 @@ pub enum DemError {
         /// What to give instead.
         remedy: &'static str,
     },
-    /// Start position or velocity is not finite.
-    #[error("body {} would start at {position:?} m; give finite numbers", body.0)]
+    /// The factor of the characteristic length is not positive.
+    #[error("the factor of the contact length is {factor}; give a positive, finite number (4 is usual)")]
+    LengthFactor {
+        /// Its value.
+        factor: f64,
+    },
+    /// Start position or orientation is not finite.
+    #[error("body {} would start at {position:?} m, and position or orientation is not finite; give finite numbers", body.0)]
     Start {
         /// The body.
         body: BodyId,
         /// Where.
         position: [f64; 3],
+    },
+    /// Start velocity or angular velocity is not finite.
+    #[error("body {} would start with velocity {linear:?} m/s and angular velocity {angular:?} rad/s; give finite numbers", body.0)]
+    StartMotion {
+        /// The body.
+        body: BodyId,
+        /// Velocity.
+        linear: [f64; 3],
+        /// Angular velocity.
+        angular: [f64; 3],
     },
     /// A body is too large for its periodic box.
     #[error(
@@ -71,7 +87,7 @@ pub enum DemError {
         depth: f64,
     },
     /// No formula for this pair of shapes.
-    #[error("the overlap of a {a} and a {b} is not supported; use shapes of one dimension")]
+    #[error("a {a} and a {b} cannot touch; use shapes of one dimension, all discs or all spheres")]
     Unsupported {
         /// One shape.
         a: &'static str,
@@ -79,13 +95,13 @@ pub enum DemError {
         b: &'static str,
     },
     /// The step's length is unusable.
-    #[error("a step of {dt} s was asked for; it must be positive and finite")]
+    #[error("a step of {dt} s was asked for; give a positive, finite number of seconds")]
     TimeStep {
         /// The step \[s\].
         dt: f64,
     },
     /// A body is lost.
-    #[error("body {} moves at {velocity:?} m/s, which is not finite; take a smaller time step or softer contacts", body.0)]
+    #[error("the motion of body {} is no longer finite (velocity {velocity:?} m/s); check the loads, then take a smaller time step or softer contacts", body.0)]
     Diverged {
         /// The body.
         body: BodyId,

@@ -40,6 +40,10 @@ impl Shape {
             Self::Sphere(s) => s.radius(),
         }
     }
+    /// Does it live in the plane z = 0?
+    pub(crate) fn is_plane(&self) -> bool {
+        matches!(self, Self::Disc(_))
+    }
     /// A word for messages.
     pub(crate) fn name(&self) -> &'static str {
         match self {

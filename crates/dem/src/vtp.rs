@@ -80,3 +80,6 @@ impl RigidBodies {
         )
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -121,8 +121,15 @@ impl<const D: usize> Projection<D> {
         if dt > self.viscous_limit() {
             return Err(FlowError::Unstable { dt, limit: self.viscous_limit() });
         }
-        // At the start, and after a step so short that extrapolating from it would amplify round-off, Euler's.
-        let r = if self.step == 0 || dt > LONGEST_GROWTH * self.last_dt { 0.0 } else { dt / self.last_dt };
+        // The last step's tendency and pressure are no guide at the start, and after a much shorter step:
+        // what changes at once (a wall set moving, an immersed body's slip) is a pressure ∝ 1/dt.
+        let mut r = dt / self.last_dt;
+        if self.step == 0 {
+            r = 0.0;
+        } else if r > LONGEST_GROWTH {
+            r = 0.0;
+            self.pressure.data_mut().fill(0.0);
+        }
         let weights = [1.0 + 0.5 * r, -0.5 * r];
         let friction =
             walls::friction(&self.grid, &self.sides, &self.velocity.components, self.fluid.viscosity);

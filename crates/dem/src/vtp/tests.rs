@@ -1,0 +1,133 @@
+//! The file as a stranger's reader would take it apart.
+use super::*;
+use crate::{Disc, Material, Sphere};
+use interfaces::{Freedom, Periods, Pose, Rotation, Twist};
+use std::collections::HashMap;
+
+/// An array as the header describes it and the appended block holds it.
+struct Read {
+    section: String,
+    kind: String,
+    components: usize,
+    bytes: Vec<u8>,
+}
+impl Read {
+    fn floats(&self) -> Vec<f64> {
+        assert_eq!(self.kind, "Float64");
+        self.bytes.chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap())).collect()
+    }
+    fn ints(&self) -> Vec<usize> {
+        assert_eq!(self.kind, "Int64");
+        self.bytes.chunks_exact(8).map(|b| i64::from_le_bytes(b.try_into().unwrap()) as usize).collect()
+    }
+}
+
+fn attribute<'a>(tag: &'a str, name: &str) -> &'a str {
+    let from = tag.find(&format!("{name}=\"")).unwrap_or_else(|| panic!("no {name} in <{tag}>"));
+    tag[from + name.len() + 2..].split('"').next().unwrap()
+}
+
+/// Checks that every element is closed by its own end tag and that the blocks follow one another without gaps;
+/// answers the attributes of the piece and the arrays by name.
+fn read(file: &[u8]) -> (String, HashMap<String, Read>) {
+    let mark = b"<AppendedData encoding=\"raw\">\n_";
+    let header = file.windows(mark.len()).position(|w| w == mark).expect("appended data");
+    let data = &file[header + mark.len()..];
+    let text = std::str::from_utf8(&file[..header]).unwrap();
+    assert!(text.starts_with("<?xml version=\"1.0\"?>\n"));
+
+    let (mut open, mut piece, mut arrays, mut end) = (Vec::<&str>::new(), String::new(), HashMap::new(), 0);
+    for tag in text.split('<').skip(2).map(|t| t.split('>').next().unwrap()) {
+        assert_eq!(tag.matches('"').count() % 2, 0, "quotes in <{tag}>");
+        let name = tag.trim_start_matches('/').split([' ', '/']).next().unwrap();
+        if tag.starts_with('/') {
+            assert_eq!(open.pop(), Some(name));
+        } else if tag.ends_with('/') {
+            let at: usize = attribute(tag, "offset").parse().unwrap();
+            assert_eq!((attribute(tag, "format"), at), ("appended", end));
+            let size = u64::from_le_bytes(data[at..at + 8].try_into().unwrap()) as usize;
+            end = at + 8 + size;
+            let (section, kind) = ((*open.last().unwrap()).to_owned(), attribute(tag, "type").to_owned());
+            let components = attribute(tag, "NumberOfComponents").parse().unwrap();
+            let bytes = data[at + 8..end].to_vec();
+            arrays.insert(attribute(tag, "Name").to_owned(), Read { section, kind, components, bytes });
+        } else {
+            open.push(name);
+            if name == "Piece" {
+                piece = tag.to_owned();
+            }
+        }
+    }
+    assert_eq!(open, ["VTKFile"]);
+    assert_eq!(&data[end..], b"\n</AppendedData>\n</VTKFile>\n");
+    (piece, arrays)
+}
+
+#[test]
+fn arrays_and_counts_agree() {
+    let quarter = Rotation::from_scaled_axis(Vector::z() * 0.5 * std::f64::consts::PI);
+    let twist = Twist { linear: Vector::new(1.0, 2.0, 0.0), angular: Vector::new(0.0, 0.0, 3.0) };
+    for spheres in [false, true] {
+        let mut bodies = RigidBodies::new(Periods::new([Some(10.0), None, None]));
+        for x in [3.0, -2.0] {
+            let pose = Pose { position: Point::new(x, 1.0, 0.0), orientation: quarter };
+            let shape: Shape =
+                if spheres { Sphere::new(0.5).unwrap().into() } else { Disc::new(0.5).unwrap().into() };
+            bodies.add(shape, Material::default(), pose, twist, Freedom::PLANAR).unwrap();
+        }
+        let mut file = Vec::new();
+        bodies.write_vtp(&mut file, Point::origin()).unwrap();
+        let (piece, arrays) = read(&file);
+        let lines_each = if spheres { 3 } else { 1 };
+        let (lines, points) = (2 * lines_each, 2 * lines_each * (CORNERS + 1));
+        assert_eq!(attribute(&piece, "NumberOfPoints"), points.to_string());
+        assert_eq!(attribute(&piece, "NumberOfLines"), lines.to_string());
+
+        let coordinates = &arrays["points"];
+        assert_eq!((coordinates.section.as_str(), coordinates.components), ("Points", 3));
+        let places: Vec<Point> = coordinates.floats().chunks_exact(3).map(Point::from_slice).collect();
+        assert_eq!(places.len(), points);
+        // The second body is drawn one period on.
+        assert_eq!(places[0], Point::new(3.0, 1.0, 0.0));
+        assert_eq!(places[points / 2], Point::new(8.0, 1.0, 0.0));
+
+        let (connectivity, offsets) = (arrays["connectivity"].ints(), arrays["offsets"].ints());
+        assert_eq!((offsets.len(), offsets.last()), (lines, Some(&connectivity.len())));
+        let mut start = 0;
+        for end in offsets {
+            let line = &connectivity[start..end];
+            let centre = places[line[0]];
+            assert!(line[1..].iter().all(|&p| ((places[p] - centre).norm() - 0.5).abs() < 1e-14));
+            assert_eq!((line.len(), line[1]), (CORNERS + 2, *line.last().unwrap()), "closed");
+            start = end;
+        }
+        // The mark from the centre to the rim has turned with the body, from x to y.
+        assert!((places[1] - Point::new(3.0, 1.5, 0.0)).norm() < 1e-14);
+
+        let owners: Vec<usize> = (0..lines).map(|l| l / lines_each).collect();
+        assert_eq!(arrays["body"].ints(), owners);
+        for (name, value) in [("velocity", [1.0, 2.0, 0.0]), ("angular_velocity", [0.0, 0.0, 3.0])] {
+            assert_eq!((arrays[name].section.as_str(), arrays[name].components), ("CellData", 3));
+            assert_eq!(arrays[name].floats(), value.repeat(lines));
+        }
+    }
+}
+
+#[test]
+fn no_bodies_are_a_valid_file() {
+    let mut file = Vec::new();
+    RigidBodies::new(Periods::default()).write_vtp(&mut file, Point::origin()).unwrap();
+    let (piece, arrays) = read(&file);
+    assert_eq!(attribute(&piece, "NumberOfPoints"), "0");
+    assert!(arrays.values().all(|a| a.bytes.is_empty()));
+}
+
+/// What the disk answers reaches the caller.
+#[test]
+fn a_full_disk_is_an_error() {
+    let mut bodies = RigidBodies::new(Periods::default());
+    let (disc, still) = (Disc::new(1.0).unwrap(), Twist::default());
+    bodies.add(disc, Material::default(), Pose::at([0.0; 3]), still, Freedom::PLANAR).unwrap();
+    let mut small = [0_u8; 500];
+    assert!(bodies.write_vtp(&mut small.as_mut_slice(), Point::origin()).is_err());
+}

@@ -5,7 +5,7 @@
 //! It leaves open, and this file chooses: gravity 9.81 m/s² along −y; the heavier disc starts at rest at
 //! (5 d, 16 d), the lighter at (5.05 d, 13.5 d); 0.6 s; the net weight is balanced by a uniform body force,
 //! since a periodic box has nothing else to bear it; contact: Young's modulus 1 MPa, Poisson's ratio 0.3,
-//! damping 0.5, friction 0.3 (the discs hardly touch, unless on the `--floor`).
+//! damping 4, friction 0.3 (the discs hardly touch, unless on the `--floor`).
 //!
 //! Sample runs:
 //! ```text

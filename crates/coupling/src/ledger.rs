@@ -1,7 +1,7 @@
 //! The books of momentum and energy.
 use crate::{CouplingError, Immersed, Observer, Particles, Simulation, StepInfo};
 use ibm::Forcing;
-use interfaces::{BodyId, Dynamics, Vector};
+use interfaces::{BodyId, Dynamics, Twist, Vector};
 
 /// Keeps, step by step, the momentum of fluid and bodies against the impulses on them, the kinetic
 /// energy against work and dissipation, and the divergence.
@@ -14,6 +14,8 @@ use interfaces::{BodyId, Dynamics, Vector};
 #[derive(Clone, Debug, Default)]
 pub struct Ledger {
     last: Option<Books>,
+    /// How the bodies moved at the last books.
+    twists: Vec<Twist>,
     report: LedgerReport,
 }
 
@@ -105,6 +107,8 @@ impl<const D: usize, F: Forcing, B: Dynamics> Observer<Simulation<D, Particles<F
             let (books, report) = Self::balance(simulation);
             self.report = LedgerReport { energy: [books.energy; 2], ..report };
             self.last = Some(books);
+            let bodies = &simulation.particles.bodies;
+            self.twists = (0..bodies.n_bodies()).map(|b| bodies.twist(BodyId(b))).collect();
         }
         Ok(())
     }
@@ -121,11 +125,15 @@ impl<const D: usize, F: Forcing, B: Dynamics> Observer<Simulation<D, Particles<F
         let weight = dt * Immersed::<D>::net_weight(particles);
         let body_force = dt * flow.fluid().density * flow.grid().volume() * simulation.body_force();
         let walls = flow.wall_impulse();
+        self.twists.resize(particles.bodies.n_bodies(), Twist::default());
         let (mut contacts, mut contact_work, mut sum) = (Vector::zeros(), 0.0, 0.0);
         for b in (0..particles.bodies.n_bodies()).map(BodyId) {
             let (impulse, twist) = (particles.bodies.contact_impulse(b), particles.bodies.twist(b));
             contacts += impulse.force;
-            contact_work += impulse.force.dot(&twist.linear) + impulse.torque.dot(&twist.angular);
+            // What an impulse does to the kinetic energy: its product with the mean velocity.
+            let before = std::mem::replace(&mut self.twists[b.0], twist);
+            contact_work += 0.5 * impulse.force.dot(&(before.linear + twist.linear));
+            contact_work += 0.5 * impulse.torque.dot(&(before.angular + twist.angular));
             sum += impulse.force.norm();
         }
         let impulse = weight + body_force + contacts + walls;

@@ -210,7 +210,8 @@ impl<const D: usize, F: Forcing, B: Dynamics> Immersed<D> for Particles<F, B> {
         timings: &mut Timings,
     ) -> Result<(), CouplingError> {
         let time = flow.time();
-        let n = self.states.len();
+        let n = self.bodies.n_bodies();
+        self.states.resize(n, State::default());
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.clear();
         scratch.extend((0..n).map(|b| {

@@ -134,14 +134,14 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(200))]
-        /// Σλ h^D is the body's volume within 0.1 % at 10 cells per diameter, wherever it sits,
+        /// Σλ h^D is the body's volume within 0.03 % at 10 cells per diameter, wherever it sits,
         /// over periodic sides too.
         #[test]
         fn sums_to_the_volume(x in 0.0..3.0_f64, y in 0.0..3.0_f64, z in 0.0..3.0_f64) {
             let disc = total(2, 10.0, [x, y, 0.0], [1.0; 3]) / (std::f64::consts::PI / 4.0);
-            prop_assert!((disc - 1.0).abs() < 1e-3, "disc {disc}");
+            prop_assert!((disc - 1.0).abs() < 3e-4, "disc {disc}");
             let sphere = total(3, 10.0, [x, y, z], [1.0; 3]) / (std::f64::consts::PI / 6.0);
-            prop_assert!((sphere - 1.0).abs() < 1e-3, "sphere {sphere}");
+            prop_assert!((sphere - 1.0).abs() < 3e-4, "sphere {sphere}");
         }
     }
 

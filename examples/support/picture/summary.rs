@@ -145,8 +145,8 @@ impl Summary<'_> {
         canvas.clip(Some(rect));
         let scale = rect.width / self.domain.width;
         let Domain { width, height, periodic } = self.domain;
-        for (index, track) in self.tracks.iter().enumerate() {
-            let ink = colour::line(index);
+        for track in self.tracks {
+            let ink = self.ink(track);
             // The whole path once for every period it passes through: the clip cuts out the piece inside.
             for dx in periods(track.x, width, periodic[0]) {
                 for dy in periods(track.y, height, periodic[1]) {
@@ -156,8 +156,8 @@ impl Summary<'_> {
                 }
             }
         }
-        for (index, track) in self.tracks.iter().enumerate() {
-            let ink = colour::line(index);
+        for track in self.tracks {
+            let ink = self.ink(track);
             let ends = [track.x.first().zip(track.y.first()), track.x.last().zip(track.y.last())];
             for (end, place) in ends.into_iter().enumerate() {
                 let Some((&x, &y)) = place else { continue };
@@ -188,12 +188,12 @@ impl Summary<'_> {
         let middle = (rect.left + 0.5 * rect.width, rect.top - 18.0);
         canvas.text(middle, Type::new(LOOK.font, (0.5, 0.0)), title);
         canvas.clip(Some(rect));
-        for (index, track) in self.tracks.iter().enumerate() {
+        for track in self.tracks {
             let points = track.times.iter().zip(track.speed).take(shown(track) + 1);
             let points: Vec<Pixel> = points.map(|(t, v)| axes.at(factor * t, 1e3 * v)).collect();
-            canvas.line(&points, STROKE, colour::line(index));
+            canvas.line(&points, STROKE, self.ink(track));
             for &(time, speed) in track.theory.iter().filter(|_| theory) {
-                mark(canvas, axes.at(factor * time, 1e3 * speed), colour::line(index));
+                mark(canvas, axes.at(factor * time, 1e3 * speed), self.ink(track));
             }
         }
         canvas.clip(None);
@@ -204,10 +204,26 @@ impl Summary<'_> {
     }
 
     /// Names of the lines: at the lower right, or with the theory at the upper left, where start-up leaves room.
+    /// The labels, each once: bodies of one label share a colour.
+    fn kinds(&self) -> Vec<&str> {
+        let mut kinds: Vec<&str> = Vec::new();
+        for track in self.tracks {
+            if !kinds.contains(&track.label) {
+                kinds.push(track.label);
+            }
+        }
+        kinds
+    }
+
+    /// The colour of a body.
+    fn ink(&self, track: &Track<'_>) -> colour::Colour {
+        colour::line(self.kinds().iter().position(|k| *k == track.label).unwrap_or(0))
+    }
+
     fn legend(&self, canvas: &mut Canvas, rect: Rect, theory: bool) {
         let (pad, key, line) = (14.0, 46.0, 1.5 * LOOK.font);
-        let names = self.tracks.iter().map(|t| t.label).chain(theory.then_some(self.theory));
-        let names: Vec<&str> = names.collect();
+        let kinds = self.kinds();
+        let names: Vec<&str> = kinds.iter().copied().chain(theory.then_some(self.theory)).collect();
         let widest = names.iter().map(|name| text::width(LOOK.font, name)).fold(0.0, f64::max);
         let (width, height) = (widest + key + 2.0 * pad, names.len() as f64 * line + pad);
         let corner = if theory {
@@ -219,7 +235,7 @@ impl Summary<'_> {
         for (row, name) in names.iter().enumerate() {
             let y = (corner.1 + 0.5 * pad + (row as f64 + 0.5) * line).round();
             let (from, to) = ((corner.0 + pad, y), (corner.0 + pad + key - 12.0, y));
-            if row < self.tracks.len() {
+            if row < kinds.len() {
                 canvas.line(&[from, to], STROKE, colour::line(row));
             } else {
                 mark(canvas, (0.5 * (from.0 + to.0), y), INK);

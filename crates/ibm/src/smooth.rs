@@ -35,6 +35,8 @@ struct Markers {
     arms: Vec<Vector>,
     /// ρ ΔV_m / c: the fluid mass that a marker moves \[kg\].
     masses: Vec<f64>,
+    /// What each marker gives to the fluid in the pass at hand \[N s\].
+    impulses: Vec<f64>,
     /// One per component and marker.
     stencils: [Vec<Stencil>; 3],
     /// 1 − χ_m per component and marker, χ = E λ: the share of a marker's fluid outside the body.
@@ -228,9 +230,13 @@ impl Forcing for SmoothForcing {
                 let twist = bodies.twist(BodyId(b));
                 for c in 0..velocity.dim() {
                     let u = velocity.component_mut(c);
+                    // All markers read before any of them spreads: their order must not matter.
+                    markers.impulses.clear();
+                    markers.impulses.extend(markers.stencils[c].iter().enumerate().map(|(m, stencil)| {
+                        markers.masses[m] * (twist.at(markers.arms[m])[c] - stencil.read(u))
+                    }));
                     for (m, stencil) in markers.stencils[c].iter().enumerate() {
-                        let arm = markers.arms[m];
-                        let impulse = markers.masses[m] * (twist.at(arm)[c] - stencil.read(u));
+                        let (arm, impulse) = (markers.arms[m], markers.impulses[m]);
                         let scale = impulse / cell_mass;
                         stencil.each(|i, w| u[i] += scale * w);
                         let mut force = Vector::zeros();

@@ -56,7 +56,8 @@ impl Solid for Disc {
         if !(r > 0.0 && spacing > 0.0) {
             return None;
         }
-        let n = (TAU * r / spacing).round().max(4.0);
+        // A multiple of four, so that the set is symmetric about both axes.
+        let n = 4.0 * (TAU * r / spacing / 4.0).round().max(1.0);
         let element = |i: usize| {
             let (sin, cos) = (TAU * i as f64 / n).sin_cos();
             let normal = Vector::new(cos, sin, 0.0);

@@ -7,9 +7,9 @@ use std::path::PathBuf;
 #[command(version)]
 pub(crate) struct Cli {
     /// End time [s]; 0.6, or 1.2 with --floor.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub(crate) end: Option<f64>,
-    /// Cells across a disc.
+    /// Cells across a disc, at least 4.
     #[arg(long, default_value_t = 15)]
     pub(crate) cells_per_diameter: usize,
     /// Snapshots, evenly spaced from 0 to the end, both included.
@@ -18,7 +18,7 @@ pub(crate) struct Cli {
     /// How many discs: 1, 2 or more (further ones stand in rows above).
     #[arg(long, default_value_t = 2)]
     pub(crate) bodies: usize,
-    /// Densities of the discs [kg/m³], repeated as needed.
+    /// Densities of the discs [kg/m³], separated by commas, repeated as needed.
     #[arg(long, value_delimiter = ',', default_values_t = [1060.0, 1030.0], allow_negative_numbers = true)]
     pub(crate) densities: Vec<f64>,
     /// Diameter of the discs [m]; the box is 0.01 m × 0.02 m whatever it is.
@@ -36,16 +36,16 @@ pub(crate) struct Cli {
     /// What holds up the discs' net weight in the periodic box.
     #[arg(long, value_enum, default_value_t = BalanceChoice::NetWeight)]
     pub(crate) balance: BalanceChoice,
-    /// Threads.
+    /// Threads, 1 to 256; the numbers do not depend on it.
     #[arg(long, default_value_t = 1)]
     pub(crate) threads: usize,
     /// Folder for everything that is written.
     #[arg(long, default_value = "out/falling_discs")]
     pub(crate) out: PathBuf,
-    /// Write no PNG files.
+    /// Write no PNG files: neither frames (one in ten snapshots) nor the summary figure.
     #[arg(long)]
     pub(crate) no_images: bool,
-    /// Go on from the state that an interrupted run left in the folder.
+    /// Go on from the state that an interrupted run of the same scene left in the folder.
     #[arg(long)]
     pub(crate) resume: bool,
 }

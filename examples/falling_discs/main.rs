@@ -26,7 +26,7 @@ mod support;
 
 use clap::Parser;
 use cli::{BalanceChoice, Cli, ForcingChoice};
-use observers::{History, Pictures, Save, Show};
+use observers::{History, Pictures, Resumable, Save, Show};
 use scene::{FLUID, Scene};
 use siltflow::coupling::{self, FileOutput, Ledger, Schedule, WeightBalance};
 use siltflow::ibm::{Forcing, Hfdib, SmoothForcing};
@@ -38,7 +38,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 fn main() -> ExitCode {
     let cli = Cli::parse();
     match run(&cli) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(Ending::Whole) => ExitCode::SUCCESS,
+        // As shells do for a program that Ctrl-C ended.
+        Ok(Ending::Stopped) => ExitCode::from(130),
         Err(error) => {
             eprintln!("error: {error}");
             ExitCode::FAILURE
@@ -46,7 +48,16 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(cli: &Cli) -> Result<(), Box<dyn Error>> {
+/// Did the run come to its end?
+enum Ending {
+    Whole,
+    Stopped,
+}
+
+fn run(cli: &Cli) -> Result<Ending, Box<dyn Error>> {
+    if !(1..=256).contains(&cli.threads) {
+        return Err(format!("{} threads; give 1 to 256", cli.threads).into());
+    }
     if cli.snapshots < 2 {
         return Err(format!("{} snapshots; give at least 2, one at each end", cli.snapshots).into());
     }
@@ -71,6 +82,7 @@ fn run(cli: &Cli) -> Result<(), Box<dyn Error>> {
         dt: cli.dt,
         ..Schedule::default()
     };
+    schedule.check()?;
     let stop = Arc::new(AtomicBool::new(false));
     let flag = stop.clone();
     ctrlc::set_handler(move || {
@@ -80,7 +92,7 @@ fn run(cli: &Cli) -> Result<(), Box<dyn Error>> {
         }
     })?;
     // Steps run inside the pool, where handing out work allocates nothing.
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(cli.threads.max(1)).build()?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(cli.threads).build()?;
     pool.install(|| match cli.forcing {
         ForcingChoice::Smooth => fall(cli, &scene, &schedule, SmoothForcing::new(FLUID.density), &stop),
         ForcingChoice::Hfdib => fall(cli, &scene, &schedule, Hfdib::new(FLUID.density), &stop),
@@ -94,33 +106,40 @@ fn fall<F: Forcing>(
     schedule: &Schedule,
     forcing: F,
     stop: &AtomicBool,
-) -> Result<(), Box<dyn Error + Send + Sync>> {
+) -> Result<Ending, Box<dyn Error + Send + Sync>> {
     let watch = support::cpu::Stopwatch::start();
     let mut simulation = scene.build(forcing)?;
     let state = cli.out.join("state.bin");
+    let setup = setup(cli, scene, schedule);
     let mut history = History::new(scene, schedule);
     let mut files = if cli.resume {
-        coupling::load(&state, &mut simulation)?;
+        coupling::load(&state, &mut Resumable { fall: &mut simulation, setup: &setup }).map_err(|e| {
+            format!("{e}; without an interrupted run of this scene there, leave out --resume")
+        })?;
         let files = FileOutput::resume(&cli.out, simulation.flow.time())?;
         history.read(&cli.out.join("trajectories.csv"))?;
         files
     } else {
-        FileOutput::new(&cli.out)?
+        let files = FileOutput::new(&cli.out)?;
+        // What an earlier run left there is not this run's.
+        for old in ["state.bin", "result.json", "summary.png"] {
+            let _ = std::fs::remove_file(cli.out.join(old));
+        }
+        files
     };
     let mut ledger = Ledger::new();
     let mut show = Show::new(simulation.flow.time(), schedule.end);
     let mut pictures = if cli.no_images { None } else { Some(Pictures::new(&cli.out, scene, schedule)?) };
-    let mut save = Save::new(state);
+    let mut save = Save::new(state, setup);
     let observers = &mut (&mut files, (&mut ledger, (&mut history, (&mut show, (&mut pictures, &mut save)))));
     let summary = coupling::run(&mut simulation, schedule, observers, stop)?;
-    if summary.stopped {
-        save.now(&simulation)?;
-    }
-    let elapsed = watch.elapsed();
+    files.finish()?;
+    save.now(&mut simulation)?;
     show.finish(summary.steps, if summary.stopped { "stopped" } else { "done" });
 
     if let Some(pictures) = &pictures {
-        pictures.summary(&cli.out.join("summary.png"), scene, &history)?;
+        let path = cli.out.join("summary.png");
+        pictures.summary(&path, scene, &history).map_err(|e| format!("drawing {}: {e}", path.display()))?;
     }
     let outcome = report::Outcome {
         scene,
@@ -129,11 +148,28 @@ fn fall<F: Forcing>(
         simulation: &mut simulation,
         ledger: ledger.report(),
         history: &history,
-        elapsed,
+        elapsed: watch.elapsed(),
         output_seconds: files.seconds() + pictures.as_ref().map_or(0.0, Pictures::seconds) + save.seconds(),
         threads: cli.threads,
         out: &cli.out,
     };
     outcome.tell()?;
-    Ok(())
+    Ok(if summary.stopped { Ending::Stopped } else { Ending::Whole })
+}
+
+/// The numbers that a run may not change when it goes on: the scene, the forcing and the intervals.
+fn setup(cli: &Cli, scene: &Scene, schedule: &Schedule) -> Vec<f64> {
+    let mut numbers = vec![
+        scene.cells_per_diameter as f64,
+        scene.bodies as f64,
+        scene.diameter,
+        f64::from(u8::from(scene.floor)),
+        cli.balance as u8 as f64,
+        cli.forcing as u8 as f64,
+        schedule.end,
+        schedule.intervals as f64,
+        cli.dt.unwrap_or(0.0),
+    ];
+    numbers.extend(&scene.densities);
+    numbers
 }

@@ -3,11 +3,13 @@ use crate::scene::{BOX, FLUID, GRAVITY, Scene};
 use crate::support::picture::{Disc, Domain, Frames, Moment, Scalar, Summary, Track};
 use crate::support::progress::{Progress, Status};
 use crate::support::startup_theory;
-use siltflow::coupling::{self, CouplingError, Observer, Particles, Schedule, Simulation, StepInfo};
+use siltflow::coupling::{
+    self, CouplingError, Observer, Particles, Schedule, Simulation, StepInfo, WeightBalance,
+};
 use siltflow::dem::RigidBodies;
 use siltflow::flow::Projection;
 use siltflow::ibm::{Forcing, SolidFraction};
-use siltflow::interfaces::{Bodies, BodyId, Kinematics};
+use siltflow::interfaces::{Bodies, BodyId, Checkpoint, Kinematics, RestartError};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -95,7 +97,7 @@ impl History {
 /// Speeds of the discs by the theory of the start from rest, which holds until their wakes reach one another.
 fn startup_points(scene: &Scene, end: f64) -> Vec<Vec<(f64, f64)>> {
     let Ok(centres) = scene.centres() else { return Vec::new() };
-    if scene.floor || scene.bodies > 2 {
+    if scene.floor || scene.bodies > 2 || scene.balance == WeightBalance::None {
         return Vec::new();
     }
     let fluid =
@@ -287,9 +289,31 @@ impl<F: Forcing> Observer<Fall<F>> for Pictures {
     }
 }
 
-/// The state, saved every ten seconds of wall time and when the run is stopped.
+/// A run together with the numbers of its set-up, which must be the same when it goes on.
+pub(crate) struct Resumable<'a, F> {
+    pub(crate) fall: &'a mut Fall<F>,
+    pub(crate) setup: &'a [f64],
+}
+
+impl<F: Forcing> Checkpoint for Resumable<'_, F> {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        sink("setup", self.setup);
+        self.fall.save(sink);
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        if RestartError::take(source, "setup", self.setup.len())? != self.setup {
+            return Err(RestartError::Differs(
+                "cells, bodies, diameter, floor, balance, forcing, end, snapshots, dt or densities".into(),
+            ));
+        }
+        self.fall.restore(source)
+    }
+}
+
+/// The state, saved every ten seconds of wall time and at the end.
 pub(crate) struct Save {
     path: PathBuf,
+    setup: Vec<f64>,
     last: Instant,
     seconds: f64,
 }
@@ -297,15 +321,15 @@ pub(crate) struct Save {
 const SAVE_EVERY: Duration = Duration::from_secs(10);
 
 impl Save {
-    pub(crate) fn new(path: PathBuf) -> Self {
-        Self { path, last: Instant::now(), seconds: 0.0 }
+    pub(crate) fn new(path: PathBuf, setup: Vec<f64>) -> Self {
+        Self { path, setup, last: Instant::now(), seconds: 0.0 }
     }
     pub(crate) fn seconds(&self) -> f64 {
         self.seconds
     }
-    pub(crate) fn now<F: Forcing>(&mut self, fall: &Fall<F>) -> Result<(), coupling::CheckpointError> {
+    pub(crate) fn now<F: Forcing>(&mut self, fall: &mut Fall<F>) -> Result<(), coupling::CheckpointError> {
         let start = Instant::now();
-        coupling::save(&self.path, fall)?;
+        coupling::save(&self.path, &Resumable { fall, setup: &self.setup })?;
         self.last = Instant::now();
         self.seconds += start.elapsed().as_secs_f64();
         Ok(())
@@ -313,8 +337,8 @@ impl Save {
 }
 
 impl<F: Forcing> Observer<Fall<F>> for Save {
-    fn snapshot(&mut self, fall: &mut Fall<F>, _: usize, info: &StepInfo) -> Result<(), CouplingError> {
-        if info.step > 0 && self.last.elapsed() >= SAVE_EVERY {
+    fn step(&mut self, fall: &mut Fall<F>, _: &StepInfo) -> Result<(), CouplingError> {
+        if self.last.elapsed() >= SAVE_EVERY {
             self.now(fall).map_err(|e| CouplingError::Output {
                 what: "saving the state".into(),
                 source: io::Error::other(e),

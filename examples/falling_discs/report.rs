@@ -7,7 +7,7 @@ use serde_json::json;
 use siltflow::coupling::{LedgerReport, Module, RunSummary, Schedule};
 use siltflow::ibm::Forcing;
 use siltflow::interfaces::{Bodies, BodyId, Kinematics, Vector};
-use std::io;
+use std::io::{self, Write};
 use std::path::Path;
 
 /// All there is to tell about a run.
@@ -104,8 +104,6 @@ impl<F: Forcing> Outcome<'_, F> {
             rows.take(12).collect(),
         );
         t.note(&format!("files are in {}", self.out.display()));
-        println!("{t}");
-
         let end_state: Vec<_> = bodies
             .iter()
             .map(|&b| {
@@ -131,6 +129,12 @@ impl<F: Forcing> Outcome<'_, F> {
             "cells": cells,
             "cells_xy": [nx, ny],
             "cells_per_diameter": self.scene.cells_per_diameter,
+            "bodies": self.scene.bodies,
+            "densities": self.scene.densities,
+            "diameter": self.scene.diameter,
+            "floor": self.scene.floor,
+            "snapshots": self.schedule.intervals + 1,
+            "units": "SI, per metre of depth",
             "steps": self.summary.steps,
             "stopped": self.summary.stopped,
             "time": flow.time(),
@@ -145,7 +149,7 @@ impl<F: Forcing> Outcome<'_, F> {
             "peak_memory_bytes": cpu::peak_memory(),
             "end_state": end_state,
             "smallest_gap": gap,
-            "smallest_gap_time": h.smallest_gap.1,
+            "smallest_gap_time": gap.map(|_| h.smallest_gap.1),
             "contact_seconds": h.contact_seconds,
             "largest_slip_over_speed": h.slip,
             "body_force": h.body_force,
@@ -165,6 +169,11 @@ impl<F: Forcing> Outcome<'_, F> {
                 "energy_residual": l.energy_residual,
             },
         });
-        write_json(&self.out.join("result.json"), &result)
+        let path = self.out.join("result.json");
+        write_json(&path, &result)
+            .map_err(|e| io::Error::new(e.kind(), format!("writing {}: {e}", path.display())))?;
+        // Whoever reads the table may have stopped reading; the run is none the worse for it.
+        let _ = writeln!(io::stdout(), "{t}");
+        Ok(())
     }
 }

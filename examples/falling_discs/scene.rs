@@ -21,6 +21,9 @@ pub(crate) const MATERIAL: Material =
 /// Fewer cells across a disc cannot hold its markers.
 pub(crate) const LEAST_CELLS: usize = 4;
 
+/// About a hundred bytes each.
+pub(crate) const MOST_CELLS: usize = 200_000_000;
+
 /// What may vary.
 #[derive(Clone, Debug)]
 pub(crate) struct Scene {
@@ -66,6 +69,8 @@ pub(crate) enum SceneError {
         "{found} cells across a disc; at least {LEAST_CELLS} are needed, and 10 or more are advised: raise --cells-per-diameter"
     )]
     TooCoarse { found: usize },
+    #[error("{} × {} cells would need more than {:.0} GB; lower --cells-per-diameter or raise --diameter", cells[0], cells[1], MOST_CELLS as f64 * 100e-9)]
+    TooFine { cells: [usize; 2] },
     #[error("{found} bodies; give between 1 and {most}: what fits into the box in rows two diameters apart")]
     Count { found: usize, most: usize },
     #[error("no densities were given; give at least one, as in --densities 1060,1030")]
@@ -105,7 +110,11 @@ impl Scene {
         if self.cells_per_diameter < LEAST_CELLS {
             return Err(SceneError::TooCoarse { found: self.cells_per_diameter });
         }
-        let grid = CartesianGrid::new(self.cells(), BOX)?;
+        let cells = self.cells();
+        if cells[0].saturating_mul(cells[1]) > MOST_CELLS {
+            return Err(SceneError::TooFine { cells });
+        }
+        let grid = CartesianGrid::new(cells, BOX)?;
         let vertical = if self.floor { [Side::WALL; 2] } else { [Side::Periodic; 2] };
         Ok(Projection::new(grid, [[Side::Periodic; 2], vertical], FLUID)?)
     }

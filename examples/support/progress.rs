@@ -1,6 +1,6 @@
 //! How far a run has come: a bar on a terminal, about ten plain lines elsewhere. Both go to stderr.
 
-use std::io::{IsTerminal, stderr};
+use std::io::{IsTerminal, Write, stderr};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -112,7 +112,9 @@ impl Progress {
                 bar.set_position((done * TICKS) as u64);
                 bar.set_message(message);
             }
-            None => eprintln!("{:3.0} %  {position}  {message}", 100.0 * done),
+            None => {
+                let _ = writeln!(stderr(), "{:3.0} %  {position}  {message}", 100.0 * done);
+            }
         }
     }
 
@@ -120,7 +122,9 @@ impl Progress {
     pub(crate) fn say(&self, line: &str) {
         match &self.bar {
             Some(bar) => bar.println(line),
-            None => eprintln!("{line}"),
+            None => {
+                let _ = writeln!(stderr(), "{line}");
+            }
         }
     }
 
@@ -131,7 +135,8 @@ impl Progress {
         }
         let wall = self.started.elapsed();
         let rate = steps as f64 / wall.as_secs_f64().max(1e-9);
-        eprintln!("{message}: {steps} steps in {} ({rate:.0} steps/s)", readable(wall));
+        // Nobody may be reading any more.
+        let _ = writeln!(stderr(), "{message}: {steps} steps in {} ({rate:.0} steps/s)", readable(wall));
     }
 }
 

@@ -10,7 +10,7 @@ fn allocations(scene: &Scene, forcing: impl Forcing, threads: usize) -> u64 {
         let mut simulation = scene.build(forcing).unwrap();
         let mut ledger = Ledger::new();
         let info = StepInfo { step: 0, time: 0.0, dt: 1e-4, courant: 0.0 };
-        ledger.snapshot(&mut simulation, 0, &info).unwrap();
+        ledger.begin(&mut simulation);
         let mut steps = |n| {
             for _ in 0..n {
                 simulation.step(1e-4).unwrap();

@@ -197,7 +197,7 @@ fn a_disc_lands_and_stays() {
         let found = r - pose.position.y;
         assert!((found / depth - 1.0).abs() < 0.05, "sunk in by {found:e}, {depth:e} m were expected");
         // It may still roll in the fluid that it stirred.
-        assert!(twist.linear.y.abs() < 1e-5, "{}", twist.linear);
+        assert!(twist.linear.y.abs() < 1e-4, "{}", twist.linear);
         assert!(bodies.contact_time() > 0.1);
     });
 }

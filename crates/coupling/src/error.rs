@@ -80,7 +80,7 @@ pub enum CouplingError {
     },
     /// The velocity has grown so much that time stands still.
     #[error(
-        "a Courant number of {courant} allows no more than dt = {dt:.3e} s at t = {time:.6} s: the run is diverging; start again with a smaller Courant number or time step, or a finer grid"
+        "a Courant number of {courant} allows no more than dt = {dt:.3e} s at t = {time:.6} s: the run is diverging; start again with a smaller Courant number or time step, or a finer grid; bodies much lighter than the fluid need a virtual mass (`Particles::with_virtual_mass`)"
     )]
     Collapsed {
         /// The step \[s\].
@@ -89,6 +89,18 @@ pub enum CouplingError {
         time: f64,
         /// The Courant number asked for.
         courant: f64,
+    },
+    /// The flow moves too far in a step.
+    #[error(
+        "the flow moved {courant:.3e} cells in a step of {dt:.3e} s, up to t = {time:.6} s; take a smaller time step"
+    )]
+    Courant {
+        /// The Courant number.
+        courant: f64,
+        /// The step \[s\].
+        dt: f64,
+        /// When \[s\].
+        time: f64,
     },
     /// An observer could not do its work.
     #[error("{what}: {source}")]

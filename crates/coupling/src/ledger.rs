@@ -97,20 +97,12 @@ impl Ledger {
 }
 
 impl<const D: usize, F: Forcing, B: Dynamics> Observer<Simulation<D, Particles<F, B>>> for Ledger {
-    fn snapshot(
-        &mut self,
-        simulation: &mut Simulation<D, Particles<F, B>>,
-        _: usize,
-        _: &StepInfo,
-    ) -> Result<(), CouplingError> {
-        if self.last.is_none() {
-            let (books, report) = Self::balance(simulation);
-            self.report = LedgerReport { energy: [books.energy; 2], ..report };
-            self.last = Some(books);
-            let bodies = &simulation.particles.bodies;
-            self.twists = (0..bodies.n_bodies()).map(|b| bodies.twist(BodyId(b))).collect();
-        }
-        Ok(())
+    fn begin(&mut self, simulation: &mut Simulation<D, Particles<F, B>>) {
+        let (books, report) = Self::balance(simulation);
+        self.report = LedgerReport { energy: [books.energy; 2], ..report };
+        self.last = Some(books);
+        let bodies = &simulation.particles.bodies;
+        self.twists = (0..bodies.n_bodies()).map(|b| bodies.twist(BodyId(b))).collect();
     }
 
     fn step(

@@ -7,10 +7,12 @@ use interfaces::{BodyId, Kinematics, Point, vtk};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 /// Writes at every snapshot `fields/NNNNN.vti` (λ, velocity, pressure at the cell centres) and
 /// `bodies/NNNNN.vtp`, the series `fields.pvd` and `bodies.pvd`, and a line per body to
-/// `trajectories.csv`. What is on disk after any snapshot is complete and can be opened.
+/// `trajectories.csv`. What is listed is complete; the lists lag a second behind at most, and the
+/// output must be finished or dropped at the end.
 pub struct FileOutput {
     folder: PathBuf,
     csv: BufWriter<File>,
@@ -18,7 +20,12 @@ pub struct FileOutput {
     fraction: SolidFraction,
     lambda: Vec<f64>,
     seconds: f64,
+    /// When the series were written last.
+    listed: Option<Instant>,
 }
+
+/// Series are written again at most this often, and when the output is dropped.
+const LIST_EVERY: Duration = Duration::from_secs(1);
 
 /// Time, part and file of the entries of a `.pvd`.
 type Series = Vec<(f64, usize, String)>;
@@ -30,7 +37,7 @@ f,fc N (plane scenes N per m of depth); t,tc N m. f,t: load of the fluid without
 time,body,x,y,z,vx,vy,vz,qw,qx,qy,qz,wx,wy,wz,fx,fy,fz,tx,ty,tz,fcx,fcy,fcz,tcx,tcy,tcz";
 
 impl FileOutput {
-    /// Makes the folder and the files in it.
+    /// Makes the folder and the files in it; what an earlier run listed there is listed no more.
     ///
     /// # Errors
     /// [`CouplingError::Output`] when the folder cannot be made or written to.
@@ -89,7 +96,15 @@ impl FileOutput {
 
     fn with(folder: &Path, csv: BufWriter<File>, series: [Series; 2]) -> Self {
         let folder = folder.into();
-        Self { folder, csv, series, fraction: SolidFraction::new(), lambda: Vec::new(), seconds: 0.0 }
+        Self {
+            folder,
+            csv,
+            series,
+            fraction: SolidFraction::new(),
+            lambda: Vec::new(),
+            seconds: 0.0,
+            listed: None,
+        }
     }
 
     /// λ at the cell centres at the last snapshot, x fastest.
@@ -99,6 +114,31 @@ impl FileOutput {
     /// Wall seconds spent on writing.
     pub fn seconds(&self) -> f64 {
         self.seconds
+    }
+
+    /// Writes the series that list all snapshots so far, each beside its old version and then in its place, so
+    /// that what is there can always be opened.
+    fn list(&mut self) -> io::Result<()> {
+        for (series, name) in self.series.iter().zip(SERIES) {
+            let (path, part) = (self.folder.join(name), self.folder.join(name).with_extension("part"));
+            let mut file = BufWriter::new(File::create(&part)?);
+            vtk::write_series(&mut file, series)?;
+            file.flush()?;
+            std::fs::rename(&part, &path)?;
+        }
+        self.listed = Some(Instant::now());
+        Ok(())
+    }
+
+    /// Brings the series up to date at the end of a run; dropping does it too, but cannot say that it failed.
+    ///
+    /// # Errors
+    /// [`CouplingError::Output`] when they cannot be written.
+    pub fn finish(&mut self) -> Result<(), CouplingError> {
+        self.list().map_err(|source| CouplingError::Output {
+            what: format!("listing the snapshots in {}", self.folder.display()),
+            source,
+        })
     }
 
     fn write<const D: usize, F: Forcing>(
@@ -124,9 +164,11 @@ impl FileOutput {
         particles.bodies.write_vtp(&mut file, corner)?;
         file.flush()?;
 
-        for (series, (name, pvd)) in self.series.iter_mut().zip(names.into_iter().zip(SERIES)) {
+        for (series, name) in self.series.iter_mut().zip(names) {
             series.push((info.time, 0, name));
-            vtk::write_series(&mut BufWriter::new(File::create(self.folder.join(pvd))?), series)?;
+        }
+        if self.listed.is_none_or(|t| t.elapsed() > LIST_EVERY) {
+            self.list()?;
         }
 
         for b in (0..particles.bodies.n_bodies()).map(BodyId) {
@@ -153,6 +195,13 @@ impl FileOutput {
     }
 }
 
+impl Drop for FileOutput {
+    fn drop(&mut self) {
+        // An error here has no one to go to; `finish` tells it.
+        let _ = self.list();
+    }
+}
+
 impl<const D: usize, F: Forcing> Observer<Simulation<D, Particles<F, RigidBodies>>> for FileOutput {
     fn snapshot(
         &mut self,
@@ -160,7 +209,7 @@ impl<const D: usize, F: Forcing> Observer<Simulation<D, Particles<F, RigidBodies
         index: usize,
         info: &StepInfo,
     ) -> Result<(), CouplingError> {
-        let start = std::time::Instant::now();
+        let start = Instant::now();
         let lattice = simulation.flow.grid().lattice(None, simulation.flow.sides());
         self.fraction.update(&lattice, &simulation.particles.bodies)?;
         self.lambda.clear();

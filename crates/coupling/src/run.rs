@@ -25,7 +25,11 @@ impl Default for Schedule {
 }
 
 impl Schedule {
-    fn check(&self) -> Result<(), CouplingError> {
+    /// Does it make sense?
+    ///
+    /// # Errors
+    /// [`CouplingError::Schedule`] that names the value and what to give instead.
+    pub fn check(&self) -> Result<(), CouplingError> {
         let positive = |x: f64| x.is_finite() && x > 0.0;
         let tests = [
             ("end time", self.end, positive(self.end), "give a positive number of seconds"),
@@ -78,6 +82,8 @@ pub struct StepInfo {
 /// Someone who looks on: progress, output, probes, statistics. `()` sees nothing; pairs of
 /// observers, and one that may be absent (`Option`), are observers.
 pub trait Observer<S> {
+    /// Before the first step of this run, which may go on from a saved state.
+    fn begin(&mut self, _simulation: &mut S) {}
     /// After every step.
     ///
     /// # Errors
@@ -102,6 +108,10 @@ pub trait Observer<S> {
 impl<S> Observer<S> for () {}
 
 impl<S, A: Observer<S>, B: Observer<S>> Observer<S> for (A, B) {
+    fn begin(&mut self, simulation: &mut S) {
+        self.0.begin(simulation);
+        self.1.begin(simulation);
+    }
     fn step(&mut self, simulation: &mut S, info: &StepInfo) -> Result<(), CouplingError> {
         self.0.step(simulation, info)?;
         self.1.step(simulation, info)
@@ -113,6 +123,11 @@ impl<S, A: Observer<S>, B: Observer<S>> Observer<S> for (A, B) {
 }
 
 impl<S, A: Observer<S>> Observer<S> for Option<A> {
+    fn begin(&mut self, simulation: &mut S) {
+        if let Some(a) = self {
+            a.begin(simulation);
+        }
+    }
     fn step(&mut self, simulation: &mut S, info: &StepInfo) -> Result<(), CouplingError> {
         self.as_mut().map_or(Ok(()), |a| a.step(simulation, info))
     }
@@ -122,6 +137,9 @@ impl<S, A: Observer<S>> Observer<S> for Option<A> {
 }
 
 impl<S, A: Observer<S>> Observer<S> for &mut A {
+    fn begin(&mut self, simulation: &mut S) {
+        (**self).begin(simulation);
+    }
     fn step(&mut self, simulation: &mut S, info: &StepInfo) -> Result<(), CouplingError> {
         (**self).step(simulation, info)
     }
@@ -133,6 +151,9 @@ impl<S, A: Observer<S>> Observer<S> for &mut A {
 /// A step that the Courant number makes this much shorter than diffusion alone would is no step.
 const COLLAPSED: f64 = 1e-6;
 
+/// Beyond this Courant number no explicit step is to be trusted.
+const MOST_COURANT: f64 = 1.5;
+
 /// Share of a step or an interval below which a rest of time is round-off.
 const ROUND_OFF: f64 = 1e-6;
 
@@ -141,7 +162,7 @@ const ROUND_OFF: f64 = 1e-6;
 pub struct RunSummary {
     /// Steps made.
     pub steps: u64,
-    /// Shortest and longest step \[s\] that was not shortened by the ramp.
+    /// Shortest and longest step \[s\].
     pub dt: [f64; 2],
     /// Largest Courant number.
     pub courant: f64,
@@ -171,6 +192,7 @@ pub fn run<const D: usize, P: Immersed<D>>(
     // Ends of intervals that are behind, up to round-off: other schedules cut time otherwise.
     let behind = info.time + ROUND_OFF * schedule.end / schedule.intervals as f64;
     let mut index = (0..=schedule.intervals).take_while(|&i| schedule.time(i) <= behind).count() - 1;
+    observer.begin(simulation);
     if info.step == 0 {
         observer.snapshot(simulation, 0, &info)?;
     }
@@ -203,10 +225,11 @@ pub fn run<const D: usize, P: Immersed<D>>(
                 dt,
                 courant: simulation.flow.courant(dt),
             };
-            summary.steps += 1;
-            if share == 1.0 {
-                summary.dt = [summary.dt[0].min(dt), summary.dt[1].max(dt)];
+            if info.courant > MOST_COURANT {
+                return Err(CouplingError::Courant { courant: info.courant, dt, time: info.time });
             }
+            summary.steps += 1;
+            summary.dt = [summary.dt[0].min(dt), summary.dt[1].max(dt)];
             summary.courant = summary.courant.max(info.courant);
             observer.step(simulation, &info)?;
             if steps == 1.0 {

@@ -33,6 +33,8 @@ pub struct RigidBodies {
     broad_phase: BroadPhase,
     contact_time: f64,
     overlap_calls: u64,
+    /// Kept, because every advance asks for it.
+    stable_dt: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -76,6 +78,7 @@ impl RigidBodies {
             broad_phase: BroadPhase::default(),
             contact_time: 0.0,
             overlap_calls: 0,
+            stable_dt: f64::INFINITY,
         }
     }
     /// Another factor c in L_c = c·l_i l_j/(l_i + l_j), positive; 4 unless told. [`add`](Self::add) refuses bodies
@@ -83,6 +86,7 @@ impl RigidBodies {
     #[must_use]
     pub fn with_length_factor(mut self, factor: f64) -> Self {
         self.length_factor = factor;
+        self.stable_dt = self.least_stable_dt();
         self
     }
 
@@ -125,7 +129,7 @@ impl RigidBodies {
                 return Err(DemError::Period { body, axis, size: extent[axis], period });
             }
         }
-        self.bodies.push(Body {
+        let new = Body {
             shape,
             material,
             inertia: shape.inertia(material.density),
@@ -137,7 +141,9 @@ impl RigidBodies {
             contact: Wrench::default(),
             impulse: Wrench::default(),
             listed: Listed { centre: pose.position, margin: 0.0 },
-        });
+        };
+        self.stable_dt = self.stable_dt.min(self.stable_dt_of(&new));
+        self.bodies.push(new);
         Ok(body)
     }
 
@@ -148,6 +154,7 @@ impl RigidBodies {
     pub fn add_wall(&mut self, wall: HalfSpace, material: Material) -> Result<(), DemError> {
         material.check()?;
         self.walls.push((wall, material));
+        self.stable_dt = self.least_stable_dt();
         Ok(())
     }
 

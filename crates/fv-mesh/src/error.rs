@@ -46,7 +46,7 @@ pub enum FlowError {
     },
     /// The velocity is no longer finite.
     #[error(
-        "the velocity is not finite any more in step {step} (t = {time} s, dt = {dt} s, last Courant number {courant:.3}); take a smaller time step: the last good state is the last file written"
+        "the velocity is not finite any more in step {step} (t = {time} s, dt = {dt} s, last Courant number {courant:.3e}); take a smaller time step"
     )]
     Diverged {
         /// Step number.

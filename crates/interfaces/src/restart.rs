@@ -27,6 +27,8 @@ impl Checkpoint for () {
 pub enum RestartError {
     /// The saved state has no array of this name.
     Missing(String),
+    /// The state was saved with other values of these.
+    Differs(String),
     /// The saved array has another length.
     Length {
         /// Its name.
@@ -62,6 +64,9 @@ impl std::fmt::Display for RestartError {
         match self {
             Self::Missing(name) => {
                 write!(f, "the saved state has no `{name}`; it was written by another set-up")
+            }
+            Self::Differs(what) => {
+                write!(f, "the state was saved by another set-up ({what}); give the same ones")
             }
             Self::Length { name, expected, found } => {
                 write!(

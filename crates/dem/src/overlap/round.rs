@@ -13,7 +13,7 @@ struct Part {
 
 /// Circular segment: area ½r²(2α − sin 2α) with cos α = 1 − s/r.
 fn segment(r: f64, s: f64) -> Part {
-    let s = s.min(2.0 * r); // Round-off may go beyond.
+    let s = s.clamp(0.0, 2.0 * r); // Round-off may lead beyond.
     let half = (s * (2.0 * r - s)).sqrt();
     let twice = 4.0 * (s / (2.0 * r)).sqrt().min(1.0).asin();
     // 2α − sin 2α without cancellation.
@@ -31,7 +31,7 @@ fn segment(r: f64, s: f64) -> Part {
 
 /// Spherical cap: V = πs²(3r − s)/3, centroid at ¾(2r − s)²/(3r − s).
 fn cap(r: f64, s: f64) -> Part {
-    let s = s.min(2.0 * r); // Round-off may go beyond.
+    let s = s.clamp(0.0, 2.0 * r); // Round-off may lead beyond.
     Part {
         volume: PI * s * s * (3.0 * r - s) / 3.0,
         centroid: 0.75 * (2.0 * r - s).powi(2) / (3.0 * r - s),

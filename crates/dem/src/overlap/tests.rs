@@ -161,6 +161,26 @@ fn additive() {
     }
 }
 
+/// Where containment begins, round-off must not lead beyond the whole.
+fn nearly_contained(small: f64, rest: f64) {
+    let big = small + rest;
+    for (dim, ulps) in (0..200).map(|i| (2 + i % 2, i / 2)) {
+        let d = rest * (1.0 + ulps as f64 * f64::EPSILON) + f64::MIN_POSITIVE;
+        let whole = round(dim, small).inertia(1.0).volume;
+        for o in [pair(dim, small, big, d).unwrap(), pair(dim, big, small, d).unwrap()] {
+            assert_relative_eq!(o.volume, whole, max_relative = 1e-7);
+            assert!(o.volume <= whole * (1.0 + 1e-12));
+            assert!(0.0 <= o.area && o.area < 1e-4 * whole / small);
+        }
+    }
+}
+
+/// Where the larger one's part is a hair thinner than nothing.
+#[test]
+fn barely_contained_once_failed() {
+    nearly_contained(0.9890920930409446, 0.033680898211901476);
+}
+
 fn pairs() -> impl Strategy<Value = (usize, f64, f64, f64)> {
     // The distance as a share of what lies between containment and touching.
     (2..=3usize, 0.05..1.0f64, 0.05..1.0f64, 0.0..1.0f64)
@@ -169,6 +189,11 @@ fn pairs() -> impl Strategy<Value = (usize, f64, f64, f64)> {
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn barely_contained(small in 0.01..1.0f64, rest in 0.0..1.0f64) {
+        nearly_contained(small, rest);
+    }
 
     #[test]
     fn symmetric((dim, ra, rb, d) in pairs()) {

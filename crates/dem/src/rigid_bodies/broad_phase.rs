@@ -17,11 +17,13 @@ pub(super) struct BroadPhase {
     shadows: Vec<Shadow>,
 }
 
-/// A body's box on the axis of the sweep.
+/// A body's box and where it begins on the axis of the sweep; a copy, so that the sweep reads memory in a row.
 #[derive(Clone, Copy, Debug)]
 struct Shadow {
     low: f64,
-    width: f64,
+    reach: f64,
+    centre: Point,
+    movable: bool,
     body: usize,
 }
 
@@ -30,33 +32,28 @@ impl BroadPhase {
     /// ascending order, whatever happened before; pairs that nothing can move are left out.
     pub(super) fn sweep(&mut self, periods: &Periods, bodies: &[Body], near: &mut Vec<Pair>) {
         near.clear();
-        let n = bodies.len();
-        if self.shadows.len() != n {
+        if self.shadows.len() != bodies.len() {
             self.shadows.clear();
-            self.shadows.extend((0..n).map(|body| Shadow { low: 0.0, width: 0.0, body }));
+            let shadow = |body| Shadow { low: 0.0, reach: 0.0, centre: Point::origin(), movable: true, body };
+            self.shadows.extend((0..bodies.len()).map(shadow));
         }
         let axis = longest_axis(periods, bodies);
         let period = periods.along(axis);
         for s in &mut self.shadows {
-            let reach = bodies[s.body].reach();
-            s.low = bodies[s.body].listed.centre[axis] - reach;
+            let b = &bodies[s.body];
+            (s.reach, s.centre, s.movable) = (b.reach(), b.listed.centre, b.movable());
+            s.low = s.centre[axis] - s.reach;
             s.low -= period.map_or(0.0, |l| l * (s.low / l).floor());
-            s.width = 2.0 * reach;
         }
         self.shadows.sort_unstable_by(|p, q| p.low.total_cmp(&q.low).then(p.body.cmp(&q.body)));
         for (at, s) in self.shadows.iter().enumerate() {
-            // Those ahead, then, one period on, those behind.
-            let ahead = self.shadows[at + 1..].iter().map(|t| (t.body, t.low - s.low));
-            let behind = self.shadows[..at].iter().map(|t| (t.body, t.low + period.unwrap_or(0.0) - s.low));
-            let behind = behind.take(if period.is_some() { at } else { 0 });
-            for (other, gap) in ahead.chain(behind) {
-                if gap > s.width {
-                    break;
-                }
-                let pair = Pair(s.body.min(other), s.body.max(other));
-                if meet(periods, &bodies[pair.0], &bodies[pair.1]) {
-                    near.push(pair);
-                }
+            let end = s.low + 2.0 * s.reach;
+            let ahead = self.shadows[at + 1..].iter().take_while(|t| t.low <= end);
+            near.extend(ahead.filter(|t| s.meets(t, periods)).map(|t| s.pair(t)));
+            // One period on, those behind.
+            if let Some(l) = period.filter(|l| end >= *l) {
+                let behind = self.shadows[..at].iter().take_while(|t| t.low + l <= end);
+                near.extend(behind.filter(|t| s.meets(t, periods)).map(|t| s.pair(t)));
             }
         }
         near.sort_unstable();
@@ -65,10 +62,15 @@ impl BroadPhase {
     }
 }
 
-fn meet(periods: &Periods, a: &Body, b: &Body) -> bool {
-    let apart = periods.nearest(b.listed.centre - a.listed.centre);
-    let within = a.reach() + b.reach();
-    (a.movable() || b.movable()) && apart.iter().all(|x| x.abs() <= within)
+impl Shadow {
+    fn meets(&self, other: &Self, periods: &Periods) -> bool {
+        let apart = periods.nearest(other.centre - self.centre);
+        let within = self.reach + other.reach;
+        (self.movable || other.movable) && apart.iter().all(|x| x.abs() <= within)
+    }
+    fn pair(&self, other: &Self) -> Pair {
+        Pair(self.body.min(other.body), self.body.max(other.body))
+    }
 }
 
 fn longest_axis(periods: &Periods, bodies: &[Body]) -> usize {

@@ -10,12 +10,28 @@ use std::f64::consts::PI;
 const STEPS_PER_CONTACT: f64 = 33.0;
 /// Overlap, in radii of the smaller body, up to which that stiffness is foreseen.
 const FORESEEN_DEPTH: f64 = 0.05;
+/// Radii by which margins are widened when pairs have to be listed anew within an advance.
+const SKIN: f64 = 0.1;
 
 impl RigidBodies {
-    /// Lists the pairs whose boxes may meet within `dt`, if nothing but the loads moves the bodies.
-    pub(super) fn find_near(&mut self, dt: f64) {
+    /// The longest stable step, over all bodies.
+    pub(super) fn least_stable_dt(&self) -> f64 {
+        self.bodies.iter().map(|b| self.stable_dt_of(b)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The longest stable step for `b` against its own kind and against the walls.
+    pub(super) fn stable_dt_of(&self, b: &Body) -> f64 {
+        let own = b.half_period(&b.material, false, self.length_factor);
+        let walls = self.walls.iter().map(|(_, m)| b.half_period(m, true, self.length_factor));
+        walls.fold(own, f64::min) / STEPS_PER_CONTACT
+    }
+
+    /// Lists the pairs whose boxes may meet within `dt`, if nothing but the loads moves the bodies, or which are
+    /// not more than their `skin` (in radii) apart.
+    pub(super) fn find_near(&mut self, dt: f64, skin: f64) {
         for b in &mut self.bodies {
-            b.listed = Listed { centre: b.pose.position, margin: b.path(dt) };
+            let margin = b.path(dt) + skin * b.shape.bounding_radius();
+            b.listed = Listed { centre: b.pose.position, margin };
         }
         self.broad_phase.sweep(&self.periods, &self.bodies, &mut self.near);
         let n = self.bodies.len();
@@ -194,7 +210,7 @@ impl Dynamics for RigidBodies {
         for b in &mut self.bodies {
             (b.impulse, b.contact) = Default::default();
         }
-        self.find_near(dt);
+        self.find_near(dt, 0.0);
         // Without near pairs there is nothing but loads, constant over the step.
         let alone = self.near.is_empty();
         let steps = if alone { 1.0 } else { (dt / self.stable_dt()).ceil().max(1.0) };
@@ -206,7 +222,7 @@ impl Dynamics for RigidBodies {
             } else {
                 // A body that was hit may meet others than it was on its way to.
                 if self.bodies.iter().any(Body::strayed) {
-                    self.find_near(dt - step as f64 * sub);
+                    self.find_near(dt - step as f64 * sub, SKIN);
                 }
                 self.contacts(sub)?;
                 self.contact_time += if self.springs.is_empty() { 0.0 } else { sub };
@@ -236,11 +252,6 @@ impl Dynamics for RigidBodies {
     /// A fixed part of the half period π√(M/k) of the stiffest contact foreseen: every body against its own kind
     /// and against the walls, overlapping by a twentieth of its radius, k = Y A/L_c.
     fn stable_dt(&self) -> f64 {
-        let contacts = self.bodies.iter().flat_map(|b| {
-            let own = b.half_period(&b.material, false, self.length_factor);
-            let walls = self.walls.iter().map(move |(_, m)| b.half_period(m, true, self.length_factor));
-            std::iter::once(own).chain(walls)
-        });
-        contacts.fold(f64::INFINITY, f64::min) / STEPS_PER_CONTACT
+        self.stable_dt
     }
 }

@@ -141,18 +141,24 @@ fn restitution_of_the_dashpot() {
 #[test]
 fn restitution_at_immovable_partners() {
     let (beta, e) = (0.5, 0.64319);
-    // A fixed sphere.
+    // A fixed sphere, with the lower or the higher number.
     let motion = Motion::new(mass(), 0.5 * R, 2.0 * R);
     let speed = motion.speed(1e-3 * R);
     let material = motion.damping(beta, speed);
-    let mut bodies =
-        scene(sphere(), material, &[([-2.001 * R, 0.0, 0.0], moving([speed, 0.0, 0.0], [0.0; 3]))]);
-    bodies.add(sphere(), material, Pose::at([0.0; 3]), Twist::default(), Freedom::NONE).unwrap();
-    let dt = bodies.stable_dt();
-    collide(&mut bodies, dt);
-    assert_relative_eq!(bodies.twist(BodyId(0)).linear.x, -e * speed, max_relative = 1e-3);
-    assert_eq!((bodies.pose(BodyId(1)), bodies.moves(BodyId(1))), (Pose::at([0.0; 3]), 0));
-    assert_eq!(bodies.twist(BodyId(1)), Twist::default());
+    for fixed in [BodyId(0), BodyId(1)] {
+        let mut bodies = RigidBodies::new(Periods::default());
+        for b in [BodyId(0), BodyId(1)] {
+            let (x, u, freedom) =
+                if b == fixed { (0.0, 0.0, Freedom::NONE) } else { (-2.001 * R, speed, Freedom::FREE) };
+            let twist = moving([u, 0.0, 0.0], [0.0; 3]);
+            bodies.add(sphere(), material, Pose::at([x, 0.0, 0.0]), twist, freedom).unwrap();
+        }
+        let dt = bodies.stable_dt();
+        collide(&mut bodies, dt);
+        assert_relative_eq!(bodies.twist(BodyId(1 - fixed.0)).linear.x, -e * speed, max_relative = 1e-3);
+        assert_eq!((bodies.pose(fixed), bodies.moves(fixed)), (Pose::at([0.0; 3]), 0));
+        assert_eq!(bodies.twist(fixed), Twist::default());
+    }
 
     // A wall.
     let motion = Motion::new(mass(), R, 4.0 * R);

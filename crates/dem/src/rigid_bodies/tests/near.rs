@@ -19,6 +19,20 @@ fn no_overlap_call_while_boxes_are_apart() {
     assert!(bodies.overlap_calls() as f64 <= (1e-3 / bodies.stable_dt()).ceil());
 }
 
+/// Within each other's reach, but on their way apart: sub-steps, no overlaps.
+#[test]
+fn no_overlap_call_for_those_that_part() {
+    let mut bodies = head_on(disc(), Material::default(), 0.5 * R, -0.1);
+    // They slide along a wall that is 0.05 R away.
+    bodies
+        .add_wall(HalfSpace::new(Point::new(0.0, -1.05 * R, 0.0), Vector::y()).unwrap(), elastic())
+        .unwrap();
+    bodies.find_near(0.1, 0.0);
+    assert_eq!(bodies.near.len(), 3);
+    bodies.advance(0.1).unwrap();
+    assert_eq!((bodies.overlap_calls(), bodies.n_contacts()), (0, 0));
+}
+
 /// A body that is hit within a long step meets others that it was not on its way to.
 #[test]
 fn a_hit_is_passed_on_within_one_advance() {
@@ -95,7 +109,7 @@ proptest! {
             bodies.add(ball, elastic(), Pose::at(place), moving(u, [0.0; 3]), freedom).unwrap();
         }
         for _ in 0..2 {
-            bodies.find_near(dt);
+            bodies.find_near(dt, 0.05);
             let mut expected = Vec::new();
             for (i, a) in bodies.bodies.iter().enumerate() {
                 for (j, b) in bodies.bodies.iter().enumerate().skip(i + 1) {

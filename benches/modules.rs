@@ -71,7 +71,7 @@ fn main() -> Outcome<()> {
         println!("{:>9}{:>9}{:>9}", "output", "sum", "plain");
         for cells in [10, 15, 30] {
             let smooth = Scene { cells_per_diameter: cells, ..Scene::default() };
-            let paper = Scene { virtual_mass: 1.0, ..smooth.clone() };
+            let paper = Scene { virtual_mass: Some(1.0), ..smooth.clone() };
             let rows = [
                 ("smooth", coupled(&smooth, || SmoothForcing::new(FLUID.density))?),
                 ("hfdib", coupled(&paper, || Hfdib::new(FLUID.density))?),

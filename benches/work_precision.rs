@@ -58,7 +58,7 @@ fn main() -> Outcome<()> {
             "cells", "forcing", "at 0.005 s", "at 0.03 s", "CPU s to 0.03 s"
         );
         for cells in [10, 15, 20, 30, 60] {
-            let paper = Scene { virtual_mass: 1.0, ..at(cells) };
+            let paper = Scene { virtual_mass: Some(1.0), ..at(cells) };
             let times = [0.005, 0.03];
             let rows = [
                 ("smooth", run(&at(cells), &times, None, smooth())?),

@@ -15,7 +15,7 @@ pub(crate) struct Cli {
     /// Snapshots, evenly spaced from 0 to the end, both included.
     #[arg(long, default_value_t = 601)]
     pub(crate) snapshots: usize,
-    /// How many discs: 1, 2 or more (further ones stand in rows above).
+    /// How many discs: 1, 2 or more (further ones stand in rows below).
     #[arg(long, default_value_t = 2)]
     pub(crate) bodies: usize,
     /// Densities of the discs [kg/m³], separated by commas, repeated as needed.

@@ -73,7 +73,7 @@ fn run(cli: &Cli) -> Result<Ending, Box<dyn Error>> {
             BalanceChoice::None => WeightBalance::None,
         },
         // The paper's forcing lets the bodies' added mass act through the pressure, a step late.
-        virtual_mass: if cli.forcing == ForcingChoice::Hfdib { 1.0 } else { 0.0 },
+        virtual_mass: (cli.forcing == ForcingChoice::Hfdib).then_some(1.0),
         ..Scene::default()
     };
     let schedule = Schedule {

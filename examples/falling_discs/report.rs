@@ -124,6 +124,19 @@ impl<F: Forcing> Outcome<'_, F> {
             .map(|m| (m.name().to_owned(), json!(timings.seconds(m))))
             .chain([("output".to_owned(), json!(self.output_seconds))])
             .collect();
+        let ledger = json!({
+            "divergence_dt": l.divergence,
+            "momentum_residual_step": l.momentum_step,
+            "momentum_residual_total": l.momentum_total,
+            "impulses": l.impulses,
+            "momentum_in_transit": l.in_transit,
+            "volume_flow": l.volume_flow.as_slice(),
+            "kinetic_energy": l.energy,
+            "work": l.work,
+            "contact_work": l.contact_work,
+            "dissipation": l.dissipation,
+            "energy_residual": l.energy_residual,
+        });
         let result = json!({
             "version": env!("CARGO_PKG_VERSION"),
             "cells": cells,
@@ -155,19 +168,7 @@ impl<F: Forcing> Outcome<'_, F> {
             "body_force": h.body_force,
             "net_weight_over_mass_of_box": nominal.norm() / (FLUID.density * volume),
             "largest_mean_flow_over_speed": h.mean_flow,
-            "ledger": {
-                "divergence_dt": l.divergence,
-                "momentum_residual_step": l.momentum_step,
-                "momentum_residual_total": l.momentum_total,
-                "impulses": l.impulses,
-                "momentum_in_transit": l.in_transit,
-                "volume_flow": l.volume_flow.as_slice(),
-                "kinetic_energy": l.energy,
-                "work": l.work,
-                "contact_work": l.contact_work,
-                "dissipation": l.dissipation,
-                "energy_residual": l.energy_residual,
-            },
+            "ledger": ledger,
         });
         let path = self.out.join("result.json");
         write_json(&path, &result)

@@ -34,8 +34,8 @@ pub(crate) struct Scene {
     pub(crate) floor: bool,
     pub(crate) balance: WeightBalance,
     pub(crate) freedom: Freedom,
-    /// Virtual mass of the coupling in displaced masses.
-    pub(crate) virtual_mass: f64,
+    /// Virtual mass of the coupling in displaced masses, if not the coupling's own choice.
+    pub(crate) virtual_mass: Option<f64>,
     /// Moves everything by this much \[m\] against the grid.
     pub(crate) shift: [f64; 2],
 }
@@ -50,7 +50,7 @@ impl Default for Scene {
             floor: false,
             balance: WeightBalance::NetWeight,
             freedom: Freedom::PLANAR,
-            virtual_mass: 0.0,
+            virtual_mass: None,
             shift: [0.0; 2],
         }
     }
@@ -151,8 +151,10 @@ impl Scene {
     ) -> Result<Simulation<2, Particles<F, RigidBodies>>, SceneError> {
         let flow = self.flow()?;
         let gravity = Vector::new(0.0, -GRAVITY, 0.0);
-        let particles = Particles::new(self.discs()?, forcing, FLUID.density, gravity)
-            .with_virtual_mass(self.virtual_mass);
+        let mut particles = Particles::new(self.discs()?, forcing, FLUID.density, gravity);
+        if let Some(factor) = self.virtual_mass {
+            particles = particles.with_virtual_mass(factor);
+        }
         let balance = if self.floor { WeightBalance::None } else { self.balance };
         Ok(Simulation::new(flow, particles, balance)?)
     }

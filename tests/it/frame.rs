@@ -28,7 +28,7 @@ fn a_warmed_up_step_allocates_nothing() {
     let scene = Scene { cells_per_diameter: 8, ..Scene::default() };
     assert_eq!(allocations(&scene, SmoothForcing::new(FLUID.density), 1), 0);
     assert_eq!(allocations(&scene, SmoothForcing::new(FLUID.density), 2), 0);
-    let paper = Scene { virtual_mass: 1.0, ..scene.clone() };
+    let paper = Scene { virtual_mass: Some(1.0), ..scene.clone() };
     assert_eq!(allocations(&paper, Hfdib::new(FLUID.density), 1), 0);
     let floor = Scene { floor: true, ..scene };
     assert_eq!(allocations(&floor, SmoothForcing::new(FLUID.density), 1), 0);

@@ -83,7 +83,7 @@ fn books_are_kept() {
     let coarse = Scene { cells_per_diameter: 10, ..Scene::default() };
     let floor = Scene { floor: true, ..coarse.clone() };
     let landing = Scene { bodies: 1, densities: vec![8000.0], shift: [0.0, -15.4e-3], ..floor.clone() };
-    let paper = Scene { virtual_mass: 1.0, ..coarse.clone() };
+    let paper = Scene { virtual_mass: Some(1.0), ..coarse.clone() };
     let reports = [
         // What the forcing itself takes from the kinetic energy, as a share of the work: nothing else
         // is unaccounted for. The paper's sets velocities that the pressure then has to correct.
@@ -130,7 +130,7 @@ fn other_schedules_and_very_short_steps_do_no_harm() {
 /// With the parabola extrapolated into the body this run diverges.
 #[test]
 fn the_papers_forcing_is_stable_at_small_steps() {
-    let scene = Scene { cells_per_diameter: 10, virtual_mass: 1.0, ..Scene::default() };
+    let scene = Scene { cells_per_diameter: 10, virtual_mass: Some(1.0), ..Scene::default() };
     let (speeds, report) = run(&scene, 0.15, Some(5e-5), Hfdib::new(FLUID.density));
     let (reference, _) = run(&scene, 0.15, None, smooth());
     for (a, b) in speeds.iter().zip(&reference) {
@@ -200,4 +200,95 @@ fn a_disc_lands_and_stays() {
         assert!(twist.linear.y.abs() < 1e-4, "{}", twist.linear);
         assert!(bodies.contact_time() > 0.1);
     });
+}
+
+/// A neutrally buoyant disc that moves with a uniform flow goes on with it: the fluid inside was there before.
+#[test]
+fn a_start_in_motion_kicks_nobody() {
+    use siltflow::interfaces::{Dynamics, Twist, Vector};
+    let scene = Scene { cells_per_diameter: 10, bodies: 1, densities: vec![1000.0], ..Scene::default() };
+    let mut simulation = scene.build(smooth()).unwrap();
+    simulation.flow.set_velocity(|_| [0.01, 0.0]);
+    let moving = Twist { linear: Vector::new(0.01, 0.0, 0.0), ..Twist::default() };
+    simulation.particles.bodies.set_twist(BodyId(0), moving);
+    for _ in 0..50 {
+        simulation.step(2e-4).unwrap();
+    }
+    let found = simulation.particles.bodies.twist(BodyId(0)).linear;
+    // Up to what Σλ h² varies by as the disc moves through the grid.
+    assert!((found - moving.linear).norm() < 1e-6, "{found}");
+}
+
+/// Bodies that are held do not fall, so nothing has to balance their weight; what holds them is in the books.
+#[test]
+fn held_bodies_weigh_nothing_on_the_box() {
+    use siltflow::interfaces::Freedom;
+    let scene = Scene { cells_per_diameter: 8, freedom: Freedom::NONE, ..Scene::default() };
+    let (_, still) = run(&scene, 0.02, None, smooth());
+    assert!(still.volume_flow.norm() < 1e-18, "{}", still.volume_flow);
+    let mut simulation = scene.build(smooth()).unwrap();
+    simulation.flow.set_velocity(|_| [0.0, 0.01]);
+    let mut ledger = Ledger::new();
+    let schedule = Schedule { end: 0.02, intervals: 2, ..Schedule::default() };
+    coupling::run(&mut simulation, &schedule, &mut ledger, &AtomicBool::new(false)).unwrap();
+    assert!(ledger.report().momentum_step < 1e-10, "{:e}", ledger.report().momentum_step);
+    let slowed = simulation.flow.statistics().volume_flow.y / (10e-3 * 20e-3);
+    assert!((0.005..0.00999).contains(&slowed), "{slowed}");
+}
+
+/// Light discs rise without being told a virtual mass.
+#[test]
+fn light_discs_are_stable() {
+    for density in [1.0, 100.0, 500.0] {
+        let scene = Scene { cells_per_diameter: 10, bodies: 1, densities: vec![density], ..Scene::default() };
+        let (speeds, report) = run(&scene, 0.02, None, smooth());
+        // Started by buoyancy against the added mass: a ≈ (ρ − ρ_s) g/(ρ_s + ρ) less viscosity.
+        let inviscid = -(1000.0 - density) / (1000.0 + density) * 9.81 * 0.02;
+        assert!((0.2..1.0).contains(&(speeds[0] / inviscid)), "{density}: {speeds:?}, {inviscid}");
+        assert!(report.momentum_step < 1e-10);
+    }
+}
+
+/// A forcing made for another fluid is refused, as is a body that leaves through a wall.
+#[test]
+fn what_does_not_fit_is_refused() {
+    use coupling::CouplingError;
+    let scene = Scene { cells_per_diameter: 8, ..Scene::default() };
+    let error = scene.build(SmoothForcing::new(1.0)).err().unwrap();
+    assert!(error.to_string().contains("1000"), "{error}");
+    use siltflow::interfaces::{Dynamics, Twist, Vector};
+    let floor = Scene { floor: true, bodies: 1, densities: vec![1e5], shift: [0.0, -14e-3], ..scene };
+    let mut simulation = floor.build(smooth()).unwrap();
+    let fast = Twist { linear: Vector::new(0.0, -40.0, 0.0), ..Twist::default() };
+    simulation.particles.bodies.set_twist(BodyId(0), fast);
+    let error = (0..100).find_map(|_| simulation.step(2e-4).err()).unwrap();
+    assert!(
+        matches!(error, CouplingError::Outside { axis: 1, .. } | CouplingError::Dynamics { .. }),
+        "{error}"
+    );
+}
+
+/// A step that is taken back and made again, shorter, sees the bodies where they were.
+#[test]
+fn a_rejected_step_leaves_no_trace() {
+    use siltflow::interfaces::Checkpoint;
+    use std::collections::HashMap;
+    let scene = Scene { cells_per_diameter: 8, ..Scene::default() };
+    let mut simulation = scene.build(smooth()).unwrap();
+    for _ in 0..5 {
+        simulation.step(2e-4).unwrap();
+    }
+    let mut saved = HashMap::new();
+    simulation.save(&mut |name, values| {
+        saved.insert(name.to_owned(), values.to_vec());
+    });
+    simulation.step(2e-4).unwrap();
+    simulation.restore(&|name| saved.get(name).map(Vec::as_slice)).unwrap();
+    simulation.step(5e-5).unwrap();
+    let mut fresh = scene.build(smooth()).unwrap();
+    fresh.restore(&|name| saved.get(name).map(Vec::as_slice)).unwrap();
+    fresh.step(5e-5).unwrap();
+    let twist = |b| (simulation.particles.bodies.twist(BodyId(b)), fresh.particles.bodies.twist(BodyId(b)));
+    assert_eq!(twist(0).0, twist(0).1);
+    assert_eq!(twist(1).0, twist(1).1);
 }

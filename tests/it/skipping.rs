@@ -19,7 +19,7 @@ fn a_static_body_is_projected_once() {
     for _ in 0..10 {
         moving.step(1e-4).unwrap();
     }
-    // The first step finds them where they started: they set off in the course of it.
+    // The first step, without loads yet, leaves them where they start.
     assert_eq!(moving.particles.forcing.updates(), 4 * 10);
 }
 

@@ -1,5 +1,5 @@
 //! The books of momentum and energy.
-use crate::{CouplingError, Immersed, Observer, Particles, Simulation, StepInfo};
+use crate::{CouplingError, Observer, Particles, Simulation, StepInfo};
 use ibm::Forcing;
 use interfaces::{BodyId, Dynamics, Twist, Vector};
 
@@ -8,7 +8,7 @@ use interfaces::{BodyId, Dynamics, Twist, Vector};
 ///
 /// Momentum: P = ρ∫_Ω u dV − ΣI + Σ(mU + δ), with I the fluid inside a body and δ what is on its
 /// way between the two (see [`Particles`]). Impulses: net weight, body force, contacts with walls,
-/// and what the box's own walls do to the fluid. Energy: E = ½ρ∫_Ω u² + Σ½(1 − ρ/ρ_s)(mU² + ΩIΩ)
+/// what holds bodies that are not free, and what the box's own walls do to the fluid. Energy: E = ½ρ∫_Ω u² + Σ½(1 − ρ/ρ_s)(mU² + ΩIΩ)
 /// against the work of net weight, body force and contacts less the viscous dissipation ρν∫|∇u|²
 /// (trapezoidal in time).
 #[derive(Clone, Debug, Default)]
@@ -99,7 +99,7 @@ impl Ledger {
 impl<const D: usize, F: Forcing, B: Dynamics> Observer<Simulation<D, Particles<F, B>>> for Ledger {
     fn begin(&mut self, simulation: &mut Simulation<D, Particles<F, B>>) {
         let (books, report) = Self::balance(simulation);
-        self.report = LedgerReport { energy: [books.energy; 2], ..report };
+        self.report = LedgerReport { energy: [books.energy; 2], divergence: 0.0, ..report };
         self.last = Some(books);
         let bodies = &simulation.particles.bodies;
         self.twists = (0..bodies.n_bodies()).map(|b| bodies.twist(BodyId(b))).collect();
@@ -114,28 +114,32 @@ impl<const D: usize, F: Forcing, B: Dynamics> Observer<Simulation<D, Particles<F
         let Some(last) = self.last.replace(books) else { return Ok(()) };
         let dt = info.dt;
         let (flow, particles) = (&simulation.flow, &simulation.particles);
-        let weight = dt * Immersed::<D>::net_weight(particles);
         let body_force = dt * flow.fluid().density * flow.grid().volume() * simulation.body_force();
         let walls = flow.wall_impulse();
         self.twists.resize(particles.bodies.n_bodies(), Twist::default());
-        let (mut contacts, mut contact_work, mut sum) = (Vector::zeros(), 0.0, 0.0);
+        let (mut contacts, mut weight, mut held) = (Vector::zeros(), Vector::zeros(), Vector::zeros());
+        let (mut contact_work, mut sum) = (0.0, 0.0);
         for b in (0..particles.bodies.n_bodies()).map(BodyId) {
             let (impulse, twist) = (particles.bodies.contact_impulse(b), particles.bodies.twist(b));
             contacts += impulse.force;
+            weight += dt * particles.weight(b);
+            held += particles.constraint_impulse(b).force;
             // What an impulse does to the kinetic energy: its product with the mean velocity.
             let before = std::mem::replace(&mut self.twists[b.0], twist);
             contact_work += 0.5 * impulse.force.dot(&(before.linear + twist.linear));
             contact_work += 0.5 * impulse.torque.dot(&(before.angular + twist.angular));
             sum += impulse.force.norm();
         }
-        let impulse = weight + body_force + contacts + walls;
-        sum += weight.norm() + body_force.norm() + walls.norm();
+        let impulse = weight + body_force + contacts + walls + held;
+        sum += weight.norm() + body_force.norm() + walls.norm() + held.norm();
         let residual = books.momentum - last.momentum - impulse;
 
         let r = &mut self.report;
         r.residual += residual;
         r.impulses += sum;
-        r.momentum_step = r.momentum_step.max(residual.norm() / sum.max(f64::MIN_POSITIVE));
+        if sum > 0.0 {
+            r.momentum_step = r.momentum_step.max(residual.norm() / sum);
+        }
         r.momentum_total = r.residual.norm() / r.impulses.max(f64::MIN_POSITIVE);
         r.divergence = r.divergence.max(now.divergence * dt);
         (r.in_transit, r.volume_flow) = (now.in_transit, now.volume_flow);

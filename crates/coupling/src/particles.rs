@@ -14,8 +14,8 @@ use nalgebra::{Matrix6, Vector6};
 /// (M_s + C + M_l) vⁿ⁺¹ = M_s vⁿ + C vⁿ + b_l + I(u*) − Iⁿ + δⁿ + dt [(ρ_s − ρ) V g + C ā] + J_contact
 /// ```
 ///
-/// I is the momentum of the fluid inside, C a virtual mass that is given back through the filtered
-/// acceleration ā, and δⁿ the impulse by which the last prediction missed the true one,
+/// I is the momentum of the fluid inside, C a virtual mass that is given back through the
+/// last acceleration ā, and δⁿ the impulse by which the last prediction missed the true one,
 /// J = −ρ∫f_ib dV dt + Iⁿ⁺¹ − Iⁿ. So every impulse the fluid loses reaches a body, at the latest a
 /// step later, and the load includes the inertia of the fluid inside.
 pub struct Particles<F, B> {
@@ -25,9 +25,11 @@ pub struct Particles<F, B> {
     pub forcing: F,
     gravity: Vector,
     density: f64,
-    virtual_mass: f64,
+    virtual_mass: Option<f64>,
     states: Vec<State>,
     last_dt: f64,
+    /// So many bodies have been put into the flow.
+    started: usize,
     /// Momentum (later: foreseen impulse) and velocity of every body before the step.
     scratch: Vec<(Vector6<f64>, Vector6<f64>)>,
 }
@@ -49,6 +51,8 @@ struct State {
     added: [f64; 2],
     /// Impulse of the fluid over the last step, divided by its length.
     hydrodynamic: Vector6<f64>,
+    /// Impulse of what holds the components that are not free, over the last step.
+    constraint: Vector6<f64>,
 }
 
 /// What the flow does to a body.
@@ -76,16 +80,18 @@ impl<F: Forcing, B: Dynamics> Particles<F, B> {
             forcing,
             gravity,
             density,
-            virtual_mass: 0.0,
+            virtual_mass: None,
+            started: 0,
             states,
             last_dt: 0.0,
             scratch: Vec::new(),
         }
     }
-    /// The virtual mass C as a multiple of the displaced fluid's; light bodies need it.
+    /// The virtual mass C as a multiple of the displaced fluid's. Unless told, 0.3 for bodies lighter
+    /// than 0.7 of the fluid, which are unstable without, and none for others.
     #[must_use]
     pub fn with_virtual_mass(mut self, factor: f64) -> Self {
-        self.virtual_mass = factor;
+        self.virtual_mass = Some(factor);
         self
     }
 
@@ -117,6 +123,21 @@ impl<F: Forcing, B: Dynamics> Particles<F, B> {
         self.bodies.advance(dt).map_err(|e| CouplingError::Dynamics { time, source: Box::new(e) })
     }
 
+    /// No body's centre may leave through a bounded side.
+    fn check_inside<const D: usize>(&self, flow: &Projection<D>) -> Result<(), CouplingError> {
+        let grid = flow.grid();
+        for axis in (0..D).filter(|&a| !flow.sides().periodic(a)) {
+            let box_ = [grid.origin()[axis], grid.origin()[axis] + grid.lengths()[axis]];
+            for body in (0..self.bodies.n_bodies()).map(BodyId) {
+                let centre = self.bodies.pose(body).position[axis];
+                if !(box_[0]..=box_[1]).contains(&centre) {
+                    return Err(CouplingError::Outside { body, axis, centre, box_ });
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Gives body `b` its velocity at the end of the step; answers the impulse J_pred it foresees.
     fn solve(
         &mut self,
@@ -131,7 +152,9 @@ impl<F: Forcing, B: Dynamics> Particles<F, B> {
         let layer = self.forcing.layer(velocity, b);
         let internal = six(self.forcing.internal_momentum(velocity, b));
         let mass = self.mass_matrix(b);
-        let virtual_mass = mass * (self.virtual_mass * displaced / inertia.mass);
+        let light = inertia.mass < 0.7 * displaced;
+        let factor = self.virtual_mass.unwrap_or(if light { 0.3 } else { 0.0 });
+        let virtual_mass = mass * (factor * displaced / inertia.mass);
         let weight =
             six(Wrench { force: self.gravity * (inertia.mass - displaced), torque: Vector::zeros() });
         let contact = six(self.bodies.contact_impulse(b));
@@ -167,13 +190,16 @@ impl<F: Forcing, B: Dynamics> Particles<F, B> {
         ];
         let added = Vector6::from_fn(|i, _| s.added[i / 3]);
         s.load = (mass * free - momentum + added.component_mul(&change)) / dt;
-        s.held -= virtual_mass * (dt * s.acceleration - (after - before));
+        let given_back = virtual_mass * (dt * s.acceleration - (after - before));
+        s.held -= given_back;
+        let foreseen = layer.momentum - layer.mass * after + (internal - s.internal);
+        s.constraint = mass * after - momentum - foreseen - s.deferred - dt * weight - contact - given_back;
         s.acceleration = (after - before) / dt;
         self.bodies.set_twist(
             b,
             Twist { linear: after.fixed_rows::<3>(0).into(), angular: after.fixed_rows::<3>(3).into() },
         );
-        Some(layer.momentum - layer.mass * after + (internal - s.internal))
+        Some(foreseen)
     }
 
     /// Fluid and contact loads of the last step on body `b`.
@@ -192,13 +218,18 @@ impl<F: Forcing, B: Dynamics> Particles<F, B> {
         let s = &self.states[b.0];
         wrench(s.deferred + s.held)
     }
+    /// Impulse over the last step of what holds body `b` where it is not free \[N s, N m s\].
+    pub fn constraint_impulse(&self, b: BodyId) -> Wrench {
+        wrench(self.states[b.0].constraint)
+    }
+    /// (ρ_s − ρ) V g of body `b` \[N\].
+    pub fn weight(&self, b: BodyId) -> Vector {
+        let i = self.bodies.inertia(b);
+        self.gravity * (i.mass - self.density * i.volume)
+    }
     /// Gravity \[m/s²\].
     pub fn gravity(&self) -> Vector {
         self.gravity
-    }
-    /// Density of the fluid \[kg/m³\].
-    pub fn fluid_density(&self) -> f64 {
-        self.density
     }
 }
 
@@ -210,8 +241,7 @@ impl<const D: usize, F: Forcing, B: Dynamics> Immersed<D> for Particles<F, B> {
         timings: &mut Timings,
     ) -> Result<(), CouplingError> {
         let time = flow.time();
-        let n = self.bodies.n_bodies();
-        self.states.resize(n, State::default());
+        let n = self.states.len();
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.clear();
         scratch.extend((0..n).map(|b| {
@@ -220,6 +250,7 @@ impl<const D: usize, F: Forcing, B: Dynamics> Immersed<D> for Particles<F, B> {
         }));
 
         timings.measure(Module::Contact, || self.advance(dt, time))?;
+        self.check_inside(flow)?;
         timings.measure(Module::SolidFraction, || self.forcing.place(flow.velocity(), &self.bodies))?;
         timings.measure(Module::Forcing, || {
             for (b, (momentum, before)) in scratch.iter_mut().enumerate() {
@@ -249,10 +280,26 @@ impl<const D: usize, F: Forcing, B: Dynamics> Immersed<D> for Particles<F, B> {
         Ok(())
     }
 
+    fn begin(&mut self, flow: &Projection<D>) -> Result<(), CouplingError> {
+        let n = self.bodies.n_bodies();
+        if self.started == n {
+            return Ok(());
+        }
+        self.states.resize(n, State::default());
+        self.forcing.place(flow.velocity(), &self.bodies)?;
+        for (b, s) in self.states.iter_mut().enumerate().skip(self.started) {
+            s.internal = six(self.forcing.internal_momentum(flow.velocity(), BodyId(b)));
+        }
+        self.started = n;
+        Ok(())
+    }
+
     fn check(&self, flow: &Projection<D>) -> Result<(), CouplingError> {
         let (density, grid) = (flow.fluid().density, flow.grid());
-        if density != self.density {
-            return Err(CouplingError::Density { flow: density, particles: self.density });
+        for told in [self.density, self.forcing.density()] {
+            if density != told {
+                return Err(CouplingError::Density { flow: density, particles: told });
+            }
         }
         for body in (0..self.bodies.n_bodies()).map(BodyId) {
             let bounds = self.bodies.aabb(body);
@@ -261,23 +308,18 @@ impl<const D: usize, F: Forcing, B: Dynamics> Immersed<D> for Particles<F, B> {
                 if size >= length {
                     return Err(CouplingError::TooLarge { body, axis, size, length });
                 }
-                let low = grid.origin()[axis];
-                let centre = self.bodies.pose(body).position[axis];
-                if !flow.sides().periodic(axis) && !(low..=low + length).contains(&centre) {
-                    return Err(CouplingError::Outside { body, axis, centre, box_: [low, low + length] });
-                }
             }
         }
-        Ok(())
+        self.check_inside(flow)
     }
 
     fn net_weight(&self) -> Vector {
-        (0..self.states.len())
-            .map(|b| {
-                let i = self.bodies.inertia(BodyId(b));
-                self.gravity * (i.mass - self.density * i.volume)
-            })
-            .sum()
+        let falling = |b| {
+            let may = self.bodies.freedom(b).linear;
+            let weight = self.weight(b);
+            Vector::from_fn(|i, _| if may[i] { weight[i] } else { 0.0 })
+        };
+        (0..self.bodies.n_bodies()).map(|b| falling(BodyId(b))).sum()
     }
 }
 
@@ -286,7 +328,7 @@ impl<F: Forcing, B: Dynamics> Checkpoint for Particles<F, B> {
         self.bodies.save(&mut |name, values| sink(&format!("bodies.{name}"), values));
         let mut values = Vec::with_capacity(self.states.len() * STATE);
         for s in &self.states {
-            for v in [s.internal, s.deferred, s.held, s.acceleration, s.load, s.hydrodynamic] {
+            for v in [s.internal, s.deferred, s.held, s.acceleration, s.load, s.hydrodynamic, s.constraint] {
                 values.extend_from_slice(v.as_slice());
             }
             values.extend_from_slice(&s.added);
@@ -299,6 +341,7 @@ impl<F: Forcing, B: Dynamics> Checkpoint for Particles<F, B> {
         self.last_dt = RestartError::take(source, "last_dt", 1)?[0];
         let values = RestartError::take(source, "coupling", self.bodies.n_bodies() * STATE)?;
         self.states.clear();
+        self.started = self.bodies.n_bodies();
         for v in values.chunks_exact(STATE) {
             let six = |i: usize| Vector6::from_column_slice(&v[6 * i..6 * i + 6]);
             self.states.push(State {
@@ -308,7 +351,8 @@ impl<F: Forcing, B: Dynamics> Checkpoint for Particles<F, B> {
                 acceleration: six(3),
                 load: six(4),
                 hydrodynamic: six(5),
-                added: [v[36], v[37]],
+                constraint: six(6),
+                added: [v[42], v[43]],
             });
         }
         Ok(())
@@ -319,4 +363,4 @@ impl<F: Forcing, B: Dynamics> Checkpoint for Particles<F, B> {
 const LONGEST_GROWTH: f64 = 10.0;
 
 /// Saved numbers per body.
-const STATE: usize = 6 * 6 + 2;
+const STATE: usize = 7 * 6 + 2;

@@ -174,7 +174,8 @@ pub struct RunSummary {
 /// (`pool.install(|| run(…))`): then steps do not allocate.
 ///
 /// # Errors
-/// The first error of a step or an observer; the simulation is left at the last step.
+/// The first error of a step or an observer. After an error within a step the simulation is between
+/// two steps: go on from a saved state.
 pub fn run<const D: usize, P: Immersed<D>>(
     simulation: &mut Simulation<D, P>,
     schedule: &Schedule,
@@ -191,7 +192,8 @@ pub fn run<const D: usize, P: Immersed<D>>(
     };
     // Ends of intervals that are behind, up to round-off: other schedules cut time otherwise.
     let behind = info.time + ROUND_OFF * schedule.end / schedule.intervals as f64;
-    let mut index = (0..=schedule.intervals).take_while(|&i| schedule.time(i) <= behind).count() - 1;
+    let mut index = (0..=schedule.intervals).take_while(|&i| schedule.time(i) <= behind).count().max(1) - 1;
+    simulation.particles.begin(&simulation.flow)?;
     observer.begin(simulation);
     if info.step == 0 {
         observer.snapshot(simulation, 0, &info)?;

@@ -26,7 +26,15 @@ pub trait Immersed<const D: usize>: Checkpoint {
         Ok(())
     }
 
-    /// Σ (ρ_s − ρ_f) V g \[N\], what gravity pulls beyond buoyancy.
+    /// Before the predictor of every step; the first time, what has to be known of the flow at the start.
+    ///
+    /// # Errors
+    /// [`CouplingError`] when this cannot be put on the flow's grid.
+    fn begin(&mut self, _flow: &Projection<D>) -> Result<(), CouplingError> {
+        Ok(())
+    }
+
+    /// Σ (ρ_s − ρ_f) V g \[N\], what gravity pulls beyond buoyancy on what is free to fall.
     fn net_weight(&self) -> Vector {
         Vector::zeros()
     }
@@ -137,6 +145,7 @@ impl<const D: usize, P: Immersed<D>> Simulation<D, P> {
     /// [`CouplingError`] when flow or bodies cannot go on.
     pub fn step(&mut self, dt: f64) -> Result<(), CouplingError> {
         let Self { flow, particles, timings, .. } = self;
+        particles.begin(flow)?;
         self.force = match self.balance {
             WeightBalance::None => Vector::zeros(),
             WeightBalance::NetWeight => {

@@ -67,9 +67,8 @@ impl<const D: usize> Sides<D> {
                     u[o - s] = u[o + (n - 1) * s];
                     u[o + n * s] = u[o];
                 }
-                [lower, upper] if a == c => {
-                    // Faces on the boundary; nothing flows through.
-                    let _ = (lower, upper);
+                // Faces on the boundary; nothing flows through.
+                _ if a == c => {
                     u[o] = 0.0;
                     u[o - s] = -u[o + s];
                     u[o + n * s] = 0.0;

@@ -102,6 +102,7 @@ impl<const D: usize> CartesianGrid<D> {
     pub fn lattice(&self, face: Option<usize>, sides: &Sides<D>) -> Lattice {
         let (h, stride) = (self.spacing(), self.stride());
         let mut l = Lattice {
+            dim: D,
             origin: [0.0; 3],
             spacing: [1.0; 3],
             shape: [1; 3],

@@ -106,6 +106,7 @@ impl<const D: usize> Projection<D> {
             }
         }
         self.fill_velocity();
+        self.largest = std::array::from_fn(|c| statistics::largest(&self.velocity.components[c]));
     }
 
     /// First half of a step: the velocity becomes u*, under the body force `force` per mass

@@ -36,6 +36,9 @@ pub trait Forcing: Send {
     /// [`IbmError`] for bodies that this forcing cannot represent on this grid.
     fn place(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies) -> Result<(), IbmError>;
 
+    /// Density of the fluid it was made for \[kg/m³\].
+    fn density(&self) -> f64;
+
     /// How often forcing and pressure solution alternate within a step.
     fn rounds(&self) -> usize;
 

@@ -78,15 +78,15 @@ impl Hfdib {
 fn interpolation(lattice: &Lattice, x: Point) -> Option<[(usize, f64); 8]> {
     let mut out = [(lattice.base, 0.0); 8];
     let (mut first, mut part) = ([0_isize; 3], [0.0; 3]);
-    for a in 0..lattice.dim() {
+    for a in 0..lattice.dim {
         let r = (x[a] - lattice.origin[a]) / lattice.spacing[a];
         first[a] = r.floor() as isize;
         part[a] = r - r.floor();
     }
-    for corner in 0..1 << lattice.dim() {
+    for corner in 0..1 << lattice.dim {
         let up = [corner & 1, (corner >> 1) & 1, (corner >> 2) & 1];
         let index = lattice.index(std::array::from_fn(|a| first[a] + up[a] as isize))?;
-        let weight = (0..lattice.dim()).map(|a| if up[a] == 1 { part[a] } else { 1.0 - part[a] }).product();
+        let weight = (0..lattice.dim).map(|a| if up[a] == 1 { part[a] } else { 1.0 - part[a] }).product();
         out[corner] = (index, weight);
     }
     Some(out)
@@ -126,7 +126,7 @@ impl Forcing for Hfdib {
                     .for_each(|n| forced[n.index] = to);
             };
             mark(&mut self.forced, true);
-            let h = lattice.cell_volume().powf(1.0 / lattice.dim() as f64);
+            let h = lattice.cell_volume().powf(1.0 / lattice.dim as f64);
             for (b, cells) in self.bodies.iter_mut().enumerate() {
                 let (solid, pose) = (bodies.solid(BodyId(b)), bodies.pose(BodyId(b)));
                 cells.surface[c].clear();
@@ -164,6 +164,10 @@ impl Forcing for Hfdib {
             mark(&mut self.forced, false);
         }
         Ok(())
+    }
+
+    fn density(&self) -> f64 {
+        self.density
     }
 
     fn rounds(&self) -> usize {
@@ -215,7 +219,7 @@ impl Forcing for Hfdib {
     }
 
     fn reaction(&self, b: BodyId) -> Wrench {
-        self.bodies[b.0].reaction
+        self.bodies.get(b.0).map_or_else(Wrench::default, |body| body.reaction)
     }
 
     fn slip(&self, velocity: &dyn VelocityField, bodies: &dyn Kinematics) -> f64 {

@@ -1,7 +1,7 @@
 //! Direct forcing at surface markers, spread by a smooth kernel.
 use crate::kernel::WIDEST;
 use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction};
-use interfaces::{Bodies, BodyId, Kinematics, Lattice, SurfaceElement, Vector, VelocityField, Wrench};
+use interfaces::{Bodies, BodyId, Kinematics, Lattice, Pose, SurfaceElement, Vector, VelocityField, Wrench};
 
 /// Smooth direct forcing (Uhlmann 2005; several passes as in Wang et al. 2008; smoothed kernel of
 /// Yang et al. 2009), with markers moved into the solid by the kernel's own
@@ -18,7 +18,6 @@ pub struct SmoothForcing {
     density: f64,
     kernel: Kernel,
     passes: usize,
-    spacing: f64,
     inside: [SolidFraction; 3],
     bodies: Vec<Markers>,
     /// Zeros between uses, as long as a velocity component.
@@ -28,7 +27,7 @@ pub struct SmoothForcing {
 /// The markers of one body.
 #[derive(Clone, Debug, Default)]
 struct Markers {
-    moves: Option<u64>,
+    pose: Option<Pose>,
     /// In the body's frame, made once.
     elements: Vec<SurfaceElement>,
     /// From the centre of mass, in the world.
@@ -60,7 +59,7 @@ impl Stencil {
         let mut s = Self { offset: [[0; WIDEST]; 3], weight: [[0.0; WIDEST]; 3], width: [1; 3], relax: 1.0 };
         s.weight[2][0] = 1.0;
         s.offset[0][0] = lattice.base;
-        for a in 0..lattice.dim() {
+        for a in 0..lattice.dim {
             let r = (x[a] - lattice.origin[a]) / lattice.spacing[a];
             let reach = kernel.reach() as isize;
             let weights = kernel.weights(r - r.floor());
@@ -75,6 +74,10 @@ impl Stencil {
                     sum += w;
                     width += 1;
                 }
+            }
+            if sum < LEAST_SHARE {
+                // As good as outside: it reads and spreads nothing.
+                return Self { width: [0; 3], relax: 0.0, ..s };
             }
             s.width[a] = width;
             for w in &mut s.weight[a][..width] {
@@ -112,7 +115,6 @@ impl SmoothForcing {
             density,
             kernel: Kernel::default(),
             passes: 3,
-            spacing: 1.0,
             inside: Default::default(),
             bodies: Vec::new(),
             scratch: Vec::new(),
@@ -153,7 +155,7 @@ impl SmoothForcing {
             }
             markers.elements = bodies
                 .solid(b)
-                .surface(self.spacing * h, -self.kernel.retraction() * h)
+                .surface(h, -self.kernel.retraction() * h)
                 .filter(|e| !e.is_empty())
                 .ok_or(IbmError::NoSurface { body: b })?;
             let scale = self.density * h / self.kernel.self_overlap();
@@ -177,7 +179,7 @@ impl SmoothForcing {
         for c in 0..dim {
             let nodes = self.inside[c].nodes(b);
             self.scratch.resize(velocity.component(c).len(), 0.0);
-            nodes.iter().for_each(|n| self.scratch[n.index] = n.fraction);
+            nodes.iter().for_each(|n| self.scratch[n.index] += n.fraction);
             markers.outside[c].clear();
             markers.outside[c].extend(markers.stencils[c].iter().map(|s| 1.0 - s.read(&self.scratch)));
             nodes.iter().for_each(|n| self.scratch[n.index] = 0.0);
@@ -185,6 +187,9 @@ impl SmoothForcing {
         Ok(())
     }
 }
+
+/// A marker of whose weights less than this share lies inside the box is outside.
+const LEAST_SHARE: f64 = 1e-3;
 
 /// Fewer cells across a body than this cannot hold its markers.
 const LEAST_CELLS: f64 = 4.0;
@@ -196,14 +201,18 @@ impl Forcing for SmoothForcing {
             self.inside[c].update(velocity.lattice(c), bodies)?;
         }
         for b in 0..bodies.n_bodies() {
-            let moves = bodies.moves(BodyId(b));
-            if self.bodies[b].moves != Some(moves) {
+            let pose = bodies.pose(BodyId(b));
+            if self.bodies[b].pose != Some(pose) {
                 self.place_body(velocity, bodies, BodyId(b))?;
-                self.bodies[b].moves = Some(moves);
+                self.bodies[b].pose = Some(pose);
             }
             self.bodies[b].reaction = Wrench::default();
         }
         Ok(())
+    }
+
+    fn density(&self) -> f64 {
+        self.density
     }
 
     fn rounds(&self) -> usize {
@@ -254,7 +263,7 @@ impl Forcing for SmoothForcing {
     }
 
     fn reaction(&self, b: BodyId) -> Wrench {
-        self.bodies[b.0].reaction
+        self.bodies.get(b.0).map_or_else(Wrench::default, |body| body.reaction)
     }
 
     fn slip(&self, velocity: &dyn VelocityField, bodies: &dyn Kinematics) -> f64 {

@@ -1,6 +1,6 @@
 //! The λ field, body by body.
 use crate::{IbmError, cell_fraction};
-use interfaces::{Bodies, BodyId, Lattice, Point, Vector};
+use interfaces::{Bodies, BodyId, Lattice, Point, Pose, Vector};
 
 /// A node with something solid in its control volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub struct SolidNode {
 /// The solid fraction of every body on one lattice; only bodies whose pose changed are worked on.
 #[derive(Clone, Debug, Default)]
 pub struct SolidFraction {
-    bodies: Vec<(Option<u64>, Vec<SolidNode>)>,
+    bodies: Vec<(Option<Pose>, Vec<SolidNode>)>,
     updates: u64,
 }
 
@@ -35,10 +35,10 @@ impl SolidFraction {
     pub fn update<B: Bodies + ?Sized>(&mut self, lattice: &Lattice, bodies: &B) -> Result<(), IbmError> {
         self.bodies.resize_with(bodies.n_bodies(), || (None, Vec::new()));
         for (b, (at, nodes)) in self.bodies.iter_mut().enumerate() {
-            let moves = bodies.moves(BodyId(b));
-            if *at != Some(moves) {
+            let pose = bodies.pose(BodyId(b));
+            if *at != Some(pose) {
                 project(lattice, bodies, BodyId(b), nodes)?;
-                *at = Some(moves);
+                *at = Some(pose);
                 self.updates += 1;
             }
         }
@@ -82,7 +82,7 @@ fn project<B: Bodies + ?Sized>(
         return Err(IbmError::Lost { body: b, position: pose.position.into() });
     }
     let mut h = Vector::from(lattice.spacing);
-    if lattice.dim() == 2 {
+    if lattice.dim == 2 {
         h.z = 0.0;
     }
     // Beyond half a diagonal a cell is all fluid or all solid.
@@ -90,7 +90,7 @@ fn project<B: Bodies + ?Sized>(
     let bounds = bodies.aabb(b).grown(reach);
     // Room for as many nodes as the box may ever cover, so that a moving body allocates nothing.
     let extent = bounds.extent();
-    nodes.reserve((0..lattice.dim()).map(|a| (extent[a] / h[a]) as usize + 2).product());
+    nodes.reserve((0..lattice.dim).map(|a| (extent[a] / h[a]) as usize + 2).product());
     let range: [_; 3] = std::array::from_fn(|a| lattice.range(a, bounds.min[a], bounds.max[a]));
     let to_body = pose.orientation.inverse().to_rotation_matrix();
     for k in range[2].clone() {

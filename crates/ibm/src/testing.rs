@@ -87,6 +87,7 @@ impl Bodies for Balls {
 /// A periodic lattice of cell centres of about this spacing in a box of edge `length`.
 pub(crate) fn lattice(dim: usize, spacing: [f64; 3], length: f64) -> Lattice {
     let mut l = Lattice {
+        dim,
         origin: [0.0; 3],
         spacing: [1.0; 3],
         shape: [1; 3],
@@ -117,7 +118,7 @@ impl Collocated {
         let [nx, ny, nz] = lattice.shape;
         let cells = (0..nx * ny * nz).map(|c| [c % nx, c / nx % ny, c / (nx * ny)].map(|i| i as isize));
         let points: Vec<_> = cells.map(|i| u(lattice.position(i))).collect();
-        Self { lattice, values: (0..lattice.dim()).map(|c| points.iter().map(|u| u[c]).collect()).collect() }
+        Self { lattice, values: (0..lattice.dim).map(|c| points.iter().map(|u| u[c]).collect()).collect() }
     }
 }
 

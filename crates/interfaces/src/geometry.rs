@@ -1,5 +1,5 @@
 //! Positions, motions and loads.
-use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
+use nalgebra::{Point3, UnitQuaternion, Vector3};
 
 /// A place in space \[m\].
 pub type Point = Point3<f64>;
@@ -29,10 +29,6 @@ impl Pose {
     /// A point of the body's frame in the world.
     pub fn to_world(&self, x: Point) -> Point {
         self.position + self.orientation * x.coords
-    }
-    /// The same as nalgebra's rigid motion.
-    pub fn isometry(&self) -> Isometry3<f64> {
-        Isometry3::from_parts(self.position.coords.into(), self.orientation)
     }
 }
 
@@ -110,10 +106,6 @@ impl Aabb {
     pub fn grown(&self, margin: f64) -> Self {
         let m = Vector::repeat(margin);
         Self { min: self.min - m, max: self.max + m }
-    }
-    /// Do two boxes share a point?
-    pub fn intersects(&self, o: &Self) -> bool {
-        (0..3).all(|a| self.min[a] <= o.max[a] && o.min[a] <= self.max[a])
     }
     /// Edge lengths \[m\].
     pub fn extent(&self) -> Vector {

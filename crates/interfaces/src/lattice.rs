@@ -6,6 +6,8 @@
 /// base + i·stride\[0\] + j·stride\[1\] + k·stride\[2\]. In a plane lattice shape\[2\] = 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice {
+    /// Space dimensions, 2 or 3.
+    pub dim: usize,
     /// Node (0, 0, 0) \[m\].
     pub origin: [f64; 3],
     /// Distance of neighbouring nodes \[m\]; 1 along z in a plane lattice.
@@ -21,10 +23,6 @@ pub struct Lattice {
 }
 
 impl Lattice {
-    /// Dimensions: 2 for a plane lattice.
-    pub fn dim(&self) -> usize {
-        if self.shape[2] == 1 { 2 } else { 3 }
-    }
     /// Volume that belongs to a node \[m³\]; area in a plane lattice.
     pub fn cell_volume(&self) -> f64 {
         self.spacing[0] * self.spacing[1] * self.spacing[2]
@@ -56,7 +54,7 @@ impl Lattice {
         let first = ((lo - self.origin[a]) / self.spacing[a]).ceil() as isize;
         let end = ((hi - self.origin[a]) / self.spacing[a]).floor() as isize + 1;
         let n = self.shape[a] as isize;
-        if a >= self.dim() {
+        if a >= self.dim {
             0..1
         } else if self.periodic[a] {
             first..end.max(first)

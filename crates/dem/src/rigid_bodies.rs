@@ -45,7 +45,6 @@ struct Body {
     pose: Pose,
     twist: Twist,
     freedom: Freedom,
-    moves: u64,
     load: Load,
     /// Contact wrench now, and its time integral over the last advance.
     contact: Wrench,
@@ -136,7 +135,6 @@ impl RigidBodies {
             pose,
             twist,
             freedom,
-            moves: 0,
             load: Load::default(),
             contact: Wrench::default(),
             impulse: Wrench::default(),
@@ -260,8 +258,5 @@ impl Bodies for RigidBodies {
     }
     fn freedom(&self, b: BodyId) -> Freedom {
         self.bodies[b.0].freedom
-    }
-    fn moves(&self, b: BodyId) -> u64 {
-        self.bodies[b.0].moves
     }
 }

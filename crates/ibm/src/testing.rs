@@ -36,7 +36,6 @@ pub(crate) struct Balls {
     ball: Ball,
     poses: Vec<Pose>,
     pub(crate) twists: Vec<Twist>,
-    moves: Vec<u64>,
 }
 
 impl Balls {
@@ -46,12 +45,10 @@ impl Balls {
             ball: Ball { dim, radius },
             poses: centres.into_iter().map(Pose::at).collect(),
             twists: vec![Twist::default(); n],
-            moves: vec![0; n],
         }
     }
     pub(crate) fn shift(&mut self, b: usize, by: Vector) {
         self.poses[b].position += by;
-        self.moves[b] += 1;
     }
 }
 
@@ -78,9 +75,6 @@ impl Bodies for Balls {
     }
     fn freedom(&self, _: BodyId) -> Freedom {
         Freedom::FREE
-    }
-    fn moves(&self, b: BodyId) -> u64 {
-        self.moves[b.0]
     }
 }
 

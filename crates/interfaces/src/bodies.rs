@@ -60,9 +60,6 @@ pub trait Bodies: Kinematics {
     fn inertia(&self, b: BodyId) -> Inertia;
     /// What body `b` is free to do.
     fn freedom(&self, b: BodyId) -> Freedom;
-    /// How often the pose of body `b` has changed since it was made: who keeps the last answer
-    /// can tell that a body is where it was.
-    fn moves(&self, b: BodyId) -> u64;
     /// The box around body `b` in the world.
     fn aabb(&self, b: BodyId) -> Aabb {
         self.solid(b).aabb().posed(&self.pose(b))

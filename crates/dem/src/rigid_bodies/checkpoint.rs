@@ -3,7 +3,7 @@ use super::{Pair, RigidBodies, Spring};
 use interfaces::{Checkpoint, Load, Point, RestartError, Rotation, Vector, Wrench};
 
 /// Saved numbers per body and per touching pair.
-const BODY: usize = 28;
+const BODY: usize = 27;
 const SPRING: usize = 5;
 
 /// Poses, twists, loads, contact impulses and the elastic tangential forces of touching pairs. Shapes, materials
@@ -26,7 +26,7 @@ impl Checkpoint for RigidBodies {
             ] {
                 values.extend_from_slice(v.as_slice());
             }
-            values.extend([added_mass, added_moment, b.moves as f64]);
+            values.extend([added_mass, added_moment]);
         }
         sink("bodies", &values);
         values.clear();
@@ -49,7 +49,6 @@ impl Checkpoint for RigidBodies {
             let wrench = Wrench { force: vector(3), torque: vector(4) };
             b.load = Load { wrench, added_mass: v[25], added_moment: v[26] };
             b.impulse = Wrench { force: vector(5), torque: vector(6) };
-            b.moves = v[27] as u64;
         }
         let n = RestartError::take(source, "n_springs", 1)?[0] as usize;
         let springs = RestartError::take(source, "springs", SPRING * n)?;

@@ -145,7 +145,6 @@ impl Body {
             self.pose.position += step;
             self.pose.orientation = Rotation::from_scaled_axis(turn) * self.pose.orientation;
             self.pose.orientation.renormalize_fast();
-            self.moves += 1;
         }
     }
 

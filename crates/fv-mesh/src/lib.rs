@@ -20,6 +20,7 @@
 //! ```
 #![deny(missing_docs)]
 
+mod axis;
 mod boundary;
 mod error;
 mod field;
@@ -34,6 +35,7 @@ mod velocity;
 mod vti;
 mod walls;
 
+pub use axis::{Axis, Cluster};
 pub use boundary::{Side, Sides};
 pub use error::FlowError;
 pub use field::Field;

@@ -167,7 +167,7 @@ impl<const D: usize> DirectPoisson<D> {
             self.column.iter_mut().for_each(|g| *g = self.scale * (*g - mean));
             column::solve(self.last, &mut self.column);
         }
-        Ok(PoissonInfo { removed_mean: mean / per_layer })
+        Ok(PoissonInfo { removed_mean: mean / per_layer, ..Default::default() })
     }
 
     /// Spectra to solutions.

@@ -53,11 +53,15 @@ pub enum AxisBounds {
 }
 
 /// What a solve has to tell.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PoissonInfo {
     /// Mean of f that was taken out before solving because no φ exists otherwise (all axes periodic
     /// or Neumann and no shift); zero when the equation has a solution for every f. Unit of f.
     pub removed_mean: f64,
+    /// Iterations made; zero from a direct solver.
+    pub iterations: usize,
+    /// 2-norm of the residual over that of f, as an iterative solver measured it; zero from a direct solver.
+    pub residual: f64,
 }
 
 /// Why a solver cannot be made or a solve was refused.
@@ -118,6 +122,19 @@ pub enum PoissonError {
         high: usize,
         /// The sum found.
         sum: f64,
+    },
+    /// An iterative solver ran out of iterations. The best φ found was written.
+    #[error(
+        "the residual is {residual:.3e} of the right-hand side after {iterations} iterations, above the \
+         tolerance {tolerance:.3e}; allow more iterations or a larger tolerance"
+    )]
+    NotConverged {
+        /// Iterations made.
+        iterations: usize,
+        /// 2-norm of the residual over that of f.
+        residual: f64,
+        /// What was asked for.
+        tolerance: f64,
     },
 }
 

@@ -115,8 +115,10 @@ impl Scene {
             return Err(SceneError::TooFine { cells });
         }
         let grid = CartesianGrid::new(cells, BOX)?;
-        let vertical = if self.floor { [Side::WALL; 2] } else { [Side::Periodic; 2] };
-        Ok(Projection::new(grid, [[Side::Periodic; 2], vertical], FLUID)?)
+        let vertical = if self.floor { Side::WALL.both() } else { Side::Periodic.both() };
+        let flow = Projection::new(grid, [Side::Periodic.both(), vertical], FLUID)?;
+        // The immersed boundary's accuracy is known for explicit diffusion.
+        Ok(flow.with_diffusion(Diffusion::Explicit))
     }
 
     /// The discs alone, without fluid.

@@ -16,6 +16,17 @@ pub enum FlowError {
         /// What is wrong and what to give instead.
         what: String,
     },
+    /// What enters the box cannot leave it.
+    #[error(
+        "the sides let {net:.6e} m³/s more out than in ({inflow:.6e} m³/s enters) and no outlet can make up for it; \
+         give an outlet or inlets that balance"
+    )]
+    MassBalance {
+        /// Net outflow \[m³/s\] (plane: m²/s).
+        net: f64,
+        /// Inflow \[m³/s\] (plane: m²/s).
+        inflow: f64,
+    },
     /// A fluid property is not physical.
     #[error("the fluid's {name} is {value} {unit}; it must be positive and finite")]
     Fluid {

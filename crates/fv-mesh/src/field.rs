@@ -12,7 +12,7 @@ pub struct Field<const D: usize> {
 impl<const D: usize> Field<D> {
     /// A field of zeros.
     pub fn zeros(grid: &CartesianGrid<D>) -> Self {
-        Self { grid: *grid, data: vec![0.0; grid.storage()] }
+        Self { grid: grid.clone(), data: vec![0.0; grid.storage()] }
     }
     /// Stored values, ghosts included.
     pub fn data(&self) -> &[f64] {

@@ -9,7 +9,7 @@
 //! // Taylor–Green vortices decay by e^(−2νt).
 //! let grid = CartesianGrid::new([32, 32], [TAU, TAU])?;
 //! let fluid = Fluid { density: 1.0, viscosity: 0.1 };
-//! let mut flow = Projection::new(grid, [[Side::Periodic; 2]; 2], fluid)?;
+//! let mut flow = Projection::new(grid, Side::Periodic.everywhere(), fluid)?;
 //! flow.set_velocity(|x| [-x[0].cos() * x[1].sin(), x[0].sin() * x[1].cos()]);
 //! while flow.time() < 0.5 {
 //!     flow.advance(0.02, [0.0, 0.0])?;
@@ -22,10 +22,13 @@
 
 mod axis;
 mod boundary;
+mod convection;
 mod error;
 mod field;
 mod grid;
+mod implicit;
 mod kernels;
+mod metrics;
 pub mod poisson;
 mod projection;
 mod statistics;
@@ -36,11 +39,12 @@ mod vti;
 mod walls;
 
 pub use axis::{Axis, Cluster};
-pub use boundary::{Side, Sides};
+pub use boundary::{Patch, Profile, Side, Sides};
+pub use convection::Convection;
 pub use error::FlowError;
 pub use field::Field;
 pub use grid::CartesianGrid;
-pub use projection::{Fluid, Projection};
+pub use projection::{Diffusion, Fluid, Projection};
 pub use statistics::FlowStatistics;
 pub use velocity::Velocity;
 pub use vti::ImageWriter;

@@ -1,8 +1,13 @@
 //! The flow algorithm for time-accurate runs.
-use crate::kernels::{self, Advance};
+use crate::boundary::{Boundaries, FaceKind};
+use crate::grid::GHOSTS;
+use crate::implicit::ImplicitDiffusion;
+use crate::kernels::{self, Advance, Momentum};
+use crate::metrics::Metrics;
 use crate::poisson::{AxisBounds, DirectPoisson};
-use crate::{CartesianGrid, Field, FlowError, FlowStatistics, Side, Sides, Velocity, statistics, walls};
-use interfaces::{Checkpoint, RestartError, Vector, VelocityField};
+use crate::statistics::{self, Measure};
+use crate::{CartesianGrid, Convection, Field, FlowError, FlowStatistics, Side, Sides, Velocity, walls};
+use interfaces::{Checkpoint, RestartError, Vector};
 
 /// A Newtonian fluid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,22 +18,44 @@ pub struct Fluid {
     pub viscosity: f64,
 }
 
+/// How viscous terms are advanced in time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Diffusion {
+    /// Explicit along the axes where the step allows it, implicit along the others.
+    #[default]
+    Auto,
+    /// Explicit along all axes: the step has to stay within the viscous limit.
+    Explicit,
+    /// Implicit along all axes.
+    Implicit,
+}
+
 /// Incompressible flow by incremental pressure projection on a staggered grid:
 ///
 /// ```text
-/// u*   = uⁿ + dt [ (1 + r/2) Hⁿ − (r/2) Hⁿ⁻¹ − ∇pⁿ/ρ + b ],   H = −∇·(u⊗u) + ν∇²u,  r = dt/dt_last
-/// ∇²φ  = (ρ/dt) ∇·u*,    uⁿ⁺¹ = u* − (dt/ρ) ∇φ,    pⁿ⁺¹ = pⁿ + φ
+/// (1 − κL)(u* − uⁿ) = dt [ (1 + r/2) Hⁿ − (r/2) Hⁿ⁻¹ + ν L uⁿ − ∇pⁿ/ρ + b ],   r = dt/dt_last
+/// ∇²φ  = (ρ/dt) ∇·u*,    uⁿ⁺¹ = u* − (dt/ρ) ∇φ,    pⁿ⁺¹ = pⁿ + φ − κ L φ
 /// ```
 ///
-/// (Adams–Bashforth with variable step: second order in time; central differences: second order in
-/// space; pⁿ⁺¹ belongs to the middle of the step.) The two halves of a step are public, so that an
+/// H = −∇·(u⊗u) + ν∇²u takes the viscous terms along the axes where the step is within their stability limit, L those
+/// along the other axes, κ = ½ν dt ([`Diffusion`]): Adams–Bashforth with variable step and Crank–Nicolson, second
+/// order in time; central differences (unless another [`Convection`] is chosen), second order in space; rotational
+/// pressure update (Timmermans et al. 1996), which on this grid leaves no numerical boundary layer; pⁿ⁺¹ belongs to the
+/// middle of the step. The two halves of a step are public, so that an
 /// immersed boundary can act between them: [`predict`](Self::predict) and
 /// [`project`](Self::project); [`advance`](Self::advance) is both. A step allocates nothing when it
 /// runs inside a rayon pool.
 pub struct Projection<const D: usize> {
     grid: CartesianGrid<D>,
-    sides: Sides<D>,
+    metrics: Metrics<D>,
+    boundaries: Boundaries<D>,
+    momentum: Momentum<D>,
+    implicit: ImplicitDiffusion<D>,
+    measure: Measure<D>,
     fluid: Fluid,
+    diffusion: Diffusion,
+    /// The axes whose diffusion was implicit in the last step.
+    implicit_axes: [bool; D],
     velocity: Velocity<D>,
     next: [Field<D>; D],
     tendency: [Field<D>; D],
@@ -39,13 +66,16 @@ pub struct Projection<const D: usize> {
     step: u64,
     last_dt: f64,
     largest: [f64; D],
-    /// Friction of the walls at the last two predictor steps, and their impulse in the last step.
+    /// What the sides did at the last two predictor steps, per time, and their impulse in the last step.
     friction: [Vector; 2],
     wall_impulse: Vector,
 }
 
 /// Adams–Bashforth is used while a step is at most so many times longer than the last.
 const LONGEST_GROWTH: f64 = 10.0;
+
+/// Implicit steps are at most so many times the explicit limit, for the sake of accuracy.
+const IMPLICIT_GAIN: f64 = 10.0;
 
 impl<const D: usize> Projection<D> {
     /// Fluid at rest in a box; `sides[axis]` are its lower and upper side.
@@ -62,21 +92,34 @@ impl<const D: usize> Projection<D> {
                 return Err(FlowError::Fluid { name, value, unit });
             }
         }
-        let bounds =
-            std::array::from_fn(
-                |a| {
-                    if sides.periodic(a) { AxisBounds::Periodic } else { AxisBounds::Neumann }
-                },
-            );
+        let metrics = Metrics::new(&grid, std::array::from_fn(|a| sides.periodic(a)));
+        let velocity = Velocity::zeros(&grid, &sides);
+        let boundaries = Boundaries::new(&grid, sides, &metrics)?;
+        let mut bounds = [AxisBounds::Periodic; D];
+        for (a, bounds) in bounds.iter_mut().enumerate() {
+            let Some(kinds) = boundaries.kinds(a) else { continue };
+            let given = kinds.map(|k| k.iter().all(|&k| k == FaceKind::Pressure));
+            *bounds = match given {
+                [false, false] => AxisBounds::Neumann,
+                [true, true] => AxisBounds::Dirichlet,
+                [false, true] => AxisBounds::NeumannDirichlet,
+                [true, false] => AxisBounds::DirichletNeumann,
+            };
+        }
         let poisson = DirectPoisson::new(grid.cells(), grid.spacing(), bounds)?;
         let field = || std::array::from_fn(|_| Field::zeros(&grid));
         let mut flow = Self {
-            velocity: Velocity::zeros(&grid, &sides),
+            momentum: Momentum::new(&grid, &metrics, Convection::Central),
+            implicit: ImplicitDiffusion::new(&grid),
+            measure: Measure::new(&grid, &metrics),
+            velocity,
             next: field(),
             tendency: field(),
             pressure: Field::zeros(&grid),
             phi: vec![0.0; grid.n_cells()],
             poisson,
+            diffusion: Diffusion::Auto,
+            implicit_axes: [false; D],
             time: 0.0,
             step: 0,
             last_dt: 0.0,
@@ -84,27 +127,40 @@ impl<const D: usize> Projection<D> {
             friction: [Vector::zeros(); 2],
             wall_impulse: Vector::zeros(),
             grid,
-            sides,
+            metrics,
+            boundaries,
             fluid,
         };
         flow.fill_velocity();
+        flow.boundaries.fill_pressure(&mut flow.pressure);
         Ok(flow)
     }
 
-    /// Sets every velocity component to `u(x)[c]` at its nodes \[m/s\].
+    /// The same with another convection scheme than [`Convection::Central`].
+    #[must_use]
+    pub fn with_convection(mut self, scheme: Convection) -> Self {
+        self.momentum = Momentum::new(&self.grid, &self.metrics, scheme);
+        self
+    }
+
+    /// The same with viscous terms as told rather than [`Diffusion::Auto`].
+    #[must_use]
+    pub fn with_diffusion(mut self, diffusion: Diffusion) -> Self {
+        self.diffusion = diffusion;
+        self
+    }
+
+    /// Sets every velocity component to `u(x)[c]` at its nodes \[m/s\], outlets included; walls and inlets keep theirs.
     pub fn set_velocity(&mut self, u: impl Fn([f64; D]) -> [f64; D]) {
+        let s = self.grid.stride();
         for c in 0..D {
-            let lattice = *self.velocity.lattice(c);
-            let [nx, ny, nz] = lattice.shape;
             let data = self.velocity.components[c].data_mut();
-            for node in 0..nx * ny * nz {
-                let index = [node % nx, node / nx % ny, node / (nx * ny)].map(|i| i as isize);
-                let x = lattice.position(index);
-                if let Some(o) = lattice.index(index) {
-                    data[o] = u(std::array::from_fn(|a| x[a]))[c];
-                }
+            for cell in (0..self.grid.n_cells()).map(|i| self.grid.cell(i)) {
+                let x = std::array::from_fn(|a| self.metrics.of(Some(c), a).x[GHOSTS + cell[a]]);
+                data[self.grid.base() + (0..D).map(|a| cell[a] * s[a]).sum::<usize>()] = u(x)[c];
             }
         }
+        self.boundaries.start(&self.metrics, u);
         self.fill_velocity();
         self.largest = std::array::from_fn(|c| statistics::largest(&self.velocity.components[c]));
     }
@@ -114,14 +170,13 @@ impl<const D: usize> Projection<D> {
     ///
     /// # Errors
     /// [`FlowError::TimeStep`] for a step that is not positive and finite, [`FlowError::Unstable`]
-    /// for one beyond the [`viscous_limit`](Self::viscous_limit).
+    /// for one beyond the [`viscous_limit`](Self::viscous_limit) of [`Diffusion::Explicit`], [`FlowError::MassBalance`] if
+    /// what enters cannot leave.
     pub fn predict(&mut self, dt: f64, force: [f64; D]) -> Result<(), FlowError> {
         if !(dt.is_finite() && dt > 0.0) {
             return Err(FlowError::TimeStep { dt, time: self.time });
         }
-        if dt > self.viscous_limit() {
-            return Err(FlowError::Unstable { dt, limit: self.viscous_limit() });
-        }
+        let implicit = self.choose_implicit(dt)?;
         // The last step's tendency and pressure are no guide at the start, and after a much shorter step:
         // what changes at once (a wall set moving, an immersed body's slip) is a pressure ∝ 1/dt.
         let mut r = dt / self.last_dt;
@@ -130,23 +185,31 @@ impl<const D: usize> Projection<D> {
         } else if r > LONGEST_GROWTH {
             r = 0.0;
             self.pressure.data_mut().fill(0.0);
+            self.boundaries.fill_pressure(&mut self.pressure);
+        } else if implicit != self.implicit_axes {
+            // The last tendency holds other terms.
+            r = 0.0;
         }
+        self.implicit_axes = implicit;
         let weights = [1.0 + 0.5 * r, -0.5 * r];
-        let friction =
-            walls::friction(&self.grid, &self.sides, &self.velocity.components, self.fluid.viscosity);
+        let nu = self.fluid.viscosity;
+        let viscosity = [false, true].map(|which| implicit.map(|i| if i == which { nu } else { 0.0 }));
+        let any_implicit = implicit.contains(&true);
+        let [friction, viscous] = self.side_fluxes(viscosity);
         self.friction = [friction, self.friction[0]];
-        self.wall_impulse =
-            dt * self.fluid.density * (weights[0] * self.friction[0] + weights[1] * self.friction[1]);
+        self.wall_impulse = dt
+            * self.fluid.density
+            * (weights[0] * self.friction[0] + weights[1] * self.friction[1] + 0.5 * viscous);
         for c in 0..D {
             let k = Advance {
                 dt,
                 weights,
-                viscosity: self.fluid.viscosity,
+                explicit: viscosity[0],
+                implicit: viscosity[1],
                 specific_volume: 1.0 / self.fluid.density,
                 force: force[c],
             };
-            kernels::advance_component(
-                &self.grid,
+            self.momentum.advance(
                 c,
                 k,
                 &self.velocity.components,
@@ -155,12 +218,68 @@ impl<const D: usize> Projection<D> {
                 &mut self.tendency[c],
             );
         }
+        self.boundaries.advance(&self.metrics, self.time + dt);
+        if any_implicit {
+            self.implicit.set(&self.metrics, viscosity[1].map(|nu| 0.5 * dt * nu));
+            for c in 0..D {
+                let (u, next) = (&self.velocity.components[c], &mut self.next[c]);
+                kernels::change(&self.grid, -1.0, u, next);
+                self.implicit.solve(c, &self.metrics, &self.boundaries, next);
+                kernels::change(&self.grid, 1.0, u, next);
+            }
+        }
         for c in 0..D {
             std::mem::swap(&mut self.velocity.components[c], &mut self.next[c]);
         }
+        self.boundaries.advance_outlets(&self.metrics, &self.velocity.components, dt)?;
         self.last_dt = dt;
         self.fill_velocity();
+        if any_implicit {
+            let [_, viscous] = self.side_fluxes(viscosity);
+            self.wall_impulse += 0.5 * dt * self.fluid.density * viscous;
+        }
         Ok(())
+    }
+
+    fn side_fluxes(&self, [explicit, implicit]: [[f64; D]; 2]) -> [Vector; 2] {
+        let u = &self.velocity.components;
+        walls::friction(&self.momentum, &self.metrics, &self.grid, u, explicit, implicit)
+    }
+
+    /// The axes whose diffusion has to be implicit in a step of `dt`.
+    fn choose_implicit(&self, dt: f64) -> Result<[bool; D], FlowError> {
+        match self.diffusion {
+            Diffusion::Implicit => Ok([true; D]),
+            Diffusion::Explicit => {
+                let limit = self.viscous_limit();
+                if dt > limit { Err(FlowError::Unstable { dt, limit }) } else { Ok([false; D]) }
+            }
+            Diffusion::Auto => {
+                // Not to and fro with small changes of the step.
+                let (needed, soon) = (self.stiff_axes(dt), self.stiff_axes(2.0 * dt));
+                let last = self.implicit_axes;
+                let keep = (0..D).all(|a| (last[a] || !needed[a]) && (soon[a] || !last[a]));
+                Ok(if keep { last } else { needed })
+            }
+        }
+    }
+
+    /// The fewest axes that have to be implicit for the others to be stable with a step of `dt`.
+    fn stiff_axes(&self, dt: f64) -> [bool; D] {
+        let mut implicit = [false; D];
+        while dt > self.viscous_limit_along(&implicit) {
+            let stiffest = (0..D)
+                .filter(|&a| !implicit[a])
+                .min_by(|&a, &b| self.grid.axis(a).narrowest().total_cmp(&self.grid.axis(b).narrowest()));
+            let Some(a) = stiffest else { break };
+            implicit[a] = true;
+        }
+        implicit
+    }
+
+    fn viscous_limit_along(&self, implicit: &[bool; D]) -> f64 {
+        let stiffness = |a: usize| self.grid.axis(a).narrowest().powi(-2);
+        1.0 / (4.0 * self.fluid.viscosity * (0..D).filter(|&a| !implicit[a]).map(stiffness).sum::<f64>())
     }
 
     /// Makes the velocity free of divergence and adds what that took to the pressure. May be
@@ -171,11 +290,11 @@ impl<const D: usize> Projection<D> {
     pub fn project(&mut self, dt: f64) -> Result<(), FlowError> {
         self.fill_velocity();
         let scale = self.fluid.density / dt;
-        let (grid, velocity) = (&self.grid, &self.velocity.components);
+        let (grid, metrics, velocity) = (&self.grid, &self.metrics, &self.velocity.components);
         let solved = self.poisson.solve_rows(
             // Called from code that is compiled for the processor at hand.
             #[inline(always)]
-            |r, row: &mut [f64]| kernels::divergence_row(grid, r, velocity, scale, row),
+            |r, row: &mut [f64]| kernels::divergence_row(grid, metrics, r, velocity, scale, row),
             &mut self.phi,
         );
         if let Err(error) = solved {
@@ -187,15 +306,24 @@ impl<const D: usize> Projection<D> {
         for c in 0..D {
             kernels::correct_component(
                 &self.grid,
+                &self.metrics,
                 c,
-                self.sides.periodic(c),
                 dt / self.fluid.density,
                 &self.phi,
                 &mut self.velocity.components[c],
             );
         }
+        self.boundaries.correct(dt / self.fluid.density, &self.phi);
         kernels::add_dense(&self.grid, &self.phi, &mut self.pressure);
-        self.sides.fill_pressure(&self.grid, &mut self.pressure);
+        if self.implicit_axes.contains(&true) {
+            let kappa = 0.5 * dt * self.fluid.viscosity;
+            let kappa = self.implicit_axes.map(|implicit| if implicit { kappa } else { 0.0 });
+            let phi = &mut self.next[0];
+            kernels::copy_dense(&self.grid, &self.phi, phi);
+            self.boundaries.fill_correction(phi);
+            kernels::subtract_second_differences(&self.grid, &self.metrics, kappa, phi, &mut self.pressure);
+        }
+        self.boundaries.fill_pressure(&mut self.pressure);
         self.fill_velocity();
         Ok(())
     }
@@ -210,7 +338,7 @@ impl<const D: usize> Projection<D> {
             return Err(self.diverged(dt));
         }
         self.largest = largest;
-        self.wall_impulse += dt * walls::thrust(&self.grid, &self.sides, &self.pressure);
+        self.wall_impulse += dt * walls::thrust(&self.grid, &self.metrics, &self.pressure);
         self.time += dt;
         self.step += 1;
         Ok(())
@@ -228,7 +356,7 @@ impl<const D: usize> Projection<D> {
 
     fn fill_velocity(&mut self) {
         for c in 0..D {
-            self.sides.fill_velocity(&self.grid, c, &mut self.velocity.components[c]);
+            self.boundaries.fill_velocity(c, &mut self.velocity.components[c]);
         }
     }
 
@@ -236,30 +364,31 @@ impl<const D: usize> Projection<D> {
         FlowError::Diverged { step: self.step, time: self.time, dt, courant: self.courant(dt) }
     }
 
-    /// Courant number dt Σ_a max|u_a|/h_a of a step of length `dt`.
+    /// Courant number dt Σ_a max|u_a|/h_a of a step of length `dt`, h_a the narrowest cell.
     pub fn courant(&self, dt: f64) -> f64 {
-        let h = self.grid.spacing();
-        dt * (0..D).map(|a| self.largest[a] / h[a]).sum::<f64>()
+        dt * (0..D).map(|a| self.largest[a] / self.grid.axis(a).narrowest()).sum::<f64>()
     }
 
-    /// The longest step \[s\] for which Adams–Bashforth diffusion is stable, 1/(4ν Σ 1/h²).
+    /// The longest step \[s\] for which Adams–Bashforth diffusion is stable along all axes, 1/(4ν Σ 1/h²), h the narrowest
+    /// cell along each.
     pub fn viscous_limit(&self) -> f64 {
-        let h = self.grid.spacing();
-        1.0 / (4.0 * self.fluid.viscosity * h.iter().map(|h| 1.0 / (h * h)).sum::<f64>())
+        self.viscous_limit_along(&[false; D])
     }
 
-    /// The longest step \[s\] with Courant number ≤ `courant` and a tenth inside the viscous limit.
+    /// The longest step \[s\] with Courant number ≤ `courant`; a tenth inside the viscous limit where diffusion is
+    /// explicit, at most ten times that limit where it may be implicit.
     pub fn stable_dt(&self, courant: f64) -> f64 {
-        (courant / self.courant(1.0)).min(0.9 * self.viscous_limit())
+        let gain = if self.diffusion == Diffusion::Explicit { 0.9 } else { IMPLICIT_GAIN };
+        (courant / self.courant(1.0)).min(gain * self.viscous_limit())
     }
 
     /// Sums and extremes of the velocity, as it is now.
     pub fn statistics(&mut self) -> FlowStatistics {
-        statistics::measure(
+        self.measure.of(
             &self.grid,
+            &self.metrics,
             &self.velocity.components,
-            self.fluid.density,
-            self.fluid.viscosity,
+            [self.fluid.density, self.fluid.viscosity],
             &mut self.phi,
         )
     }
@@ -270,7 +399,7 @@ impl<const D: usize> Projection<D> {
     }
     /// The sides of the box.
     pub fn sides(&self) -> &Sides<D> {
-        &self.sides
+        &self.boundaries.sides
     }
     /// The fluid.
     pub fn fluid(&self) -> Fluid {
@@ -329,6 +458,8 @@ impl<const D: usize> Checkpoint for Projection<D> {
         sink("clock", &[self.time, self.step as f64, self.last_dt]);
         sink("largest", &self.largest);
         sink("friction", self.friction[0].as_slice());
+        sink("sides", &self.boundaries.memory());
+        sink("implicit", &self.implicit_axes.map(|i| f64::from(u8::from(i))));
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         let n = self.grid.storage();
@@ -343,6 +474,10 @@ impl<const D: usize> Checkpoint for Projection<D> {
         (self.time, self.step, self.last_dt) = (clock[0], clock[1] as u64, clock[2]);
         self.largest.copy_from_slice(RestartError::take(source, "largest", D)?);
         self.friction[0] = Vector::from_column_slice(RestartError::take(source, "friction", 3)?);
+        let sides = RestartError::take(source, "sides", self.boundaries.memory().len())?;
+        self.boundaries.recall(&self.metrics, self.time, sides);
+        let implicit = RestartError::take(source, "implicit", D)?;
+        self.implicit_axes = std::array::from_fn(|a| implicit[a] != 0.0);
         Ok(())
     }
 }

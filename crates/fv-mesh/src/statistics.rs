@@ -1,4 +1,6 @@
 //! Sums over the flow field.
+use crate::grid::GHOSTS;
+use crate::metrics::{Metrics, Nodes};
 use crate::{CartesianGrid, Field, kernels};
 use interfaces::Vector;
 use pulp::{Arch, Simd, WithSimd};
@@ -11,7 +13,7 @@ pub struct FlowStatistics {
     /// ½ ρ ∫ |u|² dV \[J\].
     pub kinetic_energy: f64,
     /// ρ ν ∫ |∇u|² dV \[W\], differences taken between neighbouring nodes of each component: what
-    /// the discrete viscous term takes from the kinetic energy.
+    /// the discrete viscous term takes from the kinetic energy, walls at rest included.
     pub dissipation: f64,
     /// Largest |∇·u| \[1/s\].
     pub divergence: f64,
@@ -65,60 +67,133 @@ impl<const D: usize> WithSimd for Largest<'_, D> {
     }
 }
 
-/// Sums of one row: per component Σu; Σu², Σ(difference/h)², max |∇·u| over all components.
-struct RowSums<'a, const D: usize> {
+/// Weights of the sums over the nodes of the velocity components.
+#[derive(Clone, Debug)]
+pub(crate) struct Measure<const D: usize> {
+    /// Per component and axis: width of the part of the control volume inside the box, nodes 0 to n.
+    volumes: [[Vec<f64>; D]; D],
+    /// Per component and axis: 1/distance of node i − 1 and node i, or the part of it that is inside the box.
+    gaps: [[Vec<f64>; D]; D],
+}
+
+impl<const D: usize> Measure<D> {
+    pub(crate) fn new(grid: &CartesianGrid<D>, metrics: &Metrics<D>) -> Self {
+        let list = |c: usize, b: usize, gaps: bool| {
+            let (n, nodes) = (grid.cells()[b], metrics.of(Some(c), b));
+            let faces = Metrics::<D>::family(Some(c), b) == Nodes::Faces;
+            let part = |i: usize| match (metrics.periodic[b], faces, gaps) {
+                (true, ..) | (false, false, false) => f64::from(u8::from(i < n)),
+                (false, true, true) => f64::from(u8::from(i > 0)),
+                // A face on the side has half a control volume, a centre beside it half a gap.
+                _ => [1.0, 0.5][usize::from(i == 0 || i == n)],
+            };
+            let values = if gaps { &nodes.inv_gap } else { &nodes.volume };
+            (0..=n).map(|i| part(i) * values[GHOSTS + i]).collect()
+        };
+        Self {
+            volumes: std::array::from_fn(|c| std::array::from_fn(|b| list(c, b, false))),
+            gaps: std::array::from_fn(|c| std::array::from_fn(|b| list(c, b, true))),
+        }
+    }
+
+    /// `scratch` holds at least one row.
+    pub(crate) fn of(
+        &self,
+        grid: &CartesianGrid<D>,
+        metrics: &Metrics<D>,
+        velocity: &[Field<D>; D],
+        [density, viscosity]: [f64; 2],
+        scratch: &mut [f64],
+    ) -> FlowStatistics {
+        let n = grid.cells();
+        let mut out = FlowStatistics::default();
+        let layers = if D == 3 { n[D - 1] + 1 } else { 1 };
+        for (k, j) in (0..layers).flat_map(|k| (0..=n[1]).map(move |j| (k, j))) {
+            for c in 0..D {
+                let at = [0, j, k];
+                let Sums { flow, square, gradient } =
+                    Arch::new().dispatch(Row { measure: self, grid, u: velocity[c].data(), c, at });
+                out.volume_flow[c] += flow;
+                out.kinetic_energy += 0.5 * density * square;
+                out.dissipation += density * viscosity * gradient;
+            }
+        }
+        for r in 0..velocity[0].n_rows() {
+            let row = Divergence { grid, metrics, velocity, r, scratch: &mut scratch[..n[0]] };
+            out.divergence = out.divergence.max(Arch::new().dispatch(row));
+        }
+        out
+    }
+}
+
+/// Sums over one row of one component: u, u² and (Δu)²/gap, times the volumes that go with them.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    flow: f64,
+    square: f64,
+    gradient: f64,
+}
+
+struct Row<'a, const D: usize> {
+    measure: &'a Measure<D>,
     grid: &'a CartesianGrid<D>,
+    u: &'a [f64],
+    c: usize,
+    at: [usize; 3],
+}
+
+impl<const D: usize> WithSimd for Row<'_, D> {
+    type Output = Sums;
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Sums {
+        let Self { measure, grid, u, c, at } = self;
+        let s = grid.stride();
+        let (volumes, gaps) = (&measure.volumes[c], &measure.gaps[c]);
+        let o = grid.base() + (1..D).map(|b| at[b] * s[b]).sum::<usize>();
+        let n = grid.cells()[0] + 1;
+        let (here, along) = (&u[o..][..n], &volumes[0][..n]);
+        let across: f64 = (1..D).map(|b| volumes[b][at[b]]).product();
+        let mut sums = Sums {
+            flow: across * lanes(n, |i| along[i] * here[i]),
+            square: across * lanes(n, |i| along[i] * here[i] * here[i]),
+            gradient: 0.0,
+        };
+        for b in 0..D {
+            let below = &u[o - s[b]..][..n];
+            let difference = |i: usize| (here[i] - below[i]) * (here[i] - below[i]);
+            if b == 0 {
+                let gaps = &gaps[0][..n];
+                sums.gradient += across * lanes(n, |i| gaps[i] * difference(i));
+            } else {
+                let others: f64 = (1..D).filter(|&d| d != b).map(|d| volumes[d][at[d]]).product();
+                let weight = gaps[b][at[b]] * others;
+                sums.gradient += weight * lanes(n, |i| along[i] * difference(i));
+            }
+        }
+        sums
+    }
+}
+
+/// Largest |∇·u| of one row.
+struct Divergence<'a, const D: usize> {
+    grid: &'a CartesianGrid<D>,
+    metrics: &'a Metrics<D>,
     velocity: &'a [Field<D>; D],
-    row: usize,
+    r: usize,
     scratch: &'a mut [f64],
 }
 
-impl<const D: usize> WithSimd for RowSums<'_, D> {
-    type Output = ([f64; D], f64, f64, f64);
+impl<const D: usize> WithSimd for Divergence<'_, D> {
+    type Output = f64;
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        let Self { grid, velocity, row, scratch } = self;
-        let (n, s, h) = (grid.cells()[0], grid.stride(), grid.spacing());
-        let o = velocity[0].row_start(row);
-        let (mut sum, mut square, mut gradient) = ([0.0; D], 0.0, 0.0);
-        for c in 0..D {
-            let u = velocity[c].data();
-            let here = &u[o..][..n];
-            sum[c] = lanes(n, |i| here[i]);
-            square += lanes(n, |i| here[i] * here[i]);
-            for b in 0..D {
-                let below = &u[o - s[b]..][..n];
-                gradient += lanes(n, |i| (here[i] - below[i]) * (here[i] - below[i])) / (h[b] * h[b]);
-            }
-        }
-        kernels::divergence_row(grid, row, velocity, 1.0, scratch);
+    fn with_simd<S: Simd>(self, _: S) -> f64 {
+        let Self { grid, metrics, velocity, r, scratch } = self;
+        kernels::divergence_row(grid, metrics, r, velocity, 1.0, scratch);
         let mut top = 0.0;
         for d in scratch.iter() {
             let d = d.abs();
             top = if d > top { d } else { top };
         }
-        (sum, square, gradient, top)
+        top
     }
-}
-
-pub(crate) fn measure<const D: usize>(
-    grid: &CartesianGrid<D>,
-    velocity: &[Field<D>; D],
-    density: f64,
-    viscosity: f64,
-    scratch: &mut [f64],
-) -> FlowStatistics {
-    let (n, volume) = (grid.cells()[0], grid.cell_volume());
-    let mut out = FlowStatistics::default();
-    for row in 0..velocity[0].n_rows() {
-        let sums = RowSums { grid, velocity, row, scratch: &mut scratch[..n] };
-        let (sum, square, gradient, divergence) = Arch::new().dispatch(sums);
-        for c in 0..D {
-            out.volume_flow[c] += sum[c] * volume;
-        }
-        out.kinetic_energy += 0.5 * density * volume * square;
-        out.dissipation += density * viscosity * volume * gradient;
-        out.divergence = out.divergence.max(divergence);
-    }
-    out
 }

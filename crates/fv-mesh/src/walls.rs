@@ -1,69 +1,77 @@
 //! What bounded sides do to the momentum of the fluid.
-use crate::{CartesianGrid, Field, Sides};
+use crate::grid::GHOSTS;
+use crate::kernels::{Momentum, flux};
+use crate::metrics::Metrics;
+use crate::{CartesianGrid, Field};
 use interfaces::Vector;
 
 /// Momentum that convection and viscosity carry through the bounded sides into the unknowns, per
-/// density and time \[m⁴/s²\]: for a component along a wall the friction, ν ∂u/∂n; for the component
-/// normal to it, whose first unknown is one face off the wall, the flux through the first cell.
+/// density and time \[m⁴/s²\]: for a component along a side the flux through it (friction, at a wall); for the
+/// component normal to it, whose first unknown is one face off the side, the flux through the first cell. First
+/// convection with the viscous flux along axes of `explicit` viscosity, then the viscous flux along those of `implicit`.
 pub(crate) fn friction<const D: usize>(
+    momentum: &Momentum<D>,
+    metrics: &Metrics<D>,
     grid: &CartesianGrid<D>,
-    sides: &Sides<D>,
     velocity: &[Field<D>; D],
-    viscosity: f64,
-) -> Vector {
-    let (h, s, n) = (grid.spacing(), grid.stride(), grid.cells());
-    let mut sum = Vector::zeros();
-    for a in (0..D).filter(|&a| !sides.periodic(a)) {
-        let area = grid.cell_volume() / h[a];
+    explicit: [f64; D],
+    implicit: [f64; D],
+) -> [Vector; 2] {
+    let (s, n) = (grid.stride(), grid.cells());
+    let mut sums = [Vector::zeros(); 2];
+    for a in (0..D).filter(|&a| !metrics.periodic[a]) {
         for c in 0..D {
-            let u = velocity[c].data();
-            // Flux from node i−1 to node i along a, at storage index i.
-            let flux = |i: usize| {
-                let viscous = -viscosity * (u[i] - u[i - s[a]]) / h[a];
-                if a == c { 0.25 * (u[i] + u[i - s[a]]).powi(2) + viscous } else { viscous }
-            };
-            each_boundary_cell(grid, sides, a, c, |o| {
-                let first = if a == c { o + s[a] } else { o };
-                sum[c] += area * (flux(first) - flux(o + n[a] * s[a]));
+            each_boundary_cell(grid, metrics, a, c, |o, at, area| {
+                let first = usize::from(a == c);
+                let place = [GHOSTS + at[c], GHOSTS];
+                let [low, high] = [first, n[a]]
+                    .map(|i| flux(momentum, velocity, [c, a], o + i * s[a], [place[0], place[1] + i]));
+                sums[0][c] += area * ((low[0] - high[0]) - explicit[a] * (low[1] - high[1]));
+                sums[1][c] -= area * implicit[a] * (low[1] - high[1]);
             });
         }
     }
-    sum
+    sums
 }
 
 /// Force of the pressure at the bounded sides on the unknowns \[N\].
 pub(crate) fn thrust<const D: usize>(
     grid: &CartesianGrid<D>,
-    sides: &Sides<D>,
+    metrics: &Metrics<D>,
     pressure: &Field<D>,
 ) -> Vector {
-    let (h, s, n, p) = (grid.spacing(), grid.stride(), grid.cells(), pressure.data());
+    let (s, n, p) = (grid.stride(), grid.cells(), pressure.data());
     let mut sum = Vector::zeros();
-    for a in (0..D).filter(|&a| !sides.periodic(a)) {
-        let area = grid.cell_volume() / h[a];
-        each_boundary_cell(grid, sides, a, a, |o| sum[a] += area * (p[o] - p[o + (n[a] - 1) * s[a]]));
+    for a in (0..D).filter(|&a| !metrics.periodic[a]) {
+        each_boundary_cell(grid, metrics, a, a, |o, _, area| {
+            sum[a] += area * (p[o] - p[o + (n[a] - 1) * s[a]])
+        });
     }
     sum
 }
 
 /// Calls `f` with the storage index of every cell at the lower side of axis `a` whose node of
-/// component `c` is an unknown.
+/// component `c` is an unknown, its place, and the area across `a` of that node's control volume.
 fn each_boundary_cell<const D: usize>(
     grid: &CartesianGrid<D>,
-    sides: &Sides<D>,
+    metrics: &Metrics<D>,
     a: usize,
     c: usize,
-    mut f: impl FnMut(usize),
+    mut f: impl FnMut(usize, [usize; 3], f64),
 ) {
     let (n, s) = (grid.cells(), grid.stride());
     let range = |b: usize| {
-        if b >= D || b == a { 0..1 } else { usize::from(b == c && !sides.periodic(b))..n[b] }
+        if b >= D || b == a { 0..1 } else { usize::from(b == c && !metrics.periodic[b])..n[b] }
     };
     for k in range(2) {
         for j in range(1) {
             for i in range(0) {
                 let index = [i, j, k];
-                f(grid.base() + (0..D).map(|b| index[b] * s[b]).sum::<usize>());
+                let area = (0..D)
+                    .filter(|&b| b != a)
+                    .map(|b| metrics.of(Some(c), b).volume[GHOSTS + index[b]])
+                    .product();
+                f(grid.base() + (0..D).map(|b| index[b] * s[b]).sum::<usize>(), index, area);
             }
         }
     }

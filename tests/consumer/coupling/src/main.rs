@@ -10,7 +10,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut bodies = RigidBodies::new(Periods::new([Some(size[0]), Some(size[1]), None]));
     let (disc, heavy) = (Disc::new(0.5e-3)?, Material { density: 1100.0, ..Material::default() });
     bodies.add(disc, heavy, Pose::at([2e-3, 6e-3, 0.0]), Twist::default(), Freedom::PLANAR)?;
-    let flow = Projection::new(CartesianGrid::new([32, 64], size)?, [[Side::Periodic; 2]; 2], water)?;
+    let flow = Projection::new(CartesianGrid::new([32, 64], size)?, Side::Periodic.everywhere(), water)?;
     let gravity = Vector::new(0.0, -9.81, 0.0);
     let discs = Particles::new(bodies, SmoothForcing::new(water.density), water.density, gravity);
     let mut simulation = Simulation::new(flow, discs, WeightBalance::NetWeight)?;

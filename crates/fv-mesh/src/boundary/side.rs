@@ -1,0 +1,165 @@
+//! Boundary conditions of the velocity as the user gives them.
+use crate::FlowError;
+use std::fmt;
+use std::sync::Arc;
+
+/// Velocity \[m/s\] at a place \[m\] and time \[s\].
+type VelocityFunction = Arc<dyn Fn([f64; 3], f64) -> [f64; 3] + Send + Sync>;
+
+/// Velocity over an inlet.
+#[derive(Clone)]
+pub enum Profile {
+    /// The same everywhere \[m/s\].
+    Uniform([f64; 3]),
+    /// Into the box with the speed peak·Π 4s(1 − s), s = 0…1 across the inlet along each bounded axis of the side:
+    /// the profile of a developed plane flow (a product of parabolas in a duct).
+    Parabolic {
+        /// Speed in the middle \[m/s\].
+        peak: f64,
+    },
+    /// Any function of place and time; see [`Profile::function`].
+    Function(VelocityFunction),
+}
+
+impl Profile {
+    /// The velocity `u(x, t)` \[m/s\] of place \[m\] and time \[s\].
+    pub fn function(u: impl Fn([f64; 3], f64) -> [f64; 3] + Send + Sync + 'static) -> Self {
+        Self::Function(Arc::new(u))
+    }
+}
+
+impl fmt::Debug for Profile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Uniform(u) => f.debug_tuple("Uniform").field(u).finish(),
+            Self::Parabolic { peak } => f.debug_struct("Parabolic").field("peak", peak).finish(),
+            Self::Function(_) => f.write_str("Function(..)"),
+        }
+    }
+}
+
+/// A rectangle of a side and what happens there.
+#[derive(Clone, Debug)]
+pub struct Patch {
+    /// Lower corner \[m\]; the coordinate normal to the side does not matter.
+    pub lower: [f64; 3],
+    /// Upper corner \[m\].
+    pub upper: [f64; 3],
+    /// What happens there; neither periodic nor patches again.
+    pub side: Side,
+}
+
+/// What happens at one side of the box.
+#[derive(Clone, Debug)]
+pub enum Side {
+    /// The flow that leaves here enters at the opposite side.
+    Periodic,
+    /// A wall to which the fluid sticks, moving along itself with this velocity \[m/s\]; the
+    /// component normal to the wall must be zero.
+    Wall([f64; 3]),
+    /// A frictionless wall, or a plane of symmetry.
+    FreeSlip,
+    /// Fluid enters with this velocity.
+    Inlet(Profile),
+    /// Fluid leaves: ∂u/∂t + U ∂u/∂n = 0 for every component, with the mean speed U of the outflow. What leaves through all
+    /// such faces is shifted by one velocity so that it equals what enters.
+    ConvectiveOutlet,
+    /// Fluid leaves (or enters) through a side of given pressure \[Pa\], with ∂u/∂n = 0.
+    PressureOutlet(f64),
+    /// Different things on parts of the side: the first patch that holds a face's centre counts. Patches have to cover
+    /// the whole side.
+    Patches(Vec<Patch>),
+}
+
+impl Side {
+    /// A wall at rest.
+    pub const WALL: Self = Self::Wall([0.0; 3]);
+
+    /// This at both sides of an axis.
+    pub fn both(&self) -> [Self; 2] {
+        [self.clone(), self.clone()]
+    }
+    /// This at every side of the box.
+    pub fn everywhere<const D: usize>(&self) -> [[Self; 2]; D] {
+        std::array::from_fn(|_| self.both())
+    }
+    pub(crate) fn is_periodic(&self) -> bool {
+        matches!(self, Self::Periodic)
+    }
+    /// Is this, or a patch of it, such that `f` holds?
+    pub(crate) fn any(&self, f: &impl Fn(&Self) -> bool) -> bool {
+        match self {
+            Self::Patches(patches) => patches.iter().any(|p| p.side.any(f)),
+            side => f(side),
+        }
+    }
+    /// Nothing flows through.
+    pub(crate) fn is_closed(&self) -> bool {
+        !self.any(&|s| matches!(s, Self::Inlet(_) | Self::ConvectiveOutlet | Self::PressureOutlet(_)))
+    }
+
+    fn check(&self, a: usize, patch: bool) -> Result<(), FlowError> {
+        let fail = |what| Err(FlowError::Boundary { what });
+        let finite = |u: &[f64]| u.iter().all(|u| u.is_finite());
+        match self {
+            Self::Wall(u) if !finite(u) => {
+                fail(format!("a wall normal to axis {a} with velocity {u:?}; give finite numbers"))
+            }
+            Self::Wall(u) if u[a] != 0.0 => fail(format!(
+                "a wall normal to axis {a} that moves along it at {} m/s; set that component to 0",
+                u[a]
+            )),
+            Self::Inlet(Profile::Uniform(u)) if !finite(u) => {
+                fail(format!("an inlet normal to axis {a} with velocity {u:?}; give finite numbers"))
+            }
+            Self::Inlet(Profile::Parabolic { peak }) if !peak.is_finite() => {
+                fail(format!("an inlet normal to axis {a} with a peak of {peak} m/s; give a finite one"))
+            }
+            Self::PressureOutlet(p) if !p.is_finite() => {
+                fail(format!("an outlet normal to axis {a} at a pressure of {p} Pa; give a finite one"))
+            }
+            Self::Periodic if patch => {
+                fail(format!("a periodic patch of a side of axis {a}; make the whole axis periodic"))
+            }
+            Self::Patches(_) if patch => {
+                fail(format!("patches in a patch of a side of axis {a}; list them flat"))
+            }
+            Self::Patches(patches) => patches.iter().try_for_each(|p| p.side.check(a, true)),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The lower and upper side of every axis.
+#[derive(Clone, Debug)]
+pub struct Sides<const D: usize>(pub(crate) [[Side; 2]; D]);
+
+impl<const D: usize> Sides<D> {
+    /// `sides[axis][0]` is the lower side, `sides[axis][1]` the upper.
+    ///
+    /// # Errors
+    /// [`FlowError::Boundary`] if only one side of an axis is periodic, a wall moves through
+    /// itself, or a number is not finite.
+    pub fn new(sides: [[Side; 2]; D]) -> Result<Self, FlowError> {
+        for (a, pair) in sides.iter().enumerate() {
+            if pair[0].is_periodic() != pair[1].is_periodic() {
+                let what = format!("axis {a} periodic at one side only; make both periodic or neither");
+                return Err(FlowError::Boundary { what });
+            }
+            pair.iter().try_for_each(|side| side.check(a, false))?;
+        }
+        Ok(Self(sides))
+    }
+    /// Is axis `a` periodic?
+    pub fn periodic(&self, a: usize) -> bool {
+        self.0[a][0].is_periodic()
+    }
+    /// The lower and upper side of axis `a`.
+    pub fn of(&self, a: usize) -> &[Side; 2] {
+        &self.0[a]
+    }
+    /// Does nothing flow through any bounded side?
+    pub fn closed(&self) -> bool {
+        self.0.iter().flatten().all(Side::is_closed)
+    }
+}

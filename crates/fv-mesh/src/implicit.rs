@@ -1,0 +1,282 @@
+//! Implicit diffusion by factors along the axes.
+use crate::boundary::{Boundaries, Lines};
+use crate::grid::GHOSTS;
+use crate::kernels::layers_per_task;
+use crate::metrics::Metrics;
+use crate::{CartesianGrid, Field};
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+
+/// Solves (1 − κ_x L_x)(1 − κ_y L_y)(1 − κ_z L_z) δ = r for the change δ of one velocity component, L_a the second
+/// difference along axis a, κ = ½ν dt (Crank–Nicolson; factorisation error of order dt³: Kim & Moin 1985). Axes with
+/// κ = 0 are left out.
+#[derive(Clone, Debug)]
+pub(crate) struct ImplicitDiffusion<const D: usize> {
+    grid: CartesianGrid<D>,
+    kappa: [f64; D],
+    /// Factors per component and axis, for the four kinds of lines: bit 0 set if the lower end is free, bit 1 if the
+    /// upper one is.
+    factors: [[[Tridiagonal; 4]; D]; D],
+    /// Rows side by side and what periodic ones need; one per task.
+    scratch: Vec<Vec<f64>>,
+    /// One line.
+    line: Vec<f64>,
+    /// One layer of the last axis.
+    layer: Vec<f64>,
+}
+
+/// Rows along x that are swept together.
+const ROWS: usize = 8;
+
+/// LU factors of 1 − κL on the nodes `first`, `first` + 1, … of a line.
+#[derive(Clone, Debug, Default)]
+struct Tridiagonal {
+    first: usize,
+    below: Vec<f64>,
+    inv: Vec<f64>,
+    above: Vec<f64>,
+    /// Periodic lines: x −= (x_first + ratio·x_last) correction.
+    cyclic: Option<(f64, Vec<f64>)>,
+}
+
+impl Tridiagonal {
+    /// `low` and `high` are κ times what couples to the node below and above. `ends` say which part of the end
+    /// node's value stands beyond it; `None` for a periodic line.
+    fn new(first: usize, low: &[f64], high: &[f64], ends: Option<[f64; 2]>) -> Self {
+        let n = low.len();
+        let mut diagonal: Vec<f64> = (0..n).map(|i| 1.0 + low[i] + high[i]).collect();
+        match ends {
+            _ if n == 0 => Self::default(),
+            Some([lower, upper]) => {
+                diagonal[0] -= low[0] * lower;
+                diagonal[n - 1] -= high[n - 1] * upper;
+                Self::factored(first, low, high, &diagonal)
+            }
+            None if n == 1 => Self::factored(first, low, high, &[1.0]),
+            None => {
+                // Sherman & Morrison: the corners −low₀ and −high_{n−1} are a change of rank one.
+                let (alpha, beta, gamma) = (-low[0], -high[n - 1], -diagonal[0]);
+                diagonal[0] -= gamma;
+                diagonal[n - 1] -= alpha * beta / gamma;
+                let mut new = Self::factored(first, low, high, &diagonal);
+                let mut z = vec![0.0; n];
+                (z[0], z[n - 1]) = (gamma, beta);
+                new.solve_side_by_side(&mut z, |i| i, &mut [0.0]);
+                let ratio = alpha / gamma;
+                let scale = 1.0 / (1.0 + z[0] + ratio * z[n - 1]);
+                z.iter_mut().for_each(|z| *z *= scale);
+                new.cyclic = Some((ratio, z));
+                new
+            }
+        }
+    }
+
+    fn factored(first: usize, low: &[f64], high: &[f64], diagonal: &[f64]) -> Self {
+        let n = diagonal.len();
+        let (mut inv, mut above) = (vec![0.0; n], vec![0.0; n]);
+        for i in 0..n {
+            let pivot = if i == 0 { diagonal[0] } else { diagonal[i] - low[i] * above[i - 1] };
+            inv[i] = 1.0 / pivot;
+            above[i] = high[i] * inv[i];
+        }
+        Self { first, below: low.to_vec(), inv, above, cyclic: None }
+    }
+
+    /// Solves lines that lie side by side: `rows(i)` is where node `first` + i starts in `data`; there are as many as `sums`
+    /// is long.
+    #[inline(always)]
+    fn solve_side_by_side(&self, data: &mut [f64], rows: impl Fn(usize) -> usize, sums: &mut [f64]) {
+        let (n, width) = (self.inv.len(), sums.len());
+        if n == 0 {
+            return;
+        }
+        let inv = self.inv[0];
+        data[rows(0)..][..width].iter_mut().for_each(|x| *x *= inv);
+        for i in 1..n {
+            let (inv, below) = (self.inv[i], self.below[i]);
+            let (done, todo) = data.split_at_mut(rows(i));
+            let done = &done[rows(i - 1)..][..width];
+            for (x, before) in todo[..width].iter_mut().zip(done) {
+                *x = inv * (*x + below * before);
+            }
+        }
+        for i in (0..n - 1).rev() {
+            let above = self.above[i];
+            let (todo, done) = data.split_at_mut(rows(i + 1));
+            for (x, after) in todo[rows(i)..][..width].iter_mut().zip(&done[..width]) {
+                *x += above * after;
+            }
+        }
+        let Some((ratio, correction)) = &self.cyclic else { return };
+        for (w, sum) in sums.iter_mut().enumerate() {
+            *sum = data[rows(0) + w] + ratio * data[rows(n - 1) + w];
+        }
+        for (i, correction) in correction.iter().enumerate() {
+            for (x, sum) in data[rows(i)..][..width].iter_mut().zip(&*sums) {
+                *x -= correction * sum;
+            }
+        }
+    }
+}
+
+impl<const D: usize> ImplicitDiffusion<D> {
+    pub(crate) fn new(grid: &CartesianGrid<D>) -> Self {
+        let n = grid.cells();
+        let tasks = n[D - 1].div_ceil(layers_per_task(n[D - 1]));
+        let longest = n.into_iter().max().unwrap_or(0);
+        Self {
+            kappa: [0.0; D],
+            factors: std::array::from_fn(|_| std::array::from_fn(|_| Default::default())),
+            scratch: vec![vec![0.0; ROWS * n[0] + ROWS.max(n[0])]; tasks],
+            line: vec![0.0; longest],
+            layer: vec![0.0; grid.stride()[D - 1]],
+            grid: grid.clone(),
+        }
+    }
+
+    /// Takes κ = ½ν dt along each axis.
+    pub(crate) fn set(&mut self, metrics: &Metrics<D>, kappa: [f64; D]) {
+        if kappa == self.kappa {
+            return;
+        }
+        self.kappa = kappa;
+        for (c, a) in (0..D).flat_map(|c| (0..D).map(move |a| (c, a))).filter(|&(_, a)| kappa[a] > 0.0) {
+            let (nodes, n) = (metrics.of(Some(c), a), self.grid.cells()[a]);
+            let first = usize::from(a == c && !metrics.periodic[a]);
+            let scaled = |list: &[f64]| -> Vec<f64> {
+                list[GHOSTS + first..GHOSTS + n].iter().map(|x| kappa[a] * x).collect()
+            };
+            let (low, high) = (scaled(&nodes.down), scaled(&nodes.up));
+            // A given value on the next node (normal component), or half way to it.
+            let fixed = if a == c { 0.0 } else { -1.0 };
+            for kind in 0..4 {
+                let part = |bit: usize| if kind & bit != 0 { 1.0 } else { fixed };
+                let ends = (!metrics.periodic[a]).then(|| [part(1), part(2)]);
+                self.factors[c][a][kind] = Tridiagonal::new(first, &low, &high, ends);
+            }
+        }
+    }
+
+    /// Turns r into δ for component `c`; the boundary values have been set to those of the end of the step.
+    pub(crate) fn solve(
+        &mut self,
+        c: usize,
+        metrics: &Metrics<D>,
+        boundaries: &Boundaries<D>,
+        delta: &mut Field<D>,
+    ) {
+        let kappa = self.kappa;
+        for a in (0..D).filter(|&a| kappa[a] > 0.0) {
+            let nodes = metrics.of(Some(c), a);
+            let lines = boundaries.lines(a);
+            let first = self.factors[c][a][0].first;
+            let n = self.factors[c][a][0].inv.len();
+            let mut kind = Some(0);
+            if let Some(ends) = boundaries.ends(a, c) {
+                kind = ends.common_kind();
+                let coefficient = [
+                    kappa[a] * nodes.down[GHOSTS + first],
+                    kappa[a] * nodes.up[(GHOSTS + first + n).saturating_sub(1)],
+                ];
+                if n > 0 && ends.moving {
+                    for (l, o) in lines.starts().enumerate() {
+                        let [low, high] = ends.changes(l);
+                        delta.data_mut()[o + first * lines.step] += coefficient[0] * low;
+                        delta.data_mut()[o + (first + n - 1) * lines.step] += coefficient[1] * high;
+                    }
+                }
+                if kind.is_none() {
+                    self.solve_each(c, lines, |l| ends.kind(l), delta);
+                    continue;
+                }
+            }
+            let factor = &self.factors[c][a][kind.unwrap_or(0)];
+            let layer = self.grid.stride()[D - 1];
+            if a == D - 1 {
+                let rows = |i: usize| (GHOSTS + first + i) * layer;
+                Arch::new().dispatch(Sweep { factor, data: delta.data_mut(), rows, sums: &mut self.layer });
+                continue;
+            }
+            let per_task = layers_per_task(self.grid.cells()[D - 1]);
+            let grid = &self.grid;
+            delta.layers_mut().par_chunks_mut(layer * per_task).zip(&mut self.scratch).for_each(
+                |(layers, scratch)| {
+                    if a == 0 {
+                        Arch::new().dispatch(AlongX { grid, factor, layers, scratch });
+                        return;
+                    }
+                    let s = grid.stride()[1];
+                    for layer in layers.chunks_exact_mut(layer) {
+                        let sums = &mut scratch[..grid.cells()[0]];
+                        let rows = |i: usize| (GHOSTS + first + i) * s + GHOSTS;
+                        Arch::new().dispatch(Sweep { factor, data: layer, rows, sums });
+                    }
+                },
+            );
+        }
+    }
+
+    /// Line by line, where the ends differ from line to line.
+    fn solve_each(&mut self, c: usize, lines: &Lines, kind: impl Fn(usize) -> usize, delta: &mut Field<D>) {
+        let data = delta.data_mut();
+        for (l, o) in lines.starts().enumerate().filter(|&(l, _)| lines.inside(l)) {
+            let factor = &self.factors[c][lines.axis][kind(l)];
+            let line = &mut self.line[..factor.inv.len()];
+            let at = |i: usize| o + (factor.first + i) * lines.step;
+            line.iter_mut().enumerate().for_each(|(i, x)| *x = data[at(i)]);
+            factor.solve_side_by_side(line, |i| i, &mut [0.0]);
+            line.iter().enumerate().for_each(|(i, x)| data[at(i)] = *x);
+        }
+    }
+}
+
+/// Lines side by side in memory.
+struct Sweep<'a, R> {
+    factor: &'a Tridiagonal,
+    data: &'a mut [f64],
+    rows: R,
+    sums: &'a mut [f64],
+}
+
+impl<R: Fn(usize) -> usize> WithSimd for Sweep<'_, R> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.factor.solve_side_by_side(self.data, self.rows, self.sums);
+    }
+}
+
+/// Rows along x, eight at a time.
+struct AlongX<'a, const D: usize> {
+    grid: &'a CartesianGrid<D>,
+    factor: &'a Tridiagonal,
+    /// Whole layers.
+    layers: &'a mut [f64],
+    scratch: &'a mut [f64],
+}
+
+impl<const D: usize> WithSimd for AlongX<'_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { grid, factor, layers, scratch } = self;
+        let (n, first) = (factor.inv.len(), factor.first);
+        let row = grid.stride()[1];
+        let (block, sums) = scratch.split_at_mut(ROWS * grid.cells()[0]);
+        // Ghost rows of an inner axis are swept too; nobody reads them.
+        for rows in layers.chunks_mut(ROWS * row) {
+            let count = rows.len() / row;
+            for (j, row) in rows.chunks_exact(row).enumerate() {
+                for (i, x) in row[GHOSTS + first..][..n].iter().enumerate() {
+                    block[i * ROWS + j] = *x;
+                }
+            }
+            factor.solve_side_by_side(block, |i| i * ROWS, &mut sums[..ROWS]);
+            for (j, row) in rows.chunks_exact_mut(row).enumerate().take(count) {
+                for (i, x) in row[GHOSTS + first..][..n].iter_mut().enumerate() {
+                    *x = block[i * ROWS + j];
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! The sweeps of a time step over the rows of the grid. Rows are handed to threads in fixed
+//! chunks of layers, so a result does not depend on the number of threads.
+mod advance;
+mod project;
+
+pub(crate) use advance::{Advance, Momentum, flux};
+pub(crate) use project::{
+    add_dense, change, copy_dense, correct_component, divergence_row, subtract_second_differences,
+};
+
+use crate::grid::GHOSTS;
+use crate::{CartesianGrid, Field};
+use rayon::prelude::*;
+
+/// Layers of the last axis that one task works on.
+pub(crate) fn layers_per_task(layers: usize) -> usize {
+    layers.div_ceil(16).max(4)
+}
+
+/// Calls `f(task, rows)` for fixed runs of rows, with the matching part of two fields to write.
+/// `f` gets (first row's number, end row's number, storage index of the parts' first entry).
+pub(crate) fn for_layers<const D: usize>(
+    grid: &CartesianGrid<D>,
+    a: &mut Field<D>,
+    b: &mut Field<D>,
+    f: impl Fn(std::ops::Range<usize>, usize, &mut [f64], &mut [f64]) + Sync,
+) {
+    let layer = grid.stride()[D - 1];
+    let (layers, rows) = (grid.cells()[D - 1], grid.rows_per_layer());
+    let per_task = layers_per_task(layers);
+    a.layers_mut()
+        .par_chunks_mut(layer * per_task)
+        .zip(b.layers_mut().par_chunks_mut(layer * per_task))
+        .enumerate()
+        .for_each(|(task, (a, b))| {
+            let first = task * per_task;
+            let end = (first + per_task).min(layers);
+            f(first * rows..end * rows, (GHOSTS + first) * layer, a, b);
+        });
+}
+
+/// Cell numbers along the axes other than x of row `r` = j + n_y k.
+pub(crate) fn row_place<const D: usize>(grid: &CartesianGrid<D>, r: usize) -> [usize; D] {
+    let per_layer = grid.rows_per_layer();
+    let mut at = [0; D];
+    at[D - 1] = r / per_layer;
+    if D == 3 {
+        at[1] = r % per_layer;
+    }
+    at
+}

@@ -1,0 +1,175 @@
+//! Divergence, correction of the velocity, pressure.
+use super::{layers_per_task, row_place};
+use crate::field::row_start;
+use crate::grid::GHOSTS;
+use crate::metrics::Metrics;
+use crate::{CartesianGrid, Field};
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+
+/// Divergence of the cells of row `r` times `scale`.
+#[inline(always)]
+pub(crate) fn divergence_row<const D: usize>(
+    grid: &CartesianGrid<D>,
+    metrics: &Metrics<D>,
+    r: usize,
+    velocity: &[Field<D>; D],
+    scale: f64,
+    out: &mut [f64],
+) {
+    let (n, s) = (out.len(), grid.stride());
+    let (o, at) = (row_start(grid, r), row_place(grid, r));
+    let lower: [&[f64]; D] = std::array::from_fn(|b| &velocity[b].data()[o..][..n]);
+    let upper: [&[f64]; D] = std::array::from_fn(|b| &velocity[b].data()[o + s[b]..][..n]);
+    let inv = &metrics.axes[0].centres.inv_volume[GHOSTS..][..n];
+    let inv_b: [f64; D] = std::array::from_fn(|b| scale * metrics.axes[b].centres.inv_volume[GHOSTS + at[b]]);
+    for i in 0..n {
+        let mut sum = scale * inv[i] * (upper[0][i] - lower[0][i]);
+        for b in 1..D {
+            sum += inv_b[b] * (upper[b][i] - lower[b][i]);
+        }
+        out[i] = sum;
+    }
+}
+
+/// u_c −= dt ∂φ/∂x_c /ρ on every face but those on the boundary; `phi` is dense, x fastest.
+pub(crate) fn correct_component<const D: usize>(
+    grid: &CartesianGrid<D>,
+    metrics: &Metrics<D>,
+    c: usize,
+    scale: f64,
+    phi: &[f64],
+    component: &mut Field<D>,
+) {
+    let n = grid.cells();
+    let periodic = metrics.periodic[c];
+    let inv = &metrics.axes[c].faces.inv_volume[GHOSTS..];
+    let layer = grid.stride()[D - 1];
+    let per_task = layers_per_task(n[D - 1]);
+    let rows_per_layer = grid.rows_per_layer();
+    // The row below along c: so many rows down, or from the first of n[c] up to the last.
+    let step = if c == 2 { n[1] } else { 1 };
+    component.layers_mut().par_chunks_mut(layer * per_task).enumerate().for_each(|(task, out)| {
+        let first = task * per_task;
+        let end = (first + per_task).min(n[D - 1]);
+        let rows = first * rows_per_layer..end * rows_per_layer;
+        let start = (GHOSTS + first) * layer;
+        Arch::new().dispatch(CorrectRows { grid, c, periodic, scale, inv, step, rows, start, phi, out });
+    });
+}
+
+/// [`correct_component`] for a run of rows.
+struct CorrectRows<'a, const D: usize> {
+    grid: &'a CartesianGrid<D>,
+    c: usize,
+    periodic: bool,
+    scale: f64,
+    /// 1/distance of the centres beside each face along c.
+    inv: &'a [f64],
+    step: usize,
+    rows: std::ops::Range<usize>,
+    /// Storage index of the first entry of `out`.
+    start: usize,
+    phi: &'a [f64],
+    out: &'a mut [f64],
+}
+
+impl<const D: usize> WithSimd for CorrectRows<'_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { grid, c, periodic, scale, inv, step, rows, start, phi, out } = self;
+        let n = grid.cells();
+        for r in rows {
+            let local = row_start(grid, r) - start;
+            let out = &mut out[local..local + n[0]];
+            let here = &phi[r * n[0]..][..n[0]];
+            if c == 0 {
+                out[0] -= scale * inv[0] * (here[0] - here[if periodic { n[0] - 1 } else { 0 }]);
+                let (out, inv, below) = (&mut out[1..], &inv[1..n[0]], &here[..n[0] - 1]);
+                for (i, here) in here[1..].iter().enumerate() {
+                    out[i] -= scale * inv[i] * (here - below[i]);
+                }
+            } else {
+                let at = (r / step) % n[c];
+                let below = match (at, periodic) {
+                    (0, true) => r + (n[c] - 1) * step,
+                    (0, false) => continue,
+                    _ => r - step,
+                };
+                let below = &phi[below * n[0]..][..n[0]];
+                let scale = scale * inv[at];
+                for i in 0..n[0] {
+                    out[i] -= scale * (here[i] - below[i]);
+                }
+            }
+        }
+    }
+}
+
+/// p += φ.
+pub(crate) fn add_dense<const D: usize>(grid: &CartesianGrid<D>, phi: &[f64], p: &mut Field<D>) {
+    let n = grid.cells();
+    let layer = grid.stride()[D - 1];
+    let per_task = layers_per_task(n[D - 1]);
+    let rows_per_layer = grid.rows_per_layer();
+    p.layers_mut().par_chunks_mut(layer * per_task).enumerate().for_each(|(task, out)| {
+        let first = task * per_task;
+        let end = (first + per_task).min(n[D - 1]);
+        for r in first * rows_per_layer..end * rows_per_layer {
+            let local = row_start(grid, r) - (GHOSTS + first) * layer;
+            for (p, phi) in out[local..local + n[0]].iter_mut().zip(&phi[r * n[0]..]) {
+                *p += phi;
+            }
+        }
+    });
+}
+
+/// Fills the cells of `out` from dense values.
+pub(crate) fn copy_dense<const D: usize>(grid: &CartesianGrid<D>, dense: &[f64], out: &mut Field<D>) {
+    let n = grid.cells()[0];
+    for (r, row) in dense.chunks_exact(n).enumerate() {
+        let o = row_start(grid, r);
+        out.data_mut()[o..o + n].copy_from_slice(row);
+    }
+}
+
+/// out += sign·u, ghosts left alone.
+pub(crate) fn change<const D: usize>(grid: &CartesianGrid<D>, sign: f64, u: &Field<D>, out: &mut Field<D>) {
+    let layer = grid.stride()[D - 1];
+    let per_task = layers_per_task(grid.cells()[D - 1]);
+    let (range, _) = u.layer_range();
+    out.layers_mut()
+        .par_chunks_mut(layer * per_task)
+        .zip(u.data()[range].par_chunks(layer * per_task))
+        .for_each(|(out, u)| {
+            for (out, u) in out.iter_mut().zip(u) {
+                *out += sign * u;
+            }
+        });
+}
+
+/// p −= Σ_a κ_a ∂²φ/∂x_a², the ghosts of φ filled.
+pub(crate) fn subtract_second_differences<const D: usize>(
+    grid: &CartesianGrid<D>,
+    metrics: &Metrics<D>,
+    kappa: [f64; D],
+    phi: &Field<D>,
+    p: &mut Field<D>,
+) {
+    let (n, s) = (grid.cells()[0], grid.stride());
+    let phi = phi.data();
+    for r in 0..p.n_rows() {
+        let (o, at) = (row_start(grid, r), row_place(grid, r));
+        let out = &mut p.data_mut()[o..o + n];
+        for a in (0..D).filter(|&a| kappa[a] > 0.0) {
+            let nodes = &metrics.axes[a].centres;
+            let (here, above, below) = (&phi[o..][..n], &phi[o + s[a]..][..n], &phi[o - s[a]..][..n]);
+            for i in 0..n {
+                let j = GHOSTS + if a == 0 { i } else { at[a] };
+                let second = nodes.up[j] * (above[i] - here[i]) - nodes.down[j] * (here[i] - below[i]);
+                out[i] -= kappa[a] * second;
+            }
+        }
+    }
+}

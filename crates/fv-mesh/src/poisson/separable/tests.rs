@@ -150,3 +150,30 @@ fn the_residual_is_round_off_with_all_ends_in_space() {
         }
     }
 }
+
+#[test]
+fn strongly_stretched_axes_are_solved_as_well() {
+    // Widths grow by 1.2 to a thousand times the first, and more.
+    let mut worst = 0.0_f64;
+    for (bx, by) in [
+        (Neumann, Neumann),
+        (Periodic, Neumann),
+        (Dirichlet, Dirichlet),
+        (Periodic, Periodic),
+        (DirichletNeumann, Neumann),
+        (NeumannDirichlet, Dirichlet),
+    ] {
+        for axes in [
+            [growing(39, 1e-3, 1.2, bx), growing(39, 1e-3, 1.2, by)],
+            [stretched(76, 1e-3, 1.2, bx), stretched(78, 1e-3, 1.2, by)],
+            [growing(60, 1e-4, 1.2, bx), PoissonAxis::uniform(48, 0.01, by)],
+            [PoissonAxis::uniform(48, 0.01, bx), growing(60, 1e-4, 1.2, by)],
+            [stretched(100, 1e-4, 1.1, bx), growing(61, 1e-4, 1.2, by)],
+        ] {
+            let r = check(axes.clone(), 0.0);
+            println!("{bx:?} {by:?} {} {}: {r:e}", axes[0].cells(), axes[1].cells());
+            worst = worst.max(r);
+        }
+    }
+    println!("{worst:e}");
+}

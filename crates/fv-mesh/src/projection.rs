@@ -421,6 +421,11 @@ impl<const D: usize> Projection<D> {
     pub fn wall_impulse(&self) -> Vector {
         self.wall_impulse
     }
+    /// Net outflow \[m³/s\] that the outlets, or without any the inlets, were shifted by in the last step, so that what
+    /// enters leaves.
+    pub fn imbalance(&self) -> f64 {
+        self.boundaries.imbalance
+    }
     /// Length of the last step \[s\].
     pub fn last_dt(&self) -> f64 {
         self.last_dt

@@ -1,6 +1,8 @@
-//! Direct solvers of the discrete Poisson equation on uniform boxes.
+//! Direct solvers of the discrete Poisson equation on boxes.
 //!
-//! With cell-centred unknowns φ on `cells` cells of size h_a along axis a, [`DirectPoisson`] solves
+//! [`DirectPoisson`] serves uniform boxes and [`SeparablePoisson`] those with cells stretched along any
+//! axis; [`Poisson`] takes the faster one that serves. With cell-centred unknowns φ on `cells` cells of
+//! size h_a along axis a, [`DirectPoisson`] solves
 //!
 //! ```text
 //! Σ_a (φ_{i−1} − 2 φ_i + φ_{i+1}) / h_a² − s φ = f
@@ -26,6 +28,7 @@
 //! ```
 
 mod aligned;
+mod auto;
 mod column;
 mod direct;
 mod layers;
@@ -37,6 +40,7 @@ mod tests;
 mod transform;
 mod tridiagonal;
 
+pub use auto::{AxisMethod, Poisson, PoissonChoice};
 pub use direct::DirectPoisson;
 pub use poisson_axis::PoissonAxis;
 pub use separable::SeparablePoisson;
@@ -127,8 +131,9 @@ pub enum PoissonError {
     },
     /// Infinities or NaN in the right-hand side. The solution was not written.
     #[error(
-        "the right-hand side sums to {sum} in layer {low} or {high} (of the last axis): it holds a \
-         value that is not finite, or too large to add up; look for the step where the fields it is made of diverged"
+        "the right-hand side sums to {sum} in layer {} (of the last axis): it holds a \
+         value that is not finite, or too large to add up; look for the step where the fields it is made of diverged",
+        if low == high { low.to_string() } else { format!("{low} or {high}") }
     )]
     NonFinite {
         /// One of the two layers that are transformed together.
@@ -157,7 +162,8 @@ pub enum PoissonError {
 pub trait PoissonSolver<const D: usize>: Send {
     /// Replaces the right-hand side f by the solution φ; both are dense with x fastest.
     ///
-    /// If the operator is singular, the mean of f is removed and reported, and φ has zero mean.
+    /// If the operator is singular, the mean of f is removed and reported, and φ has zero mean,
+    /// both weighted with the volumes of the cells.
     ///
     /// # Errors
     ///

@@ -77,7 +77,7 @@ impl Layout {
         }
         let sweep = Sweep::new(sweep.ok_or(PoissonError::NoCells { axis: swept })?, 1.0 / gain);
 
-        let (layer, blocks) = (cells[0] * cells[1], (cells[0] * cells[1]).div_ceil(LANES));
+        let blocks = (cells[0] * cells[1]).div_ceil(LANES);
         // Single rows are put together so that they fill the groups they are worked on in.
         let group = match (&transforms[0], cells[1]) {
             (None, 1) => LANES,
@@ -100,7 +100,6 @@ impl Layout {
             mean_gain,
             cells,
         })
-        .inspect(|layout| debug_assert!(layout.stride > layer))
     }
 
     /// Work space for every part.

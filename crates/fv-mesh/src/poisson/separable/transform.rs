@@ -65,8 +65,8 @@ impl Transform {
         }
         let eigen = Eigen::new(axis).ok_or(PoissonError::Eigen { axis: place, cells: n })?;
         let root: Vec<f64> = axis.widths.iter().map(|w| w.sqrt()).collect();
-        let forward = Matrix::new(n, side, |k, i| eigen.vectors[(i, k)] * root[i]);
-        let backward = Matrix::new(n, side, |i, k| eigen.vectors[(i, k)] / root[i]);
+        let forward = Matrix::new(n, side, |k, i| eigen.vectors[k][i] * root[i]);
+        let backward = Matrix::new(n, side, |i, k| eigen.vectors[k][i] / root[i]);
         Ok((Self::Dense(DenseTransform { n, forward, backward }), eigen.values, axis.length().sqrt()))
     }
 

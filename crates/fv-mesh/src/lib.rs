@@ -26,6 +26,7 @@ mod error;
 mod field;
 mod grid;
 mod kernels;
+pub mod linear;
 pub mod poisson;
 mod projection;
 mod statistics;

@@ -127,7 +127,7 @@ impl<const D: usize> Multigrid<D> {
         if begun.norm > 0.0 {
             self.hierarchy.cycle();
             self.direct(&begun, 0.0);
-            self.sweeps.advance(1.0, &self.p, &self.q, 0.0, &mut self.r, &mut [], rhs_in_phi_out);
+            self.advance(&begun, 1.0, rhs_in_phi_out);
         }
         Ok(())
     }

@@ -53,7 +53,7 @@ fn agrees_with_the_direct_solver() {
     ] {
         let cells = [12, 7, 17];
         let params = MultigridParams { tolerance: 1e-12, ..Default::default() };
-        let axes = std::array::from_fn(|a| uniform(cells[a], bounds[a]));
+        let axes: [_; 3] = std::array::from_fn(|a| uniform(cells[a], bounds[a]));
         let mut solver = MultigridCg::new(axes, shift, params).unwrap();
         let h = cells.map(|n| 1.0 / n as f64);
         let mut direct = DirectPoisson::new_helmholtz(cells, h, bounds, shift).unwrap();

@@ -4,7 +4,7 @@
 
 use siltflow::coupling::{CouplingError, Particles, Simulation, WeightBalance};
 use siltflow::dem::{DemError, Disc, HalfSpace, Material, RigidBodies};
-use siltflow::flow::{Diffusion, CartesianGrid, FlowError, Fluid, Projection, Side};
+use siltflow::flow::{CartesianGrid, Diffusion, FlowError, Fluid, Projection, Side};
 use siltflow::ibm::Forcing;
 use siltflow::interfaces::{Freedom, Periods, Point, Pose, Twist, Vector};
 

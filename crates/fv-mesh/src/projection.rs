@@ -1,10 +1,11 @@
 //! The flow algorithm for time-accurate runs.
-use crate::boundary::{Boundaries, FaceKind};
+use crate::boundary::Boundaries;
 use crate::grid::GHOSTS;
 use crate::implicit::ImplicitDiffusion;
 use crate::kernels::{self, Advance, Momentum};
 use crate::metrics::Metrics;
-use crate::poisson::{AxisBounds, DirectPoisson};
+use crate::poisson::PoissonInfo;
+use crate::pressure::{Pressure, PressureSolver};
 use crate::statistics::{self, Measure};
 use crate::{CartesianGrid, Convection, Field, FlowError, FlowStatistics, Side, Sides, Velocity, walls};
 use interfaces::{Checkpoint, RestartError, Vector};
@@ -61,7 +62,9 @@ pub struct Projection<const D: usize> {
     tendency: [Field<D>; D],
     pressure: Field<D>,
     phi: Vec<f64>,
-    poisson: DirectPoisson<D>,
+    /// Scratch of one row.
+    row: Vec<f64>,
+    pressure_solver: Pressure<D>,
     time: f64,
     step: u64,
     last_dt: f64,
@@ -95,18 +98,7 @@ impl<const D: usize> Projection<D> {
         let metrics = Metrics::new(&grid, std::array::from_fn(|a| sides.periodic(a)));
         let velocity = Velocity::zeros(&grid, &sides);
         let boundaries = Boundaries::new(&grid, sides, &metrics)?;
-        let mut bounds = [AxisBounds::Periodic; D];
-        for (a, bounds) in bounds.iter_mut().enumerate() {
-            let Some(kinds) = boundaries.kinds(a) else { continue };
-            let given = kinds.map(|k| k.iter().all(|&k| k == FaceKind::Pressure));
-            *bounds = match given {
-                [false, false] => AxisBounds::Neumann,
-                [true, true] => AxisBounds::Dirichlet,
-                [false, true] => AxisBounds::NeumannDirichlet,
-                [true, false] => AxisBounds::DirichletNeumann,
-            };
-        }
-        let poisson = DirectPoisson::new(grid.cells(), grid.spacing(), bounds)?;
+        let pressure_solver = Pressure::new(&grid, &boundaries, PressureSolver::Auto)?;
         let field = || std::array::from_fn(|_| Field::zeros(&grid));
         let mut flow = Self {
             momentum: Momentum::new(&grid, &metrics, Convection::Central),
@@ -117,7 +109,8 @@ impl<const D: usize> Projection<D> {
             tendency: field(),
             pressure: Field::zeros(&grid),
             phi: vec![0.0; grid.n_cells()],
-            poisson,
+            row: vec![0.0; grid.cells()[0]],
+            pressure_solver,
             diffusion: Diffusion::Auto,
             implicit_axes: [false; D],
             time: 0.0,
@@ -148,6 +141,15 @@ impl<const D: usize> Projection<D> {
     pub fn with_diffusion(mut self, diffusion: Diffusion) -> Self {
         self.diffusion = diffusion;
         self
+    }
+
+    /// The same with a pressure solver as told rather than [`PressureSolver::Auto`].
+    ///
+    /// # Errors
+    /// [`FlowError::Poisson`] if it cannot serve these sides.
+    pub fn with_pressure_solver(mut self, solver: PressureSolver) -> Result<Self, FlowError> {
+        self.pressure_solver = Pressure::new(&self.grid, &self.boundaries, solver)?;
+        Ok(self)
     }
 
     /// Sets every velocity component to `u(x)[c]` at its nodes \[m/s\], outlets included; walls and inlets keep theirs.
@@ -291,7 +293,7 @@ impl<const D: usize> Projection<D> {
         self.fill_velocity();
         let scale = self.fluid.density / dt;
         let (grid, metrics, velocity) = (&self.grid, &self.metrics, &self.velocity.components);
-        let solved = self.poisson.solve_rows(
+        let solved = self.pressure_solver.solve_rows(
             // Called from code that is compiled for the processor at hand.
             #[inline(always)]
             |r, row: &mut [f64]| kernels::divergence_row(grid, metrics, r, velocity, scale, row),
@@ -389,7 +391,7 @@ impl<const D: usize> Projection<D> {
             &self.metrics,
             &self.velocity.components,
             [self.fluid.density, self.fluid.viscosity],
-            &mut self.phi,
+            &mut self.row,
         )
     }
 
@@ -420,6 +422,14 @@ impl<const D: usize> Projection<D> {
     /// Impulse of the bounded sides on the fluid during the last step \[N s\].
     pub fn wall_impulse(&self) -> Vector {
         self.wall_impulse
+    }
+    /// Which pressure solver works here, and why: a sentence.
+    pub fn pressure_solver(&self) -> &str {
+        self.pressure_solver.reason()
+    }
+    /// What the last pressure solution told: iterations, residual.
+    pub fn pressure_info(&self) -> PoissonInfo {
+        self.pressure_solver.info()
     }
     /// Net outflow \[m³/s\] that the outlets, or without any the inlets, were shifted by in the last step, so that what
     /// enters leaves.
@@ -463,6 +473,9 @@ impl<const D: usize> Checkpoint for Projection<D> {
         sink("clock", &[self.time, self.step as f64, self.last_dt]);
         sink("largest", &self.largest);
         sink("friction", self.friction[0].as_slice());
+        if self.pressure_solver.remembers() {
+            sink("correction", &self.phi);
+        }
         sink("sides", &self.boundaries.memory());
         sink("implicit", &self.implicit_axes.map(|i| f64::from(u8::from(i))));
     }
@@ -479,6 +492,10 @@ impl<const D: usize> Checkpoint for Projection<D> {
         (self.time, self.step, self.last_dt) = (clock[0], clock[1] as u64, clock[2]);
         self.largest.copy_from_slice(RestartError::take(source, "largest", D)?);
         self.friction[0] = Vector::from_column_slice(RestartError::take(source, "friction", 3)?);
+        if self.pressure_solver.remembers() {
+            let n = self.phi.len();
+            self.phi.copy_from_slice(RestartError::take(source, "correction", n)?);
+        }
         let sides = RestartError::take(source, "sides", self.boundaries.memory().len())?;
         self.boundaries.recall(&self.metrics, self.time, sides);
         let implicit = RestartError::take(source, "implicit", D)?;

@@ -33,9 +33,9 @@ mod column;
 mod direct;
 mod layers;
 mod modes;
+pub mod multigrid;
 mod poisson_axis;
 mod separable;
-pub mod multigrid;
 #[cfg(test)]
 mod tests;
 mod transform;
@@ -165,7 +165,9 @@ pub enum PoissonError {
         value: f64,
     },
     /// A wrong number of faces.
-    #[error("{length} values were given for the faces of axis {axis} but there are {faces}; give one per face, x fastest")]
+    #[error(
+        "{length} values were given for the faces of axis {axis} but there are {faces}; give one per face, x fastest"
+    )]
     Faces {
         /// Axis, 0 for x.
         axis: usize,
@@ -173,6 +175,15 @@ pub enum PoissonError {
         length: usize,
         /// Faces that need one.
         faces: usize,
+    },
+    /// A direct solver for a side on a part of which the pressure is given.
+    #[error(
+        "the pressure is given on a part of a side of axis {axis}; the direct solver needs one condition per side: \
+         take multigrid, or Auto"
+    )]
+    PartialOutlet {
+        /// Axis, 0 for x.
+        axis: usize,
     },
     /// An iterative solver ran out of iterations. The best φ found was written.
     #[error(

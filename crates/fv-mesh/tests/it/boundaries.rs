@@ -74,7 +74,8 @@ fn an_inlet_that_stops_leaves_fluid_at_rest() {
 #[test]
 fn patches_let_fluid_in_and_out_of_one_side() {
     let grid = CartesianGrid::new([20, 20], [1.0, 1.0]).unwrap();
-    let patch = |low: f64, high: f64, side: Side| Patch { lower: [0.0, low, 0.0], upper: [1.0, high, 0.0], side };
+    let patch =
+        |low: f64, high: f64, side: Side| Patch { lower: [0.0, low, 0.0], upper: [1.0, high, 0.0], side };
     let inlet = || Side::Inlet(Profile::Parabolic { peak: 1.0 });
     let left = vec![patch(0.6, 0.9, inlet()), patch(0.0, 1.0, Side::WALL)];
     let right = vec![patch(0.1, 0.4, Side::ConvectiveOutlet), patch(0.0, 1.0, Side::WALL)];
@@ -91,7 +92,10 @@ fn patches_let_fluid_in_and_out_of_one_side() {
     let gap = vec![patch(0.5, 1.0, Side::WALL)];
     let sides = [[Side::Patches(gap), Side::WALL], Side::WALL.both()];
     let error = Projection::new(grid, sides, OIL).err();
-    assert!(matches!(&error, Some(FlowError::Boundary { what }) if what.contains("lower side of axis 0")), "{error:?}");
+    assert!(
+        matches!(&error, Some(FlowError::Boundary { what }) if what.contains("lower side of axis 0")),
+        "{error:?}"
+    );
 }
 
 #[test]

@@ -48,7 +48,9 @@ fn taylor_green_has_the_order_of_the_convection_scheme() {
             let [coarse, fine] = [48, 96].map(|n| taylor_green(n, stretched, scheme, 8 * n));
             let velocity = coarse[0].order_to(fine[0], 2.0);
             let pressure = coarse[1].order_to(fine[1], 2.0);
-            println!("{scheme:?} stretched {stretched}: velocity {velocity:.3?}, pressure {pressure:.3?}; {fine:?}");
+            println!(
+                "{scheme:?} stretched {stretched}: velocity {velocity:.3?}, pressure {pressure:.3?}; {fine:?}"
+            );
             // First order shows itself late: the leading error is far from small.
             let slack = if theory == 1.0 { 0.15 } else { 0.05 };
             assert!(velocity[0] > theory - slack && velocity[1] > theory - 0.2, "{scheme:?} {velocity:?}");
@@ -98,8 +100,7 @@ fn ethier_steinman(x: [f64; 3], t: f64, nu: f64) -> ([f64; 3], f64) {
     };
     let cycle = |i: usize| {
         let (p, q, r) = (x[i], x[(i + 1) % 3], x[(i + 2) % 3]);
-        (2.0 * a * p).exp()
-            + 2.0 * (a * p + d * q).sin() * (a * r + d * p).cos() * (a * (q + r)).exp()
+        (2.0 * a * p).exp() + 2.0 * (a * p + d * q).sin() * (a * r + d * p).cos() * (a * (q + r)).exp()
     };
     let p = -0.5 * a * a * decay * decay * (cycle(0) + cycle(1) + cycle(2));
     ([component(0), component(1), component(2)], p)

@@ -24,17 +24,16 @@ fn node<const D: usize>(grid: &CartesianGrid<D>, c: Option<usize>, cell: [usize;
 }
 
 /// Velocity error over the faces inside the box.
-pub(crate) fn velocity<const D: usize>(
-    flow: &Projection<D>,
-    exact: impl Fn([f64; D]) -> [f64; D],
-) -> Norms {
+pub(crate) fn velocity<const D: usize>(flow: &Projection<D>, exact: impl Fn([f64; D]) -> [f64; D]) -> Norms {
     let grid = flow.grid();
     let (mut sum, mut volume, mut max) = (0.0, 0.0, 0.0_f64);
     for c in 0..D {
         let lattice = flow.velocity().lattice(c);
         let first = usize::from(!flow.sides().periodic(c));
         for cell in (0..grid.n_cells()).map(|i| grid.cell(i)).filter(|cell| cell[c] >= first) {
-            let at = std::array::from_fn(|a| if a < D { cell[a] as isize - isize::from(a == c) * first as isize } else { 0 });
+            let at = std::array::from_fn(|a| {
+                if a < D { cell[a] as isize - isize::from(a == c) * first as isize } else { 0 }
+            });
             let Some(index) = lattice.index(at) else { continue };
             let error = flow.velocity().component(c)[index] - exact(node(grid, Some(c), cell))[c];
             let weight = grid.cell_volume(cell);

@@ -56,7 +56,12 @@ impl<const D: usize> MultigridCg<D> {
         self.iterate(begun, phi, warm)
     }
 
-    fn iterate(&mut self, mut begun: Begun, phi: &mut [f64], warm: bool) -> Result<PoissonInfo, PoissonError> {
+    fn iterate(
+        &mut self,
+        mut begun: Begun,
+        phi: &mut [f64],
+        warm: bool,
+    ) -> Result<PoissonInfo, PoissonError> {
         let m = &mut self.multigrid;
         if begun.norm == 0.0 {
             begun.residual = 0.0;

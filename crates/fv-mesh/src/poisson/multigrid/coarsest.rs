@@ -62,7 +62,8 @@ impl Coarsest {
                 let sum: f64 = (0..j).map(|m| current[m] * other[m]).sum();
                 current[j] = (current[j] - sum) * other[j];
             }
-            let (diagonal, pivot) = (current[i], current[i] - current[..i].iter().map(|x| x * x).sum::<f64>());
+            let (diagonal, pivot) =
+                (current[i], current[i] - current[..i].iter().map(|x| x * x).sum::<f64>());
             // Cells that vanishing coefficients cut off get no correction.
             current[i] = if pivot > 1e-6 * diagonal { 1.0 / pivot.sqrt() } else { 0.0 };
         }

@@ -80,7 +80,8 @@ impl<const D: usize> Multigrid<D> {
             if beta.len() != count {
                 return Err(PoissonError::Faces { axis, length: beta.len(), faces: count });
             }
-            if let Some((face, &value)) = beta.iter().enumerate().find(|(_, b)| !(**b >= 0.0 && **b <= 1e30)) {
+            if let Some((face, &value)) = beta.iter().enumerate().find(|(_, b)| !(**b >= 0.0 && **b <= 1e30))
+            {
                 return Err(PoissonError::Coefficient { axis, face, value });
             }
         }

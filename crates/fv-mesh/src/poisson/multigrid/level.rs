@@ -59,8 +59,10 @@ impl Level {
         if let Some([_, middle, last]) = &level.transfer {
             let coarse = [0, middle.children.len(), last.children.len()];
             let tasks_below = coarse[2].div_ceil(level.coarse_per_task());
-            level.restrict_scratch = (0..tasks_below).map(|_| RestrictScratch::new(&level.stencil, coarse[1])).collect();
-            level.prolong_scratch = (0..tasks).map(|_| ProlongScratch::new(&level.stencil, coarse[1])).collect();
+            level.restrict_scratch =
+                (0..tasks_below).map(|_| RestrictScratch::new(&level.stencil, coarse[1])).collect();
+            level.prolong_scratch =
+                (0..tasks).map(|_| ProlongScratch::new(&level.stencil, coarse[1])).collect();
         }
         level
     }
@@ -78,7 +80,16 @@ impl Level {
         let (stencil, phi, f) = (&self.stencil, &self.phi, &self.f);
         let chunk = self.per_task * stencil.layer();
         let job = |task: usize, out: &mut [f32], ring: &mut [f32]| {
-            Arch::new().dispatch(Smooth { stencil, phi, f, first, zero, start: task * self.per_task, out, ring });
+            Arch::new().dispatch(Smooth {
+                stencil,
+                phi,
+                f,
+                first,
+                zero,
+                start: task * self.per_task,
+                out,
+                ring,
+            });
         };
         if let [ring] = self.rings.as_mut_slice() {
             job(0, &mut self.next, ring);

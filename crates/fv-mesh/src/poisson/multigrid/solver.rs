@@ -48,7 +48,8 @@ impl<const D: usize> Multigrid<D> {
                 return Err(PoissonError::NoCells { axis });
             }
             let total: f64 = a.widths.iter().sum();
-            let bad = |w: f64| !(w > 0.0 && w.is_finite() && (w * w).is_normal() && (1.0 / (w * w)).is_normal());
+            let bad =
+                |w: f64| !(w > 0.0 && w.is_finite() && (w * w).is_normal() && (1.0 / (w * w)).is_normal());
             if let Some(&spacing) = a.widths.iter().chain([&total]).find(|&&w| bad(w)) {
                 return Err(PoissonError::Spacing { axis, spacing });
             }
@@ -66,15 +67,17 @@ impl<const D: usize> Multigrid<D> {
                 return Err(PoissonError::Parameter { name, value, least });
             }
         }
-        let narrowest =
-            axes.iter().filter(|a| a.widths.len() > 1).flat_map(|a| &a.widths).fold(f64::INFINITY, |m, &w| m.min(w));
+        let narrowest = axes
+            .iter()
+            .filter(|a| a.widths.len() > 1)
+            .flat_map(|a| &a.widths)
+            .fold(f64::INFINITY, |m, &w| m.min(w));
         let narrowest = if narrowest.is_finite() { narrowest } else { axes[0].widths[0] };
         let level = |a: usize| AxisLevel { widths: axes[a].widths.clone(), ends: axis::ends(axes[a].ends) };
         // The last axis of the box stays the last one.
         let none = AxisLevel { widths: vec![1.0], ends: [axis::End::ZeroGradient; 2] };
         let levels = if D == 3 { [level(0), level(1), level(2)] } else { [level(0), none, level(1)] };
-        let singular =
-            shift == 0.0 && levels.iter().all(|a| !a.ends.contains(&axis::End::ZeroValue));
+        let singular = shift == 0.0 && levels.iter().all(|a| !a.ends.contains(&axis::End::ZeroValue));
         let unit = narrowest * narrowest;
         let operator = Stencil::new(&levels, 1.0, shift, params.variable);
         let hierarchy = Hierarchy::new(
@@ -143,8 +146,7 @@ impl<const D: usize> Multigrid<D> {
         }
         let removed = if self.singular { mean } else { 0.0 };
         let scale = if square > 0.0 { 1.0 / square.sqrt() } else { 0.0 };
-        let square_left =
-            self.sweeps.centre(removed, scale, &mut self.r, &mut self.hierarchy.levels[0].f);
+        let square_left = self.sweeps.centre(removed, scale, &mut self.r, &mut self.hierarchy.levels[0].f);
         // What is left of a constant is round-off.
         let norm = if square_left > 1e-28 * square { square_left.sqrt() } else { 0.0 };
         Ok(Begun { removed_mean: 0.0 - removed, norm, scale, residual: 1.0 })

@@ -63,7 +63,8 @@ impl<T: Real> Stencil<T> {
             axis.coefficients(variable).map(|t| t.into_iter().map(|c| T::of(c * unit)).collect::<Vec<T>>())
         });
         let [x, m, l] = tables;
-        let (low, high) = ([x[0].clone(), m[0].clone(), l[0].clone()], [x[1].clone(), m[1].clone(), l[1].clone()]);
+        let (low, high) =
+            ([x[0].clone(), m[0].clone(), l[0].clone()], [x[1].clone(), m[1].clone(), l[1].clone()]);
         let stride = cells[0] + 2;
         let beta = variable.then(|| {
             std::array::from_fn(|a| {
@@ -153,8 +154,7 @@ impl<T: Real> Stencil<T> {
             let at = |r: usize| r * stride;
             beta_x = &x[at(k * rows + j)..][..n + 1];
             let (a, b) = (at(k * (rows + 1) + j), at(k * rows + j));
-            betas =
-                [&m[a..][..n], &m[a + stride..][..n], &l[b..][..n], &l[b + self.layer()..][..n]];
+            betas = [&m[a..][..n], &m[a + stride..][..n], &l[b..][..n], &l[b + self.layer()..][..n]];
         }
         Around {
             rows: [before, after, row(below, j), row(above, j)],
@@ -233,7 +233,11 @@ impl<T: Real> Stencil<T> {
                     let (wl, wr) = (low[i] * bl[i], high[i] * br[i]);
                     let (wa, wb, wc, wd) = (ca * ba[i], cb * bb[i], cc * bc[i], cd * bd[i]);
                     let diagonal = (wl + wr) + (wa + wb) + (wc + wd) + self.shift;
-                    let sum = f[i] + wl * left[i] + wr * right[i] + (wa * a[i] + wb * b[i]) + (wc * c[i] + wd * d[i]);
+                    let sum = f[i]
+                        + wl * left[i]
+                        + wr * right[i]
+                        + (wa * a[i] + wb * b[i])
+                        + (wc * c[i] + wd * d[i]);
                     // A cell that β cuts off from all others and from the ends.
                     let new = if diagonal > T::default() { sum / diagonal } else { T::default() };
                     out[i] = x[i] + mask[i] * (new - x[i]);

@@ -92,8 +92,10 @@ fn the_cycle_is_symmetric_and_definite() {
     let axes = [axis(&tanh(13, 1.5), Periodic), uniform(6, Neumann), axis(&tanh(21, 2.0), NeumannDirichlet)];
     let v = volumes(&axes);
     let n = v.len();
-    let mut multigrid = Multigrid::new(axes, 0.0, MultigridParams { sweeps: 2, ..Default::default() }).unwrap();
-    let product = |a: &[f64], b: &[f64]| v.iter().zip(a.iter().zip(b)).map(|(v, (a, b))| v * a * b).sum::<f64>();
+    let mut multigrid =
+        Multigrid::new(axes, 0.0, MultigridParams { sweeps: 2, ..Default::default() }).unwrap();
+    let product =
+        |a: &[f64], b: &[f64]| v.iter().zip(a.iter().zip(b)).map(|(v, (a, b))| v * a * b).sum::<f64>();
     let (x, y) = (noise(n, 1), noise(n, 2));
     let (mut mx, mut my) = (x.clone(), y.clone());
     multigrid.v_cycle(&mut mx).unwrap();

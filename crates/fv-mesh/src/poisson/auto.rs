@@ -17,12 +17,22 @@ pub enum AxisMethod {
     Sweep,
 }
 
+/// The solvers that [`Poisson`] picks from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum PoissonKind {
+    /// [`DirectPoisson`].
+    Direct,
+    /// [`SeparablePoisson`].
+    Separable,
+}
+
 /// Which solver serves a box, and why: its [`Display`](fmt::Display) is a sentence such as
 /// "transforms along x, sweep along y: y is stretched".
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoissonChoice {
-    /// [`DirectPoisson`], for uniform boxes; else [`SeparablePoisson`].
-    pub uniform: bool,
+    /// The solver.
+    pub kind: PoissonKind,
     /// How each axis is dealt with.
     pub methods: Vec<AxisMethod>,
     /// Time of a solve on one thread per cell \[ns\]: an estimate for a processor with AVX2 at about
@@ -66,8 +76,9 @@ impl PoissonChoice {
                 (true, false) => Reason::None,
             })
             .collect();
-        let nanoseconds_per_cell = cost(uniform, swept == D - 1, &methods);
-        Self { uniform, methods, nanoseconds_per_cell, reasons }
+        let kind = if uniform { PoissonKind::Direct } else { PoissonKind::Separable };
+        let nanoseconds_per_cell = cost(kind, swept == D - 1, &methods);
+        Self { kind, methods, nanoseconds_per_cell, reasons }
     }
 
     /// The names of the axes for which `which` holds.
@@ -77,13 +88,13 @@ impl PoissonChoice {
 }
 
 /// Measured on one core of an EPYC 7003.
-fn cost(uniform: bool, last: bool, methods: &[AxisMethod]) -> f64 {
+fn cost(kind: PoissonKind, last: bool, methods: &[AxisMethod]) -> f64 {
     let transforms: f64 = methods
         .iter()
-        .map(|method| match (method, uniform) {
+        .map(|method| match (method, kind) {
             (AxisMethod::Sweep, _) => 0.0,
-            (AxisMethod::Transform, true) => 3.0,
-            (AxisMethod::Transform, false) => 4.0,
+            (AxisMethod::Transform, PoissonKind::Direct) => 3.0,
+            (AxisMethod::Transform, PoissonKind::Separable) => 4.0,
             (AxisMethod::Product { cells }, _) => 1.0 + 0.085 * *cells as f64,
         })
         .sum();
@@ -158,7 +169,7 @@ impl<const D: usize> Poisson<D> {
             a.check(axis)?;
         }
         let choice = PoissonChoice::new(&axes);
-        let solver = if choice.uniform {
+        let solver = if choice.kind == PoissonKind::Direct {
             let (cells, ends) = (axes.each_ref().map(PoissonAxis::cells), axes.each_ref().map(|a| a.ends));
             let spacing = axes.each_ref().map(|a| a.length() / a.cells() as f64);
             Solver::Direct(Box::new(DirectPoisson::new_helmholtz(cells, spacing, ends, shift)?))
@@ -213,39 +224,40 @@ mod tests {
 
     #[test]
     fn the_choice_is_explained() {
-        for (axes, direct, words) in [
+        use PoissonKind::{Direct, Separable};
+        for (axes, kind, words) in [
             (
                 [uniform(4, Periodic), uniform(5, Neumann), uniform(6, NeumannDirichlet)],
-                true,
+                Direct,
                 "transforms along x and y, sweep along z: the ends of z differ",
             ),
             (
                 [uniform(4, Periodic), uniform(5, Neumann), uniform(6, Periodic)],
-                true,
+                Direct,
                 "transforms along x and y, sweep along z: all axes are uniform",
             ),
             (
                 [uniform(4, Periodic), uniform(5, DirichletNeumann), uniform(6, Neumann)],
-                false,
+                Separable,
                 "transforms along x and z, sweep along y: the ends of y differ",
             ),
             (
                 [stretched(4, Neumann), stretched(6, Neumann), stretched(5, Neumann)],
-                false,
+                Separable,
                 "products with 4 eigenvectors along x, products with 5 eigenvectors along z, \
                  sweep along y: x, y and z are stretched",
             ),
             (
                 [uniform(4, NeumannDirichlet), stretched(6, Neumann), uniform(5, Neumann)],
-                false,
+                Separable,
                 "transforms along z, products with 4 eigenvectors along x, \
                  sweep along y: y is stretched, the ends of x differ",
             ),
         ] {
             let poisson = Poisson::new(axes, 0.0).unwrap();
             assert_eq!(poisson.choice().to_string(), words);
-            assert_eq!(poisson.choice().uniform, direct);
-            assert_eq!(matches!(poisson.solver, Solver::Direct(_)), direct);
+            assert_eq!(poisson.choice().kind, kind);
+            assert_eq!(matches!(poisson.solver, Solver::Direct(_)), kind == Direct);
         }
     }
 

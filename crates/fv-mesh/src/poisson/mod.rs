@@ -41,7 +41,7 @@ mod tests;
 mod transform;
 mod tridiagonal;
 
-pub use auto::{AxisMethod, Poisson, PoissonChoice};
+pub use auto::{AxisMethod, Poisson, PoissonChoice, PoissonKind};
 pub use direct::DirectPoisson;
 pub use poisson_axis::PoissonAxis;
 pub use separable::SeparablePoisson;

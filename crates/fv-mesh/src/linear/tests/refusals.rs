@@ -56,6 +56,17 @@ fn indefinite_matrices_are_told() {
 }
 
 #[test]
+fn the_row_of_a_negative_pivot_is_told() {
+    // Small and large enough for both ways that `faer` factorises.
+    for (cells, row) in [([4, 3], 7), ([90, 80], 3000)] {
+        let mut a = laplacian(cells, [false, false]);
+        a.parts_mut().0[row] = -5.0;
+        let a = a.to_matrix().unwrap();
+        assert_eq!(SparseCholesky::new(&a).err(), Some(LinearError::NotPositiveDefinite { row }));
+    }
+}
+
+#[test]
 fn skew_matrices_break_down() {
     let a = Matrix::from_triplets(2, &[(0, 1, 1.0), (1, 0, -1.0)]).unwrap();
     assert!(matches!(

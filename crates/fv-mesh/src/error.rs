@@ -55,9 +55,10 @@ pub enum FlowError {
         /// The longest stable one \[s\].
         limit: f64,
     },
-    /// The velocity is no longer finite.
+    /// The velocity is no longer finite, or grew beyond what a step can carry.
     #[error(
-        "the velocity is not finite any more in step {step} (t = {time} s, dt = {dt} s, last Courant number {courant:.3e}); take a smaller time step"
+        "the velocity diverged in step {step} (t = {time} s, dt = {dt} s, Courant number {courant:.3e}), first or most in cell \
+         {cell:?}; take a smaller time step"
     )]
     Diverged {
         /// Step number.
@@ -66,8 +67,10 @@ pub enum FlowError {
         time: f64,
         /// Step length \[s\].
         dt: f64,
-        /// Courant number of the last good step.
+        /// Courant number, as far as it is known.
         courant: f64,
+        /// The cell (i, j, k) where it is largest or not finite.
+        cell: [usize; 3],
     },
     /// The pressure solver could not work.
     #[error(transparent)]

@@ -1,5 +1,5 @@
 //! Implicit diffusion by factors along the axes.
-use crate::boundary::{Boundaries, Lines};
+use crate::boundary::{Boundaries, Lines, extrapolation};
 use crate::grid::GHOSTS;
 use crate::kernels::layers_per_task;
 use crate::metrics::Metrics;
@@ -40,25 +40,27 @@ struct Tridiagonal {
 }
 
 impl Tridiagonal {
-    /// `low` and `high` are κ times what couples to the node below and above. `ends` say which part of the end
-    /// node's value stands beyond it; `None` for a periodic line.
-    fn new(first: usize, low: &[f64], high: &[f64], ends: Option<[f64; 2]>) -> Self {
+    /// `low` and `high` are κ times what couples to the node below and above. `ends` say which parts of the two nodes at
+    /// each end stand beyond it; `None` for a periodic line.
+    fn new(first: usize, mut low: Vec<f64>, mut high: Vec<f64>, ends: Option<[[f64; 2]; 2]>) -> Self {
         let n = low.len();
         let mut diagonal: Vec<f64> = (0..n).map(|i| 1.0 + low[i] + high[i]).collect();
         match ends {
             _ if n == 0 => Self::default(),
             Some([lower, upper]) => {
-                diagonal[0] -= low[0] * lower;
-                diagonal[n - 1] -= high[n - 1] * upper;
-                Self::factored(first, low, high, &diagonal)
+                diagonal[0] -= low[0] * lower[0];
+                diagonal[n - 1] -= high[n - 1] * upper[0];
+                high[0] += low[0] * lower[1];
+                low[n - 1] += high[n - 1] * upper[1];
+                Self::factored(first, &low, &high, &diagonal)
             }
-            None if n == 1 => Self::factored(first, low, high, &[1.0]),
+            None if n == 1 => Self::factored(first, &low, &high, &[1.0]),
             None => {
                 // Sherman & Morrison: the corners −low₀ and −high_{n−1} are a change of rank one.
                 let (alpha, beta, gamma) = (-low[0], -high[n - 1], -diagonal[0]);
                 diagonal[0] -= gamma;
                 diagonal[n - 1] -= alpha * beta / gamma;
-                let mut new = Self::factored(first, low, high, &diagonal);
+                let mut new = Self::factored(first, &low, &high, &diagonal);
                 let mut z = vec![0.0; n];
                 (z[0], z[n - 1]) = (gamma, beta);
                 new.solve_side_by_side(&mut z, |i| i, &mut [0.0]);
@@ -147,12 +149,15 @@ impl<const D: usize> ImplicitDiffusion<D> {
                 list[GHOSTS + first..GHOSTS + n].iter().map(|x| kappa[a] * x).collect()
             };
             let (low, high) = (scaled(&nodes.down), scaled(&nodes.up));
-            // A given value on the next node (normal component), or half way to it.
-            let fixed = if a == c { 0.0 } else { -1.0 };
+            // A value given on the next node (normal component), or half way to it.
+            let fixed = |upper: bool| {
+                let e = extrapolation(&self.grid, a, upper);
+                if a == c { [0.0; 2] } else { [e.first, e.second] }
+            };
             for kind in 0..4 {
-                let part = |bit: usize| if kind & bit != 0 { 1.0 } else { fixed };
+                let part = |bit: usize| if kind & bit != 0 { [1.0, 0.0] } else { fixed(bit == 2) };
                 let ends = (!metrics.periodic[a]).then(|| [part(1), part(2)]);
-                self.factors[c][a][kind] = Tridiagonal::new(first, &low, &high, ends);
+                self.factors[c][a][kind] = Tridiagonal::new(first, low.clone(), high.clone(), ends);
             }
         }
     }

@@ -37,31 +37,49 @@ fn lanes(n: usize, mut term: impl FnMut(usize) -> f64) -> f64 {
     ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]))
 }
 
-/// Largest |u_c| over all rows, or NaN if any value is not finite.
-pub(crate) fn largest<const D: usize>(u: &Field<D>) -> f64 {
-    Arch::new().dispatch(Largest(u))
+/// Largest |u_c|/h over all cells, h the distance of the nodes along c \[1/s\], or NaN if any value is not finite.
+pub(crate) fn largest_rate<const D: usize>(
+    grid: &CartesianGrid<D>,
+    metrics: &Metrics<D>,
+    c: usize,
+    u: &Field<D>,
+) -> f64 {
+    Arch::new().dispatch(LargestRate { grid, inv: &metrics.of(Some(c), c).inv_volume[GHOSTS..], c, u })
 }
 
-struct Largest<'a, const D: usize>(&'a Field<D>);
+struct LargestRate<'a, const D: usize> {
+    grid: &'a CartesianGrid<D>,
+    inv: &'a [f64],
+    c: usize,
+    u: &'a Field<D>,
+}
 
-impl<const D: usize> WithSimd for Largest<'_, D> {
+impl<const D: usize> WithSimd for LargestRate<'_, D> {
     type Output = f64;
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> f64 {
+        let Self { grid, inv, c, u } = self;
         let mut top = [0.0_f64; LANES];
         // 0·x is 0 for every finite x and NaN for the others.
         let mut check = [0.0_f64; LANES];
-        let mut take = |x: &[f64]| {
-            for (l, x) in x.iter().enumerate() {
-                let a = x.abs();
+        let mut take = |x: &[f64], inv: &[f64], scale: f64| {
+            for (l, (x, inv)) in x.iter().zip(inv).enumerate() {
+                let a = x.abs() * inv * scale;
                 top[l] = if a > top[l] { a } else { top[l] };
                 check[l] += 0.0 * x;
             }
         };
-        for r in 0..self.0.n_rows() {
-            let (whole, rest) = self.0.row(r).as_chunks::<LANES>();
-            whole.iter().for_each(|x| take(x));
-            take(rest);
+        for r in 0..u.n_rows() {
+            let (whole, rest) = u.row(r).as_chunks::<LANES>();
+            if c == 0 {
+                let (scales, last) = inv[..u.row(r).len()].as_chunks::<LANES>();
+                whole.iter().zip(scales).for_each(|(x, inv)| take(x, inv, 1.0));
+                take(rest, last, 1.0);
+            } else {
+                let scale = inv[kernels::row_place(grid, r)[c]];
+                whole.iter().for_each(|x| take(x, &[1.0; LANES], scale));
+                take(rest, &[1.0; LANES], scale);
+            }
         }
         top.into_iter().fold(0.0, f64::max) + check.into_iter().sum::<f64>()
     }

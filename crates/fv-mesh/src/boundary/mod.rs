@@ -2,9 +2,7 @@
 mod lines;
 mod side;
 mod state;
-#[cfg(test)]
-mod tests;
 
 pub(crate) use lines::Lines;
 pub use side::{Patch, Profile, Side, Sides};
-pub(crate) use state::{Boundaries, FaceKind};
+pub(crate) use state::{Boundaries, FaceKind, extrapolation};

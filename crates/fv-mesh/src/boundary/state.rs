@@ -1,5 +1,6 @@
 //! The boundary conditions as the flow algorithms use them: values on every face of the bounded sides.
 use super::{Lines, Patch, Profile, Side, Sides};
+use crate::grid::GHOSTS;
 use crate::metrics::Metrics;
 use crate::{CartesianGrid, Field, FlowError};
 
@@ -23,27 +24,54 @@ impl FaceKind {
     }
 }
 
-/// Ghost values of one component: value + factor·(value as far inside). Factor −1 fixes the value on the side, +1 its
-/// gradient.
+/// What holds for one component along a side.
 #[derive(Clone, Debug, Default)]
 struct Law {
+    /// The component has no gradient across the side (else it is given).
+    free: Vec<bool>,
+    /// What is given \[m/s\].
     value: Vec<f64>,
-    factor: Vec<f64>,
     /// By how much `value` changed in this step.
     change: Vec<f64>,
+}
+
+/// Ghost value half a cell beyond a side where u_w is given, by the parabola through the side and the two nodes before it:
+/// wall·u_w + first·u₀ + second·u₁. (The straight line would make an error of order 1 in the second difference.)
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extrapolation {
+    pub(crate) wall: f64,
+    pub(crate) first: f64,
+    pub(crate) second: f64,
+}
+
+impl Extrapolation {
+    /// For the first two of `n` cells from the side, `widths` wide; a straight line if there is only one.
+    pub(crate) fn new(n: usize, widths: [f64; 2]) -> Self {
+        if n < 2 {
+            return Self { wall: 2.0, first: -1.0, second: 0.0 };
+        }
+        let (a, b) = (0.5 * widths[0], widths[0] + 0.5 * widths[1]);
+        Self {
+            wall: 2.0 * (a + b) / b,
+            first: -(a + b) / (b - a),
+            second: 2.0 * a * a / (b * (b - a)),
+        }
+    }
 }
 
 /// The ends of the lines along an axis as one component sees them.
 pub(crate) struct Ends<'a> {
     kinds: [EndKinds<'a>; 2],
     changes: [&'a [f64]; 2],
+    /// What a change counts for in the ghost.
+    weights: [f64; 2],
     /// Some value given here changes in time.
     pub(crate) moving: bool,
 }
 
 enum EndKinds<'a> {
     Normal(&'a [FaceKind]),
-    Along(&'a [f64]),
+    Along(&'a [bool]),
 }
 
 impl Ends<'_> {
@@ -51,7 +79,7 @@ impl Ends<'_> {
     pub(crate) fn kind(&self, l: usize) -> usize {
         let free = |k: &EndKinds| match k {
             EndKinds::Normal(kinds) => !kinds[l].is_fixed(),
-            EndKinds::Along(factors) => factors[l] > 0.0,
+            EndKinds::Along(free) => free[l],
         };
         usize::from(free(&self.kinds[0])) + 2 * usize::from(free(&self.kinds[1]))
     }
@@ -60,9 +88,9 @@ impl Ends<'_> {
         let first = self.kind(0);
         (1..self.changes[0].len()).all(|l| self.kind(l) == first).then_some(first)
     }
-    /// By how much the given values (twice those half way, once those on the next node) changed in this step.
+    /// By how much the values beyond the ends changed in this step through what is given.
     pub(crate) fn changes(&self, l: usize) -> [f64; 2] {
-        [self.changes[0][l], self.changes[1][l]]
+        [self.weights[0] * self.changes[0][l], self.weights[1] * self.changes[1][l]]
     }
 }
 
@@ -83,6 +111,7 @@ struct SideState<const D: usize> {
     at: f64,
     /// Nothing here changes in time.
     steady: bool,
+    beyond: Extrapolation,
 }
 
 /// The largest imbalance of inlets, relative to what enters, that is put down to summing over faces.
@@ -169,17 +198,12 @@ impl<const D: usize> Boundaries<D> {
                 if state.kind.iter().all(|k| k.is_fixed()) {
                     continue;
                 }
-                let sign = [-1.0, 1.0][upper];
-                let (mut flow, mut area) = (0.0, 0.0);
-                for l in (0..lines.len()).filter(|&l| lines.inside(l)) {
-                    if state.kind[l] == FaceKind::Convective {
-                        let face = face_area(metrics, lines, l, D);
-                        flow += sign * face * state.normal[l];
-                        area += face;
-                    }
-                }
+                // The largest speed, so that what is left when the outflow stops leaves too.
+                let fastest = (0..lines.len())
+                    .filter(|&l| lines.inside(l) && state.kind[l] == FaceKind::Convective)
+                    .fold(0.0, |top: f64, l| top.max(state.normal[l].abs()));
                 let gap = self.grid.axis(a).width(if upper == 1 { lines.cells - 1 } else { 0 });
-                let courant = if area > 0.0 { (flow / area).max(0.0) * dt / gap } else { 0.0 };
+                let courant = fastest * dt / gap;
                 for (l, o) in lines.starts().enumerate().filter(|&(l, _)| lines.inside(l)) {
                     let inside =
                         u[if upper == 1 { o + (lines.cells - 1) * lines.step } else { o + lines.step }];
@@ -309,11 +333,12 @@ impl<const D: usize> Boundaries<D> {
         let pair = self.states[a].as_deref()?;
         let kinds = pair
             .each_ref()
-            .map(|s| if a == c { EndKinds::Normal(&s.kind) } else { EndKinds::Along(&s.laws[c].factor) });
+            .map(|s| if a == c { EndKinds::Normal(&s.kind) } else { EndKinds::Along(&s.laws[c].free) });
         let changes = pair
             .each_ref()
             .map(|s| if a == c { s.normal_change.as_slice() } else { s.laws[c].change.as_slice() });
-        Some(Ends { kinds, changes, moving: pair.iter().any(|s| !s.steady) })
+        let weights = pair.each_ref().map(|s| if a == c { 1.0 } else { s.beyond.wall });
+        Some(Ends { kinds, changes, weights, moving: pair.iter().any(|s| !s.steady) })
     }
 
     /// Per side of axis `a`: what holds at each face of the side, in the order of dense cells; `None` if periodic.
@@ -323,6 +348,28 @@ impl<const D: usize> Boundaries<D> {
         Some(std::array::from_fn(|upper| {
             (0..lines.len()).filter(|&l| lines.inside(l)).map(|l| pair[upper].kind[l]).collect()
         }))
+    }
+
+    /// Largest speed given on a side, per component, over the width of the cells there along that component.
+    pub(crate) fn rates(&self, metrics: &Metrics<D>) -> [f64; D] {
+        let mut rates = [0.0_f64; D];
+        for (lines, pair) in self.lines.iter().zip(&self.states) {
+            for state in pair.iter().flat_map(|p| p.iter()) {
+                for l in (0..lines.len()).filter(|&l| lines.inside(l)) {
+                    for c in 0..D {
+                        let (speed, at) = if c == lines.axis {
+                            (state.normal[l], if state.at == self.grid.axis(c).lower() { 0 } else { lines.cells - 1 })
+                        } else {
+                            let place = lines.place(l);
+                            let b = usize::from(lines.across[0] != c);
+                            (state.laws[c].value[l], place[b] - GHOSTS)
+                        };
+                        rates[c] = rates[c].max(speed.abs() * metrics.of(Some(c), c).inv_volume[GHOSTS + at]);
+                    }
+                }
+            }
+        }
+        rates
     }
 
     /// The velocities on the boundary faces, which outlets remember; all sides one after the other.
@@ -352,7 +399,7 @@ impl<const D: usize> SideState<D> {
             if c == a {
                 Law::default()
             } else {
-                Law { value: list(), factor: vec![1.0; lines.len()], change: list() }
+                Law { free: vec![true; lines.len()], value: list(), change: list() }
             }
         });
         let mut kind = vec![FaceKind::Closed; lines.len()];
@@ -379,7 +426,7 @@ impl<const D: usize> SideState<D> {
             };
         }
         let steady = !side.any(&|s| matches!(s, Side::Inlet(Profile::Function(_))));
-        Ok(Self { side, kind, normal: list(), normal_change: list(), pressure, laws, at, steady })
+        Ok(Self { side, kind, normal: list(), normal_change: list(), pressure, laws, at, steady, beyond: extrapolation(grid, a, upper) })
     }
 
     fn has_pressure(&self) -> bool {
@@ -414,10 +461,10 @@ impl<const D: usize> SideState<D> {
                         self.normal[l] = u;
                     }
                 } else {
-                    let value = 2.0 * given.unwrap_or(0.0);
-                    self.laws[c].change[l] = value - self.laws[c].value[l];
-                    self.laws[c].value[l] = value;
-                    self.laws[c].factor[l] = if given.is_some() { -1.0 } else { 1.0 };
+                    let (law, value) = (&mut self.laws[c], given.unwrap_or(0.0));
+                    law.change[l] = value - law.value[l];
+                    law.value[l] = value;
+                    law.free[l] = given.is_none();
                 }
             }
         }
@@ -444,19 +491,27 @@ impl<const D: usize> SideState<D> {
     /// A component along the side.
     fn along(&self, lines: &Lines, upper: usize, c: usize, u: &mut [f64]) {
         let (n, s) = (lines.cells, lines.step);
-        let Law { value, factor, .. } = &self.laws[c];
-        let second = if n > 1 { s } else { 0 };
-        for (o, (value, factor)) in lines.starts().zip(value.iter().zip(factor)) {
-            if upper == 1 {
+        let Law { value, free, .. } = &self.laws[c];
+        let Extrapolation { wall, first, second } = self.beyond;
+        let inward = if n > 1 { s } else { 0 };
+        for (o, (&value, &free)) in lines.starts().zip(value.iter().zip(free)) {
+            let (u0, u1, ghosts) = if upper == 1 {
                 let last = o + (n - 1) * s;
-                u[last + s] = value + factor * u[last];
-                u[last + 2 * s] = value + factor * u[last - second];
+                (u[last], u[last - inward], [last + s, last + 2 * s])
             } else {
-                u[o - s] = value + factor * u[o];
-                u[o - 2 * s] = value + factor * u[o + second];
-            }
+                (u[o], u[o + inward], [o - s, o - 2 * s])
+            };
+            u[ghosts[0]] = if free { u0 } else { wall * value + first * u0 + second * u1 };
+            u[ghosts[1]] = if free { u1 } else { 2.0 * value - u1 };
         }
     }
+}
+
+/// The extrapolation beyond a side of axis `a`.
+pub(crate) fn extrapolation<const D: usize>(grid: &CartesianGrid<D>, a: usize, upper: bool) -> Extrapolation {
+    let (axis, n) = (grid.axis(a), grid.cells()[a]);
+    let cell = |k: usize| if upper { n - 1 - k.min(n - 1) } else { k.min(n - 1) };
+    Extrapolation::new(n, [axis.width(cell(0)), axis.width(cell(1))])
 }
 
 impl Profile {
@@ -533,7 +588,7 @@ fn face_centre<const D: usize>(grid: &CartesianGrid<D>, lines: &Lines, at: f64, 
     x[lines.axis] = at;
     for b in 0..D - 1 {
         let axis = grid.axis(lines.across[b]);
-        let i = index[b].saturating_sub(crate::grid::GHOSTS).min(axis.cells() - 1);
+        let i = index[b].saturating_sub(GHOSTS).min(axis.cells() - 1);
         x[lines.across[b]] = axis.centre(i);
     }
     x

@@ -78,7 +78,7 @@ impl<const D: usize> MultigridCg<D> {
         while begun.residual > m.params.tolerance && iterations < m.params.max_iterations {
             m.hierarchy.cycle();
             // ⟨z, r⟩ and, as r − r_last = −α q, ⟨z, r − r_last⟩ = −α ⟨z, q⟩.
-            let [zr, zq] = m.sweeps.products(&m.hierarchy.levels[0].phi, &mut m.r, &m.q);
+            let [zr, zq] = m.hierarchy.products(&mut m.sweeps, &mut m.r, &m.q);
             let scale = m.unit / begun.scale;
             let beta = if iterations == 0 { 0.0 } else { -alpha * zq * scale / last };
             m.direct(&begun, beta);

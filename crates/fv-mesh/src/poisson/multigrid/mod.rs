@@ -7,11 +7,13 @@ mod fields;
 mod hierarchy;
 mod level;
 mod params;
+mod precision;
 mod solver;
 mod stencil;
 #[cfg(test)]
 mod tests;
 mod transfer;
+mod weighted;
 
 pub use cg::MultigridCg;
 pub use params::{MultigridAxis, MultigridParams};

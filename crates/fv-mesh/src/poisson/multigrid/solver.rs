@@ -2,6 +2,7 @@
 use super::axis::{self, AxisLevel};
 use super::fields::Sweeps;
 use super::hierarchy::Hierarchy;
+use super::precision::Precision;
 use super::stencil::Stencil;
 use super::{MultigridAxis, MultigridParams};
 use crate::poisson::{PoissonError, PoissonInfo, PoissonSolver};
@@ -10,7 +11,7 @@ use crate::poisson::{PoissonError, PoissonInfo, PoissonSolver};
 pub struct Multigrid<const D: usize> {
     pub(super) params: MultigridParams,
     pub(super) operator: Stencil<f64>,
-    pub(super) hierarchy: Hierarchy,
+    pub(super) hierarchy: Precision,
     pub(super) sweeps: Sweeps,
     /// The hierarchy inverts `unit` A.
     pub(super) unit: f64,
@@ -77,15 +78,14 @@ impl<const D: usize> Multigrid<D> {
             shift == 0.0 && levels.iter().all(|a| !a.ends.contains(&axis::End::ZeroValue));
         let unit = narrowest * narrowest;
         let operator = Stencil::new(&levels, 1.0, shift, params.variable);
-        let hierarchy = Hierarchy::new(
-            levels.clone(),
-            unit,
-            shift,
-            params.variable,
-            params.sweeps,
-            params.widest_merged * narrowest,
-            singular,
-        );
+        let longest = levels.iter().map(|a| a.widths.iter().sum()).fold(0.0, f64::max);
+        let MultigridParams { variable, sweeps, widest_merged, .. } = params;
+        let (axes, merge) = (levels.clone(), widest_merged * narrowest);
+        let hierarchy = if Precision::single(longest / narrowest) {
+            Precision::Single(Hierarchy::new(axes, unit, shift, variable, sweeps, merge, singular))
+        } else {
+            Precision::Double(Hierarchy::new(axes, unit, shift, variable, sweeps, merge, singular))
+        };
         let zeros = vec![0.0; operator.len()];
         let mut multigrid = Self {
             sweeps: Sweeps::new(&levels),
@@ -115,8 +115,8 @@ impl<const D: usize> Multigrid<D> {
     }
 
     /// One V-cycle from zero: an approximation of the φ that belongs to f, both dense. The map is linear, symmetric in
-    /// the volume-weighted product and, in single precision, negative definite as the operator (up to constants if
-    /// that is singular).
+    /// the volume-weighted product and negative definite as the operator (up to constants if that is singular),
+    /// all to the precision that [`describe`](Self::describe) tells.
     ///
     /// # Errors
     /// [`PoissonError::Length`] and [`PoissonError::NonFinite`]; f is then left as it was.
@@ -143,8 +143,7 @@ impl<const D: usize> Multigrid<D> {
         }
         let removed = if self.singular { mean } else { 0.0 };
         let scale = if square > 0.0 { 1.0 / square.sqrt() } else { 0.0 };
-        let square_left =
-            self.sweeps.centre(removed, scale, &mut self.r, &mut self.hierarchy.levels[0].f);
+        let square_left = self.hierarchy.centre(&mut self.sweeps, removed, scale, &mut self.r);
         // What is left of a constant is round-off.
         let norm = if square_left > 1e-28 * square { square_left.sqrt() } else { 0.0 };
         Ok(Begun { removed_mean: 0.0 - removed, norm, scale, residual: 1.0 })
@@ -153,13 +152,13 @@ impl<const D: usize> Multigrid<D> {
     /// p ← the correction of the V-cycle + `beta` p.
     pub(super) fn direct(&mut self, begun: &Begun, beta: f64) {
         let scale = self.unit / begun.scale;
-        self.sweeps.direct(&self.operator, scale, &self.hierarchy.levels[0].phi, beta, &mut self.p);
+        self.hierarchy.direct(&mut self.sweeps, &self.operator, scale, beta, &mut self.p);
     }
 
     /// φ ← φ + `alpha` p and the residual with it; returns the residual over f.
     pub(super) fn advance(&mut self, begun: &Begun, alpha: f64, phi: &mut [f64]) -> f64 {
-        let single = &mut self.hierarchy.levels[0].f;
-        let square = self.sweeps.advance(alpha, &self.p, &self.q, begun.scale, &mut self.r, single, phi);
+        let (p, q) = (&self.p, &self.q);
+        let square = self.hierarchy.advance(&mut self.sweeps, alpha, p, q, begun.scale, &mut self.r, phi);
         square.sqrt() / begun.norm
     }
 
@@ -184,16 +183,14 @@ impl<const D: usize> Multigrid<D> {
 
     /// Levels, coarsening and smoother in one sentence.
     pub fn describe(&self) -> String {
-        let levels = &self.hierarchy.levels;
-        let size = |l: &super::level::Level| {
-            let [x, m, z] = l.stencil.cells;
-            if D == 3 { format!("{x}×{m}×{z}") } else { format!("{x}×{z}") }
-        };
+        let levels = self.hierarchy.cells();
+        let size = |[x, m, z]: &[usize; 3]| if D == 3 { format!("{x}×{m}×{z}") } else { format!("{x}×{z}") };
         let sizes: Vec<String> = levels.iter().map(size).collect();
-        let total: usize = levels.iter().map(|l| l.stencil.cells.iter().product::<usize>()).sum();
+        let total: usize = levels.iter().map(|l| l.iter().product::<usize>()).sum();
+        let precision = if matches!(self.hierarchy, Precision::Single(_)) { "single" } else { "double" };
         format!(
             "Multigrid on {} levels ({}; {:.2} times the cells of the finest) that merge the narrow cells of every axis \
-             first, with {} + {} red–black Gauss–Seidel sweeps per level in single precision and dense Cholesky on \
+             first, with {} + {} red–black Gauss–Seidel sweeps per level in {precision} precision and dense Cholesky on \
              the coarsest.",
             levels.len(),
             sizes.join(", "),

@@ -6,6 +6,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Sub};
 pub(super) trait Real:
     Copy
     + Default
+    + PartialEq
     + PartialOrd
     + Send
     + Sync
@@ -16,17 +17,28 @@ pub(super) trait Real:
     + Div<Output = Self>
 {
     fn of(x: f64) -> Self;
+    fn double(self) -> f64;
 }
 
 impl Real for f32 {
+    #[inline(always)]
     fn of(x: f64) -> Self {
         x as Self
+    }
+    #[inline(always)]
+    fn double(self) -> f64 {
+        f64::from(self)
     }
 }
 
 impl Real for f64 {
+    #[inline(always)]
     fn of(x: f64) -> Self {
         x
+    }
+    #[inline(always)]
+    fn double(self) -> f64 {
+        self
     }
 }
 

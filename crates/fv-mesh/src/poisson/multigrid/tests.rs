@@ -104,6 +104,25 @@ fn the_cycle_is_symmetric_and_definite() {
 }
 
 #[test]
+fn the_cycle_is_symmetric_with_coefficients() {
+    let axes = [axis(&tanh(12, 1.5), Periodic), uniform(9, Neumann), axis(&tanh(11, 2.0), NeumannDirichlet)];
+    let v = volumes(&axes);
+    let n = v.len();
+    let params = MultigridParams { variable: true, ..Default::default() };
+    let mut multigrid = Multigrid::new(axes, 0.0, params).unwrap();
+    let beta = [0, 1, 2].map(|a| jumps([12, 9, 11], a));
+    multigrid.set_coefficients([Some(&beta[0]), None, Some(&beta[2])]).unwrap();
+    let product = |a: &[f64], b: &[f64]| v.iter().zip(a.iter().zip(b)).map(|(v, (a, b))| v * a * b).sum::<f64>();
+    let (x, y) = (noise(n, 1), noise(n, 2));
+    let (mut mx, mut my) = (x.clone(), y.clone());
+    multigrid.v_cycle(&mut mx).unwrap();
+    multigrid.v_cycle(&mut my).unwrap();
+    let (a, b, scale) = (product(&mx, &y), product(&x, &my), product(&x, &mx));
+    assert!((a - b).abs() < 1e-5 * scale.abs(), "{a} {b} {scale}");
+    assert!(scale < 0.0 && product(&y, &my) < 0.0);
+}
+
+#[test]
 fn iterations_do_not_grow_with_the_grid() {
     for ends in [Neumann, Dirichlet] {
         for n in [64, 128, 256] {
@@ -113,6 +132,78 @@ fn iterations_do_not_grow_with_the_grid() {
         for n in [16, 32, 64] {
             let a = axis(&tanh(n, 2.0), ends);
             assert!(iterations([a.clone(), a.clone(), a], 0.0) <= 9);
+        }
+    }
+}
+
+fn cg<const D: usize>(axes: [MultigridAxis; D], params: MultigridParams) -> MultigridCg<D> {
+    MultigridCg::new(axes, 0.0, params).unwrap()
+}
+
+/// β at the faces of an axis, 1000 in half of the chequers of 4³ cells.
+fn jumps(cells: [usize; 3], axis: usize) -> Vec<f64> {
+    let high = |at: [usize; 3]| at.iter().map(|i| i / 4).sum::<usize>() % 2 == 0;
+    let mut beta = Vec::new();
+    let mut faces = cells;
+    faces[axis] += 1;
+    for k in 0..faces[2] {
+        for j in 0..faces[1] {
+            for i in 0..faces[0] {
+                let (mut low, mut up) = ([i, j, k], [i, j, k]);
+                low[axis] = low[axis].saturating_sub(1);
+                up[axis] = up[axis].min(cells[axis] - 1);
+                let [a, b] = [low, up].map(|at| if high(at) { 1000.0 } else { 1.0 });
+                beta.push(2.0 / (1.0 / a + 1.0 / b));
+            }
+        }
+    }
+    beta
+}
+
+#[test]
+fn explore() {
+    let stretched = |n: usize, ratio: f64, ends| axis(&Axis::geometric(n, 0.0, 1.0, ratio).unwrap(), ends);
+    for w in [1.5, 2.0] {
+        for sweeps in [1, 2] {
+            let p = MultigridParams { widest_merged: w, sweeps, ..Default::default() };
+            let mut line = format!("w {w} sweeps {sweeps}:");
+            let mut two = |name: &str, a: MultigridAxis, b: MultigridAxis| {
+                let n = a.widths.len() * b.widths.len();
+                let mut s = cg([a, b], p);
+                let mut phi = vec![0.0; n];
+                let r = s.solve_from(&noise(n, 3), &mut phi);
+                let work = s.multigrid().describe().split("; ").nth(1).unwrap_or("")[..4].to_string();
+                line += &format!(" {name} {}({work})", r.map_or_else(|e| e.to_string(), |r| r.iterations.to_string()));
+            };
+            two("t256", axis(&tanh(256, 2.0), Neumann), axis(&tanh(256, 2.0), Neumann));
+            two("g128", stretched(128, 1.05, Neumann), stretched(128, 1.05, Neumann));
+            two("r1.2", stretched(40, 1.2, Neumann), stretched(40, 1.2, Neumann));
+            two("r1.2,1", stretched(40, 1.2, Neumann), uniform(128, Neumann));
+            two("1000", MultigridAxis { widths: vec![1e-3; 64], ends: Neumann }, MultigridAxis { widths: vec![1.0; 64], ends: Neumann });
+            two("per", MultigridAxis { widths: vec![1e-3; 67], ends: Periodic }, MultigridAxis { widths: vec![0.7; 61], ends: Periodic });
+            two("prime", uniform(127, Neumann), uniform(131, Dirichlet));
+            println!("{line}");
+            let mut line = format!("w {w} sweeps {sweeps}:");
+            let mut three = |name: &str, a: [MultigridAxis; 3], jump: bool| {
+                let n = a.iter().map(|a| a.widths.len()).product();
+                let cells = [0, 1, 2].map(|i| a[i].widths.len());
+                let mut s = cg(a, MultigridParams { variable: jump, ..p });
+                if jump {
+                    let b = [0, 1, 2].map(|a| jumps(cells, a));
+                    s.multigrid().set_coefficients([Some(&b[0]), Some(&b[1]), Some(&b[2])]).unwrap();
+                }
+                let mut phi = vec![0.0; n];
+                let r = s.solve_from(&noise(n, 3), &mut phi);
+                line += &format!(" {name} {}", r.map_or_else(|e| e.to_string(), |r| r.iterations.to_string()));
+            };
+            let t = axis(&tanh(48, 2.0), Neumann);
+            let g = stretched(40, 1.2, Dirichlet);
+            three("t48", [t.clone(), t.clone(), t.clone()], false);
+            three("g40", [g.clone(), g.clone(), g.clone()], false);
+            three("g40,u,u", [g.clone(), uniform(40, Neumann), uniform(32, Periodic)], false);
+            three("jump u", [uniform(40, Neumann), uniform(40, Neumann), uniform(32, Periodic)], true);
+            three("jump t", [t.clone(), t.clone(), t.clone()], true);
+            println!("{line}");
         }
     }
 }

@@ -145,7 +145,9 @@ pub enum PoissonError {
         value: f64,
     },
     /// A wrong number of faces.
-    #[error("{length} values were given for the faces of axis {axis} but there are {faces}; give one per face, x fastest")]
+    #[error(
+        "{length} values were given for the faces of axis {axis} but there are {faces}; give one per face, x fastest"
+    )]
     Faces {
         /// Axis, 0 for x.
         axis: usize,

@@ -70,7 +70,8 @@ impl AxisLevel {
             let mut start = 0;
             while start < n {
                 starts.push(start);
-                start += if start + 1 < n && self.widths[start] + self.widths[start + 1] <= limit { 2 } else { 1 };
+                start +=
+                    if start + 1 < n && self.widths[start] + self.widths[start + 1] <= limit { 2 } else { 1 };
             }
             starts.push(n);
         }
@@ -163,8 +164,7 @@ impl<T: Real> Transfer<T> {
             // From a cell below the group to a cell above it, around the box if need be.
             for at in groups[g] + n - 1..groups[g + 1] + n + 1 {
                 let i = at % n;
-                let total: f64 =
-                    (0..2).filter(|&m| parents[i][m] == g).map(|m| share(i, m)).sum();
+                let total: f64 = (0..2).filter(|&m| parents[i][m] == g).map(|m| share(i, m)).sum();
                 let known = list.iter().any(|&(known, _)| known == i);
                 if total > 0.0 && !known {
                     list.push((i, T::of(total)));

@@ -32,7 +32,7 @@ impl<const D: usize> MultigridCg<D> {
     /// Solves for φ, starting from the φ given.
     ///
     /// # Errors
-    /// [`PoissonError::Length`] and [`PoissonError::NonFinite`] leave φ as it was;
+    /// [`PoissonError::Length`] and [`PoissonError::NonFinite`] (of f or of the φ given) leave φ as it was;
     /// [`PoissonError::NotConverged`] writes the last φ, whose error is the least in the energy norm.
     pub fn solve_from(&mut self, rhs: &[f64], phi: &mut [f64]) -> Result<PoissonInfo, PoissonError> {
         self.multigrid.check(rhs.len())?;
@@ -56,7 +56,12 @@ impl<const D: usize> MultigridCg<D> {
         self.iterate(begun, phi, warm)
     }
 
-    fn iterate(&mut self, mut begun: Begun, phi: &mut [f64], warm: bool) -> Result<PoissonInfo, PoissonError> {
+    fn iterate(
+        &mut self,
+        mut begun: Begun,
+        phi: &mut [f64],
+        warm: bool,
+    ) -> Result<PoissonInfo, PoissonError> {
         let m = &mut self.multigrid;
         if begun.norm == 0.0 {
             begun.residual = 0.0;
@@ -64,13 +69,12 @@ impl<const D: usize> MultigridCg<D> {
         } else if warm {
             // The guess as a first step.
             m.sweeps.copy_in(&m.operator, phi, &mut m.p);
-            m.sweeps.apply(&m.operator, &m.p, &mut m.q);
+            let product = m.sweeps.apply(&m.operator, &m.p, &mut m.q);
+            if !product.is_finite() {
+                return Err(m.not_finite(&m.p, product));
+            }
             phi.fill(0.0);
             begun.residual = m.advance(&begun, 1.0, phi);
-            if !begun.residual.is_finite() {
-                let (low, sum) = (0, begun.residual);
-                return Err(PoissonError::NonFinite { low, high: low, sum });
-            }
         } else {
             phi.fill(0.0);
         }

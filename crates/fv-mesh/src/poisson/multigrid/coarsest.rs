@@ -26,7 +26,13 @@ impl Coarsest {
     }
 
     /// Factorises the operator; `phi` is work space.
-    pub(super) fn factorise<T: Real>(&mut self, s: &Stencil<T>, singular: bool, phi: &mut [T], row: &mut [T]) {
+    pub(super) fn factorise<T: Real>(
+        &mut self,
+        s: &Stencil<T>,
+        singular: bool,
+        phi: &mut [T],
+        row: &mut [T],
+    ) {
         let (n, [nx, rows, layers]) = (self.volumes.len(), s.cells);
         let place = |c: usize| c / nx * s.stride() + 1 + c % nx;
         for column in 0..n {
@@ -62,7 +68,8 @@ impl Coarsest {
                 let sum: f64 = (0..j).map(|m| current[m] * other[m]).sum();
                 current[j] = (current[j] - sum) * other[j];
             }
-            let (diagonal, pivot) = (current[i], current[i] - current[..i].iter().map(|x| x * x).sum::<f64>());
+            let (diagonal, pivot) =
+                (current[i], current[i] - current[..i].iter().map(|x| x * x).sum::<f64>());
             // Cells that vanishing coefficients cut off get no correction.
             current[i] = if pivot > 1e-6 * diagonal { 1.0 / pivot.sqrt() } else { 0.0 };
         }

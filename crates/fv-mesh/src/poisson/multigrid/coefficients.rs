@@ -83,7 +83,8 @@ impl<const D: usize> Multigrid<D> {
             if beta.len() != count {
                 return Err(PoissonError::Faces { axis, length: beta.len(), faces: count });
             }
-            if let Some((face, &value)) = beta.iter().enumerate().find(|(_, b)| !(**b >= 0.0 && **b <= 1e30)) {
+            if let Some((face, &value)) = beta.iter().enumerate().find(|(_, b)| !(**b >= 0.0 && **b <= 1e30))
+            {
                 return Err(PoissonError::Coefficient { axis, face, value });
             }
         }
@@ -127,6 +128,14 @@ impl<const D: usize> Multigrid<D> {
     /// Axis of the layout with three axes.
     fn inner_axis(&self, axis: usize) -> usize {
         if D == 2 && axis == 1 { 2 } else { axis }
+    }
+
+    /// Sets β = 1.
+    pub(super) fn set_ones(&mut self) {
+        for axis in 0..3 {
+            self.write(axis, None);
+        }
+        self.renew();
     }
 
     /// Stores β of an axis.
@@ -192,7 +201,13 @@ fn renew_levels<T: Real>(hierarchy: &mut Hierarchy<T>, beta: &[Vec<f64>; 3], sin
 /// Resistance of the path along `axis` at column (p, q) of the other two axes that crosses face `m`: half of the
 /// distance within the group below, the distance across the face, half of the distance within the group above. Returns
 /// these three, and the length of the path; nothing lies behind an end.
-fn path<T: Real>(fine: &Level<T>, groups: &[usize], axis: usize, column: [usize; 2], g: usize) -> ([f64; 3], f64) {
+fn path<T: Real>(
+    fine: &Level<T>,
+    groups: &[usize],
+    axis: usize,
+    column: [usize; 2],
+    g: usize,
+) -> ([f64; 3], f64) {
     let Some(beta) = &fine.stencil.beta else { return ([0.0; 3], 0.0) };
     let (w, n, count) = (&fine.axes[axis].widths, fine.stencil.cells[axis], groups.len() - 1);
     let periodic = fine.stencil.periodic[axis];
@@ -220,7 +235,8 @@ fn path<T: Real>(fine: &Level<T>, groups: &[usize], axis: usize, column: [usize;
         (true, true) => Some((0, 0)),
         _ => Some((g, m)),
     };
-    let (low, high) = (below.map_or((0.0, 0.0), |(g, _)| inside(g)), above.map_or((0.0, 0.0), |(g, _)| inside(g)));
+    let (low, high) =
+        (below.map_or((0.0, 0.0), |(g, _)| inside(g)), above.map_or((0.0, 0.0), |(g, _)| inside(g)));
     let across = 0.5 * (below.map_or(0.0, |(_, i)| w[i]) + above.map_or(0.0, |(_, i)| w[i]));
     ([low.0, across / at(m), high.0], low.1 + across + high.1)
 }
@@ -251,9 +267,14 @@ fn coarsen<T: Real>(fine: &mut Level<T>, coarse: &mut Level<T>) {
                     let mut pull = |i: usize, part: f64| {
                         let mut cell = [0; 3];
                         (cell[a], cell[b], cell[axis]) = (p, q, i);
-                        let share = if parts[1] == f64::INFINITY { 0.0 } else { 1.0 - (total - part) / total };
-                        let share = if part == f64::INFINITY { 1.0 } else { share };
-                        weights[axis][(cell[2] * cells[1] + cell[1]) * (cells[0] + 2) + cell[0]] = T::of(share);
+                        // A cell that β = 0 cuts off from its group follows the neighbour, if it can.
+                        let share = match (part == f64::INFINITY, parts[1] == f64::INFINITY) {
+                            (true, true) => 0.0,
+                            (true, false) => 1.0,
+                            _ => part / total,
+                        };
+                        weights[axis][(cell[2] * cells[1] + cell[1]) * (cells[0] + 2) + cell[0]] =
+                            T::of(share);
                     };
                     let g = at[axis];
                     if g > 0 && groups[g] - groups[g - 1] == 2 {

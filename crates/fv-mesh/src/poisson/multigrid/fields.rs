@@ -64,7 +64,8 @@ impl<K: RowSweep<T>, T> WithSimd for Task<'_, K, T> {
         *sums = [0.0; 2];
         for r in 0..count {
             let (j, k) = (r % rows, start + r / rows);
-            let row = Row { a: part(a, r, stride), single: part(single, r, stride), dense: part(dense, r, n) };
+            let row =
+                Row { a: part(a, r, stride), single: part(single, r, stride), dense: part(dense, r, n) };
             let sum = sweep.row(At { row: start * rows + r, j, k }, row, &frame.widths[0]);
             let area = frame.widths[1][j] * frame.widths[2][k];
             sums[0] += area * sum[0];
@@ -102,15 +103,27 @@ impl Sweeps {
             axis.widths.iter().map(|w| w / length).collect()
         });
         let per_task = layers_per_task(cells);
-        Self { frame: Frame { cells, widths }, per_task, partial: vec![[0.0; 2]; cells[2].div_ceil(per_task)] }
+        Self {
+            frame: Frame { cells, widths },
+            per_task,
+            partial: vec![[0.0; 2]; cells[2].div_ceil(per_task)],
+        }
     }
 
-    fn run<K: RowSweep<T>, T: Real>(&mut self, sweep: &K, a: &mut [f64], single: &mut [T], dense: &mut [f64]) -> [f64; 2] {
+    fn run<K: RowSweep<T>, T: Real>(
+        &mut self,
+        sweep: &K,
+        a: &mut [f64],
+        single: &mut [T],
+        dense: &mut [f64],
+    ) -> [f64; 2] {
         let (frame, per_task) = (&self.frame, self.per_task);
         let [n, rows, _] = frame.cells;
         let (padded, bare) = (per_task * rows * (n + 2), per_task * rows * n);
         let sums = self.partial.par_iter_mut().enumerate().map(|(task, sums)| (task * per_task, sums));
-        let job = |start, a, single, dense, sums| Arch::new().dispatch(Task { frame, sweep, start, a, single, dense, sums });
+        let job = |start, a, single, dense, sums| {
+            Arch::new().dispatch(Task { frame, sweep, start, a, single, dense, sums })
+        };
         // Only fields that are there can be divided.
         match (a.is_empty(), single.is_empty(), dense.is_empty()) {
             (false, true, true) => a
@@ -224,7 +237,14 @@ impl Sweeps {
     }
 
     /// p ← `scale` z + `beta` p.
-    pub(super) fn direct<T: Real>(&mut self, s: &Stencil<f64>, scale: f64, z: &[T], beta: f64, p: &mut [f64]) {
+    pub(super) fn direct<T: Real>(
+        &mut self,
+        s: &Stencil<f64>,
+        scale: f64,
+        z: &[T],
+        beta: f64,
+        p: &mut [f64],
+    ) {
         struct Direct<'a, T> {
             s: &'a Stencil<f64>,
             scale: f64,

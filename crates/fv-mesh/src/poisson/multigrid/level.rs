@@ -65,8 +65,10 @@ impl<T: Real> Level<T> {
         if let Some([_, middle, last]) = &level.transfer {
             let coarse = [0, middle.children.len(), last.children.len()];
             let tasks_below = coarse[2].div_ceil(level.coarse_per_task());
-            level.restrict_scratch = (0..tasks_below).map(|_| RestrictScratch::new(&level.stencil, coarse[1])).collect();
-            level.prolong_scratch = (0..tasks).map(|_| ProlongScratch::new(&level.stencil, coarse[1])).collect();
+            level.restrict_scratch =
+                (0..tasks_below).map(|_| RestrictScratch::new(&level.stencil, coarse[1])).collect();
+            level.prolong_scratch =
+                (0..tasks).map(|_| ProlongScratch::new(&level.stencil, coarse[1])).collect();
         }
         level
     }
@@ -84,7 +86,16 @@ impl<T: Real> Level<T> {
         let (stencil, phi, f) = (&self.stencil, &self.phi, &self.f);
         let chunk = self.per_task * stencil.layer();
         let job = |task: usize, out: &mut [T], ring: &mut [T]| {
-            Arch::new().dispatch(Smooth { stencil, phi, f, first, zero, start: task * self.per_task, out, ring });
+            Arch::new().dispatch(Smooth {
+                stencil,
+                phi,
+                f,
+                first,
+                zero,
+                start: task * self.per_task,
+                out,
+                ring,
+            });
         };
         if let [ring] = self.rings.as_mut_slice() {
             job(0, &mut self.next, ring);
@@ -106,7 +117,8 @@ impl<T: Real> Level<T> {
             let start = task * per_task;
             if stencil.beta.is_some() {
                 let row = scratch.row();
-                let job = WeightedRestrict { stencil, transfer, axes, coarse_axes, pulls, phi, f, start, row, out };
+                let job =
+                    WeightedRestrict { stencil, transfer, axes, coarse_axes, pulls, phi, f, start, row, out };
                 return Arch::new().dispatch(job);
             }
             Arch::new().dispatch(Restrict { stencil, transfer, phi, f, start, layer, stride, out, scratch });
@@ -127,7 +139,14 @@ impl<T: Real> Level<T> {
             let start = task * per_task;
             let coarse = (&coarse.stencil, coarse.phi.as_slice());
             if stencil.beta.is_some() {
-                return Arch::new().dispatch(WeightedProlong { stencil, transfer, pulls, coarse, start, phi });
+                return Arch::new().dispatch(WeightedProlong {
+                    stencil,
+                    transfer,
+                    pulls,
+                    coarse,
+                    start,
+                    phi,
+                });
             }
             Arch::new().dispatch(Prolong { stencil, transfer, coarse, start, phi, scratch });
         };

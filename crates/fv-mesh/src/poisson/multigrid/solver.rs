@@ -49,7 +49,8 @@ impl<const D: usize> Multigrid<D> {
                 return Err(PoissonError::NoCells { axis });
             }
             let total: f64 = a.widths.iter().sum();
-            let bad = |w: f64| !(w > 0.0 && w.is_finite() && (w * w).is_normal() && (1.0 / (w * w)).is_normal());
+            let bad =
+                |w: f64| !(w > 0.0 && w.is_finite() && (w * w).is_normal() && (1.0 / (w * w)).is_normal());
             if let Some(&spacing) = a.widths.iter().chain([&total]).find(|&&w| bad(w)) {
                 return Err(PoissonError::Spacing { axis, spacing });
             }
@@ -67,15 +68,17 @@ impl<const D: usize> Multigrid<D> {
                 return Err(PoissonError::Parameter { name, value, least });
             }
         }
-        let narrowest =
-            axes.iter().filter(|a| a.widths.len() > 1).flat_map(|a| &a.widths).fold(f64::INFINITY, |m, &w| m.min(w));
+        let narrowest = axes
+            .iter()
+            .filter(|a| a.widths.len() > 1)
+            .flat_map(|a| &a.widths)
+            .fold(f64::INFINITY, |m, &w| m.min(w));
         let narrowest = if narrowest.is_finite() { narrowest } else { axes[0].widths[0] };
         let level = |a: usize| AxisLevel { widths: axes[a].widths.clone(), ends: axis::ends(axes[a].ends) };
         // The last axis of the box stays the last one.
         let none = AxisLevel { widths: vec![1.0], ends: [axis::End::ZeroGradient; 2] };
         let levels = if D == 3 { [level(0), level(1), level(2)] } else { [level(0), none, level(1)] };
-        let singular =
-            shift == 0.0 && levels.iter().all(|a| !a.ends.contains(&axis::End::ZeroValue));
+        let singular = shift == 0.0 && levels.iter().all(|a| !a.ends.contains(&axis::End::ZeroValue));
         let unit = narrowest * narrowest;
         let operator = Stencil::new(&levels, 1.0, shift, params.variable);
         let longest = levels.iter().map(|a| a.widths.iter().sum()).fold(0.0, f64::max);
@@ -100,7 +103,7 @@ impl<const D: usize> Multigrid<D> {
             singular,
             shift,
         };
-        multigrid.renew();
+        multigrid.set_ones();
         Ok(multigrid)
     }
 
@@ -136,10 +139,7 @@ impl<const D: usize> Multigrid<D> {
     pub(super) fn begin(&mut self, fill: impl Fn(usize, &mut [f64]) + Sync) -> Result<Begun, PoissonError> {
         let [mean, square] = self.sweeps.load(&fill, &mut self.r);
         if !square.is_finite() {
-            let layer = self.operator.layer();
-            let sums = self.r.chunks_exact(layer).map(|r| r.iter().map(|r| r * r).sum::<f64>());
-            let (low, sum) = sums.enumerate().find(|(_, sum)| !sum.is_finite()).unwrap_or((0, square));
-            return Err(PoissonError::NonFinite { low, high: low, sum });
+            return Err(self.not_finite(&self.r, square));
         }
         let removed = if self.singular { mean } else { 0.0 };
         let scale = if square > 0.0 { 1.0 / square.sqrt() } else { 0.0 };
@@ -147,6 +147,13 @@ impl<const D: usize> Multigrid<D> {
         // What is left of a constant is round-off.
         let norm = if square_left > 1e-28 * square { square_left.sqrt() } else { 0.0 };
         Ok(Begun { removed_mean: 0.0 - removed, norm, scale, residual: 1.0 })
+    }
+
+    /// The error that tells which layer of `field` is not finite.
+    pub(super) fn not_finite(&self, field: &[f64], sum: f64) -> PoissonError {
+        let sums = field.chunks_exact(self.operator.layer()).map(|r| r.iter().map(|r| r * r).sum::<f64>());
+        let (low, sum) = sums.enumerate().find(|(_, sum)| !sum.is_finite()).unwrap_or((0, sum));
+        PoissonError::NonFinite { low, high: low, sum }
     }
 
     /// p ← the correction of the V-cycle + `beta` p.
@@ -184,7 +191,8 @@ impl<const D: usize> Multigrid<D> {
     /// Levels, coarsening and smoother in one sentence.
     pub fn describe(&self) -> String {
         let levels = self.hierarchy.cells();
-        let size = |[x, m, z]: &[usize; 3]| if D == 3 { format!("{x}×{m}×{z}") } else { format!("{x}×{z}") };
+        let size =
+            |[x, m, z]: &[usize; 3]| if D == 3 { format!("{x}×{m}×{z}") } else { format!("{x}×{z}") };
         let sizes: Vec<String> = levels.iter().map(size).collect();
         let total: usize = levels.iter().map(|l| l.iter().product::<usize>()).sum();
         let precision = if matches!(self.hierarchy, Precision::Single(_)) { "single" } else { "double" };

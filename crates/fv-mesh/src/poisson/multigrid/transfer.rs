@@ -18,7 +18,11 @@ pub(super) struct RestrictScratch<T> {
 impl<T: Real> RestrictScratch<T> {
     pub(super) fn new(stencil: &Stencil<T>, coarse_rows: usize) -> Self {
         let n = stencil.cells[0];
-        Self { layers: vec![T::default(); KEPT * n * coarse_rows], tags: [usize::MAX; KEPT], row: vec![T::default(); n] }
+        Self {
+            layers: vec![T::default(); KEPT * n * coarse_rows],
+            tags: [usize::MAX; KEPT],
+            row: vec![T::default(); n],
+        }
     }
 
     /// Place for a row.

@@ -21,7 +21,8 @@ impl<T: Real> WithSimd for WeightedProlong<'_, T> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { stencil: s, transfer: [x, middle, last], pulls, coarse: (coarse, from), start, phi } = self;
+        let Self { stencil: s, transfer: [x, middle, last], pulls, coarse: (coarse, from), start, phi } =
+            self;
         let (n, [count, rows, _]) = (s.cells[0], coarse.cells);
         let row = |j: usize, k: usize| &from[(k * rows + j) * coarse.stride() + 1..][..count];
         let (own, beside) = (&x.parents[..n], &x.neighbours[..n]);
@@ -38,7 +39,10 @@ impl<T: Real> WithSimd for WeightedProlong<'_, T> {
             for i in 0..n {
                 let (p, (q, open)) = (own[i][0], beside[i]);
                 let a = if open { here[q] } else { T::default() };
-                phi[i + 1] += (one - ta[i] - tb[i] - tc[i]) * here[p] + ta[i] * a + tb[i] * fb * b[p] + tc[i] * fc * c[p];
+                phi[i + 1] += (one - ta[i] - tb[i] - tc[i]) * here[p]
+                    + ta[i] * a
+                    + tb[i] * fb * b[p]
+                    + tc[i] * fc * c[p];
             }
             s.set_ghosts(phi);
         }

@@ -28,6 +28,16 @@ fn time<const D: usize>(name: &str, n: usize, ends: AxisBounds, variable: bool) 
         Ok(solver) => solver,
         Err(error) => return println!("{error}"),
     };
+    if variable {
+        let start = ThreadTime::now();
+        if let Err(error) = solver.multigrid().set_coefficients([None; D]) {
+            return println!("{error}");
+        }
+        println!(
+            "{n}^{D} set_coefficients: {:.1} ns per cell",
+            start.elapsed().as_secs_f64() * 1e9 / cells as f64
+        );
+    }
     let (mut phi, mut best, mut info) = (vec![0.0; cells], f64::INFINITY, None);
     for _ in 0..(3_000_000 / cells).clamp(2, 20) {
         let start = ThreadTime::now();

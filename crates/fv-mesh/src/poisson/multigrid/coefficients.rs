@@ -198,9 +198,9 @@ fn renew_levels<T: Real>(hierarchy: &mut Hierarchy<T>, beta: &[Vec<f64>; 3], sin
     hierarchy.factorise(singular);
 }
 
-/// Resistance of the path along `axis` at column (p, q) of the other two axes that crosses face `m`: half of the
-/// distance within the group below, the distance across the face, half of the distance within the group above. Returns
-/// these three, and the length of the path; nothing lies behind an end.
+/// Resistances of the path along `axis` from the centre of group `g` − 1 to that of group `g`, in the column at (p, q) of
+/// the other two axes: half of the distance within the group below, the distance across the face between the groups, half
+/// of the distance within the group above; and the length of the path. Nothing lies behind an end.
 fn path<T: Real>(
     fine: &Level<T>,
     groups: &[usize],

@@ -1,7 +1,7 @@
 //! The pressure equation of a flow and who solves it.
 use crate::CartesianGrid;
 use crate::boundary::{Boundaries, FaceKind};
-use crate::poisson::multigrid::{MultigridAxis, MultigridCg, MultigridParams};
+use crate::poisson::multigrid::{MultigridCg, MultigridParams};
 use crate::poisson::{AxisBounds, Poisson, PoissonAxis, PoissonChoice, PoissonError, PoissonInfo};
 
 /// Solver of the pressure equation.
@@ -83,7 +83,6 @@ impl<const D: usize> Pressure<D> {
             }
         };
         let params = MultigridParams { variable: params.variable || partial.is_some(), ..params };
-        let axes = axes.map(|axis| MultigridAxis { widths: axis.widths, ends: axis.ends });
         let mut solver = MultigridCg::new(axes, 0.0, params)?;
         if partial.is_some() {
             for (a, ends) in kinds.iter().enumerate() {

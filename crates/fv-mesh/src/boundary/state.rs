@@ -51,11 +51,7 @@ impl Extrapolation {
             return Self { wall: 2.0, first: -1.0, second: 0.0 };
         }
         let (a, b) = (0.5 * widths[0], widths[0] + 0.5 * widths[1]);
-        Self {
-            wall: 2.0 * (a + b) / b,
-            first: -(a + b) / (b - a),
-            second: 2.0 * a * a / (b * (b - a)),
-        }
+        Self { wall: 2.0 * (a + b) / b, first: -(a + b) / (b - a), second: 2.0 * a * a / (b * (b - a)) }
     }
 }
 
@@ -358,7 +354,10 @@ impl<const D: usize> Boundaries<D> {
                 for l in (0..lines.len()).filter(|&l| lines.inside(l)) {
                     for c in 0..D {
                         let (speed, at) = if c == lines.axis {
-                            (state.normal[l], if state.at == self.grid.axis(c).lower() { 0 } else { lines.cells - 1 })
+                            (
+                                state.normal[l],
+                                if state.at == self.grid.axis(c).lower() { 0 } else { lines.cells - 1 },
+                            )
                         } else {
                             let place = lines.place(l);
                             let b = usize::from(lines.across[0] != c);
@@ -426,7 +425,17 @@ impl<const D: usize> SideState<D> {
             };
         }
         let steady = !side.any(&|s| matches!(s, Side::Inlet(Profile::Function(_))));
-        Ok(Self { side, kind, normal: list(), normal_change: list(), pressure, laws, at, steady, beyond: extrapolation(grid, a, upper) })
+        Ok(Self {
+            side,
+            kind,
+            normal: list(),
+            normal_change: list(),
+            pressure,
+            laws,
+            at,
+            steady,
+            beyond: extrapolation(grid, a, upper),
+        })
     }
 
     fn has_pressure(&self) -> bool {

@@ -1,4 +1,5 @@
 //! One axis of a level: metrics, which cells to merge, and the transfer to the next coarser level.
+use super::stencil::Real;
 use crate::poisson::AxisBounds;
 
 /// What holds behind the ends of an axis of a level.
@@ -98,18 +99,21 @@ impl AxisLevel {
 /// Linear interpolation along an axis from the groups to the cells, and its adjoint.
 ///
 /// Cell i gets `weights[i][0]` φ(`parents[i][0]`) + `weights[i][1]` φ(`parents[i][1]`).
-pub(super) struct Transfer {
+pub(super) struct Transfer<T> {
     /// First cells of the groups, then the number of cells.
     pub(super) groups: Vec<usize>,
     pub(super) parents: Vec<[usize; 2]>,
-    pub(super) weights: Vec<[f32; 2]>,
+    pub(super) weights: Vec<[T; 2]>,
     /// Weights of the restriction, `weights[i][m]` w_i / W: the adjoint for volume-weighted products.
-    pub(super) shares: Vec<[f32; 2]>,
+    pub(super) shares: Vec<[T; 2]>,
+    /// The group on the other side of the cell's half of its group, and whether there is one: beyond an end there is
+    /// none, nor in a group of one cell.
+    pub(super) neighbours: Vec<(usize, bool)>,
     /// For each group the cells that contribute to it, consecutive modulo the number of cells.
-    pub(super) children: Vec<Vec<(usize, f32)>>,
+    pub(super) children: Vec<Vec<(usize, T)>>,
 }
 
-impl Transfer {
+impl<T: Real> Transfer<T> {
     pub(super) fn new(fine: &AxisLevel, groups: Vec<usize>) -> Self {
         let coarse = fine.merged(&groups);
         let (n, count) = (fine.cells(), coarse.cells());
@@ -145,6 +149,16 @@ impl Transfer {
             }
         }
         let share = |i: usize, m: usize| weights[i][m] * fine.widths[i] / coarse.widths[parents[i][m]];
+        let neighbour = |i: usize| {
+            let g = parents[i][0];
+            let (single, low) = (groups[g + 1] - groups[g] == 1, x[i] < centre[g]);
+            let at_end = if low { g == 0 } else { g + 1 == count };
+            match (single || at_end && !fine.periodic(), low) {
+                (true, _) => (g, false),
+                (false, true) => ((g + count - 1) % count, true),
+                (false, false) => ((g + 1) % count, true),
+            }
+        };
         let mut children = vec![Vec::new(); count];
         for (g, list) in children.iter_mut().enumerate() {
             // From a cell below the group to a cell above it, around the box if need be.
@@ -153,13 +167,14 @@ impl Transfer {
                 let total: f64 = (0..2).filter(|&m| parents[i][m] == g).map(|m| share(i, m)).sum();
                 let known = list.iter().any(|&(known, _)| known == i);
                 if total > 0.0 && !known {
-                    list.push((i, total as f32));
+                    list.push((i, T::of(total)));
                 }
             }
         }
         Self {
-            shares: (0..n).map(|i| [share(i, 0) as f32, share(i, 1) as f32]).collect(),
-            weights: weights.iter().map(|w| w.map(|w| w as f32)).collect(),
+            shares: (0..n).map(|i| [T::of(share(i, 0)), T::of(share(i, 1))]).collect(),
+            weights: weights.iter().map(|w| w.map(T::of)).collect(),
+            neighbours: (0..n).map(neighbour).collect(),
             groups,
             parents,
             children,

@@ -1,6 +1,7 @@
 //! Conjugate gradients with multigrid as preconditioner.
 use super::solver::{Begun, rows_of};
-use super::{Multigrid, MultigridAxis, MultigridParams};
+use super::{Multigrid, MultigridParams};
+use crate::poisson::PoissonAxis;
 use crate::poisson::{PoissonError, PoissonInfo, PoissonSolver};
 
 /// Conjugate gradients preconditioned by one V-cycle of [`Multigrid`] each.
@@ -15,7 +16,7 @@ impl<const D: usize> MultigridCg<D> {
     ///
     /// # Errors
     /// Those of [`Multigrid::new`].
-    pub fn new(axes: [MultigridAxis; D], shift: f64, params: MultigridParams) -> Result<Self, PoissonError> {
+    pub fn new(axes: [PoissonAxis; D], shift: f64, params: MultigridParams) -> Result<Self, PoissonError> {
         Ok(Self { multigrid: Multigrid::new(axes, shift, params)? })
     }
 
@@ -32,7 +33,7 @@ impl<const D: usize> MultigridCg<D> {
     /// Solves for φ, starting from the φ given.
     ///
     /// # Errors
-    /// [`PoissonError::Length`] and [`PoissonError::NonFinite`] leave φ as it was;
+    /// [`PoissonError::Length`] and [`PoissonError::NonFinite`] (of f or of the φ given) leave φ as it was;
     /// [`PoissonError::NotConverged`] writes the last φ, whose error is the least in the energy norm.
     pub fn solve_from(&mut self, rhs: &[f64], phi: &mut [f64]) -> Result<PoissonInfo, PoissonError> {
         self.multigrid.check(rhs.len())?;
@@ -69,13 +70,12 @@ impl<const D: usize> MultigridCg<D> {
         } else if warm {
             // The guess as a first step.
             m.sweeps.copy_in(&m.operator, phi, &mut m.p);
-            m.sweeps.apply(&m.operator, &m.p, &mut m.q);
+            let product = m.sweeps.apply(&m.operator, &m.p, &mut m.q);
+            if !product.is_finite() {
+                return Err(m.not_finite(&m.p, product));
+            }
             phi.fill(0.0);
             begun.residual = m.advance(&begun, 1.0, phi);
-            if !begun.residual.is_finite() {
-                let (low, sum) = (0, begun.residual);
-                return Err(PoissonError::NonFinite { low, high: low, sum });
-            }
         } else {
             phi.fill(0.0);
         }
@@ -83,7 +83,7 @@ impl<const D: usize> MultigridCg<D> {
         while begun.residual > m.params.tolerance && iterations < m.params.max_iterations {
             m.hierarchy.cycle();
             // ⟨z, r⟩ and, as r − r_last = −α q, ⟨z, r − r_last⟩ = −α ⟨z, q⟩.
-            let [zr, zq] = m.sweeps.products(&m.hierarchy.levels[0].phi, &mut m.r, &m.q);
+            let [zr, zq] = m.hierarchy.products(&mut m.sweeps, &mut m.r, &m.q);
             let scale = m.unit / begun.scale;
             let beta = if iterations == 0 { 0.0 } else { -alpha * zq * scale / last };
             m.direct(&begun, beta);

@@ -1,6 +1,6 @@
 //! Direct solution on the coarsest level.
 use super::axis::AxisLevel;
-use super::stencil::Stencil;
+use super::stencil::{Real, Stencil};
 
 /// The dense Cholesky factor of the volume-weighted operator V A, plus c v vᵀ if A is singular.
 pub(super) struct Coarsest {
@@ -26,12 +26,18 @@ impl Coarsest {
     }
 
     /// Factorises the operator; `phi` is work space.
-    pub(super) fn factorise(&mut self, s: &Stencil<f32>, singular: bool, phi: &mut [f32], row: &mut [f32]) {
+    pub(super) fn factorise<T: Real>(
+        &mut self,
+        s: &Stencil<T>,
+        singular: bool,
+        phi: &mut [T],
+        row: &mut [T],
+    ) {
         let (n, [nx, rows, layers]) = (self.volumes.len(), s.cells);
         let place = |c: usize| c / nx * s.stride() + 1 + c % nx;
         for column in 0..n {
-            phi.fill(0.0);
-            phi[place(column)] = 1.0;
+            phi.fill(T::default());
+            phi[place(column)] = T::of(1.0);
             let at = column / nx * s.stride();
             s.set_ghosts(&mut phi[at..at + s.stride()]);
             for k in 0..layers {
@@ -40,7 +46,7 @@ impl Coarsest {
                     s.apply(around, j, k, &mut row[..nx]);
                     for i in 0..nx {
                         let c = (k * rows + j) * nx + i;
-                        self.factor[c * n + column] = self.volumes[c] * f64::from(row[i]);
+                        self.factor[c * n + column] = self.volumes[c] * row[i].double();
                     }
                 }
             }
@@ -70,12 +76,12 @@ impl Coarsest {
     }
 
     /// Solves A φ = f.
-    pub(super) fn solve(&mut self, s: &Stencil<f32>, f: &[f32], phi: &mut [f32]) {
+    pub(super) fn solve<T: Real>(&mut self, s: &Stencil<T>, f: &[T], phi: &mut [T]) {
         let (n, nx) = (self.volumes.len(), s.cells[0]);
         let x = &mut self.x;
         for (r, f) in f.chunks_exact(s.stride()).enumerate() {
             for i in 0..nx {
-                x[r * nx + i] = self.volumes[r * nx + i] * f64::from(f[i + 1]);
+                x[r * nx + i] = self.volumes[r * nx + i] * f[i + 1].double();
             }
         }
         for i in 0..n {
@@ -93,7 +99,7 @@ impl Coarsest {
         }
         for (r, phi) in phi.chunks_exact_mut(s.stride()).enumerate() {
             for i in 0..nx {
-                phi[i + 1] = x[r * nx + i] as f32;
+                phi[i + 1] = T::of(x[r * nx + i]);
             }
             s.set_ghosts(phi);
         }

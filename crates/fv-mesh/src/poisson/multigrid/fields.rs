@@ -2,7 +2,7 @@
 //! order, so that they do not depend on the number of threads.
 use super::axis::AxisLevel;
 use super::level::layers_per_task;
-use super::stencil::Stencil;
+use super::stencil::{Real, Stencil};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
@@ -22,8 +22,8 @@ struct Frame {
 
 /// What a sweep does to a row of the fields it writes: `a` and `single` with ghosts, `dense` without (empty if there
 /// is no such field). Returns two sums weighted by the widths along x.
-trait RowSweep: Sync {
-    fn row(&self, at: At, row: Row, widths: &[f64]) -> [f64; 2];
+trait RowSweep<T>: Sync {
+    fn row(&self, at: At, row: Row<T>, widths: &[f64]) -> [f64; 2];
 }
 
 /// Place of a row.
@@ -35,25 +35,25 @@ struct At {
 }
 
 /// A row of each of the fields to write.
-struct Row<'a> {
+struct Row<'a, T> {
     a: &'a mut [f64],
-    single: &'a mut [f32],
+    single: &'a mut [T],
     dense: &'a mut [f64],
 }
 
 /// A run of layers of a sweep.
-struct Task<'a, T> {
+struct Task<'a, K, T> {
     frame: &'a Frame,
-    sweep: &'a T,
+    sweep: &'a K,
     /// First layer.
     start: usize,
     a: &'a mut [f64],
-    single: &'a mut [f32],
+    single: &'a mut [T],
     dense: &'a mut [f64],
     sums: &'a mut [f64; 2],
 }
 
-impl<T: RowSweep> WithSimd for Task<'_, T> {
+impl<K: RowSweep<T>, T> WithSimd for Task<'_, K, T> {
     type Output = ();
 
     #[inline(always)]
@@ -110,11 +110,11 @@ impl Sweeps {
         }
     }
 
-    fn run<T: RowSweep>(
+    fn run<K: RowSweep<T>, T: Real>(
         &mut self,
-        sweep: &T,
+        sweep: &K,
         a: &mut [f64],
-        single: &mut [f32],
+        single: &mut [T],
         dense: &mut [f64],
     ) -> [f64; 2] {
         let (frame, per_task) = (&self.frame, self.per_task);
@@ -152,9 +152,9 @@ impl Sweeps {
     /// Writes −f to `r`; returns the mean of −f and its mean square.
     pub(super) fn load(&mut self, fill: &(impl Fn(usize, &mut [f64]) + Sync), r: &mut [f64]) -> [f64; 2] {
         struct Load<'a, F>(&'a F);
-        impl<F: Fn(usize, &mut [f64]) + Sync> RowSweep for Load<'_, F> {
+        impl<F: Fn(usize, &mut [f64]) + Sync> RowSweep<f32> for Load<'_, F> {
             #[inline(always)]
-            fn row(&self, at: At, row: Row, w: &[f64]) -> [f64; 2] {
+            fn row(&self, at: At, row: Row<f32>, w: &[f64]) -> [f64; 2] {
                 let n = row.a.len() - 2;
                 let r = &mut row.a[1..n + 1];
                 (self.0)(at.row, r);
@@ -166,19 +166,19 @@ impl Sweeps {
     }
 
     /// Subtracts `mean` from `r` and writes `r` times `scale` to `single`; returns the mean square of `r`.
-    pub(super) fn centre(&mut self, mean: f64, scale: f64, r: &mut [f64], single: &mut [f32]) -> f64 {
+    pub(super) fn centre<T: Real>(&mut self, mean: f64, scale: f64, r: &mut [f64], single: &mut [T]) -> f64 {
         struct Centre {
             mean: f64,
             scale: f64,
         }
-        impl RowSweep for Centre {
+        impl<T: Real> RowSweep<T> for Centre {
             #[inline(always)]
-            fn row(&self, _: At, row: Row, w: &[f64]) -> [f64; 2] {
+            fn row(&self, _: At, row: Row<T>, w: &[f64]) -> [f64; 2] {
                 let n = row.a.len() - 2;
                 let (r, single) = (&mut row.a[1..n + 1], &mut row.single[1..n + 1]);
                 for i in 0..n {
                     r[i] -= self.mean;
-                    single[i] = (r[i] * self.scale) as f32;
+                    single[i] = T::of(r[i] * self.scale);
                 }
                 [weighted(w, n, |i| r[i], |r| r * r), 0.0]
             }
@@ -189,9 +189,9 @@ impl Sweeps {
     /// Copies a dense field to one with ghosts.
     pub(super) fn copy_in(&mut self, s: &Stencil<f64>, from: &[f64], to: &mut [f64]) {
         struct Copy<'a>(&'a Stencil<f64>, &'a [f64]);
-        impl RowSweep for Copy<'_> {
+        impl RowSweep<f32> for Copy<'_> {
             #[inline(always)]
-            fn row(&self, at: At, row: Row, _: &[f64]) -> [f64; 2] {
+            fn row(&self, at: At, row: Row<f32>, _: &[f64]) -> [f64; 2] {
                 let n = row.a.len() - 2;
                 row.a[1..n + 1].copy_from_slice(&self.1[at.row * n..][..n]);
                 self.0.set_ghosts(row.a);
@@ -204,9 +204,9 @@ impl Sweeps {
     /// q = A p; returns ⟨p, q⟩.
     pub(super) fn apply(&mut self, s: &Stencil<f64>, p: &[f64], q: &mut [f64]) -> f64 {
         struct Apply<'a>(&'a Stencil<f64>, &'a [f64]);
-        impl RowSweep for Apply<'_> {
+        impl RowSweep<f32> for Apply<'_> {
             #[inline(always)]
-            fn row(&self, At { row: at, j, k }: At, row: Row, w: &[f64]) -> [f64; 2] {
+            fn row(&self, At { row: at, j, k }: At, row: Row<f32>, w: &[f64]) -> [f64; 2] {
                 let n = row.a.len() - 2;
                 let around = [-1, 0, 1].map(|d| self.0.layer_of(self.1, k as isize + d));
                 let q = &mut row.a[1..n + 1];
@@ -218,18 +218,18 @@ impl Sweeps {
         self.run(&Apply(s, p), q, &mut [], &mut [])[0]
     }
 
-    /// ⟨z, r⟩ and ⟨z, q⟩; `work` is not changed.
-    pub(super) fn products(&mut self, z: &[f32], r: &mut [f64], q: &[f64]) -> [f64; 2] {
-        struct Products<'a>(&'a [f32], &'a [f64]);
-        impl RowSweep for Products<'_> {
+    /// ⟨z, r⟩ and ⟨z, q⟩; `r` is not changed.
+    pub(super) fn products<T: Real>(&mut self, z: &[T], r: &mut [f64], q: &[f64]) -> [f64; 2] {
+        struct Products<'a, T>(&'a [T], &'a [f64]);
+        impl<T: Real> RowSweep<T> for Products<'_, T> {
             #[inline(always)]
-            fn row(&self, At { row: at, .. }: At, row: Row, w: &[f64]) -> [f64; 2] {
+            fn row(&self, At { row: at, .. }: At, row: Row<T>, w: &[f64]) -> [f64; 2] {
                 let n = row.a.len() - 2;
                 let inner = at * (n + 2) + 1;
                 let (z, r, q) = (&self.0[inner..][..n], &row.a[1..n + 1], &self.1[inner..][..n]);
                 [
-                    weighted(w, n, |i| (z[i], r[i]), |(z, r)| f64::from(z) * r),
-                    weighted(w, n, |i| (z[i], q[i]), |(z, q)| f64::from(z) * q),
+                    weighted(w, n, |i| (z[i], r[i]), |(z, r)| z.double() * r),
+                    weighted(w, n, |i| (z[i], q[i]), |(z, q)| z.double() * q),
                 ]
             }
         }
@@ -237,21 +237,28 @@ impl Sweeps {
     }
 
     /// p ← `scale` z + `beta` p.
-    pub(super) fn direct(&mut self, s: &Stencil<f64>, scale: f64, z: &[f32], beta: f64, p: &mut [f64]) {
-        struct Direct<'a> {
+    pub(super) fn direct<T: Real>(
+        &mut self,
+        s: &Stencil<f64>,
+        scale: f64,
+        z: &[T],
+        beta: f64,
+        p: &mut [f64],
+    ) {
+        struct Direct<'a, T> {
             s: &'a Stencil<f64>,
             scale: f64,
-            z: &'a [f32],
+            z: &'a [T],
             beta: f64,
         }
-        impl RowSweep for Direct<'_> {
+        impl<T: Real> RowSweep<T> for Direct<'_, T> {
             #[inline(always)]
-            fn row(&self, at: At, row: Row, _: &[f64]) -> [f64; 2] {
+            fn row(&self, at: At, row: Row<T>, _: &[f64]) -> [f64; 2] {
                 let n = row.a.len() - 2;
                 let z = &self.z[at.row * (n + 2) + 1..][..n];
                 let p = &mut row.a[1..n + 1];
                 for i in 0..n {
-                    p[i] = self.scale * f64::from(z[i]) + self.beta * p[i];
+                    p[i] = self.scale * z[i].double() + self.beta * p[i];
                 }
                 self.s.set_ghosts(row.a);
                 [0.0; 2]
@@ -262,14 +269,14 @@ impl Sweeps {
 
     /// φ ← φ + `alpha` p, r ← r − `alpha` q, `single` ← `scale` r; returns the mean square of r.
     #[allow(clippy::too_many_arguments)]
-    pub(super) fn advance(
+    pub(super) fn advance<T: Real>(
         &mut self,
         alpha: f64,
         p: &[f64],
         q: &[f64],
         scale: f64,
         r: &mut [f64],
-        single: &mut [f32],
+        single: &mut [T],
         phi: &mut [f64],
     ) -> f64 {
         struct Advance<'a> {
@@ -278,9 +285,9 @@ impl Sweeps {
             q: &'a [f64],
             scale: f64,
         }
-        impl RowSweep for Advance<'_> {
+        impl<T: Real> RowSweep<T> for Advance<'_> {
             #[inline(always)]
-            fn row(&self, at: At, row: Row, w: &[f64]) -> [f64; 2] {
+            fn row(&self, at: At, row: Row<T>, w: &[f64]) -> [f64; 2] {
                 let n = row.dense.len();
                 let inner = at.row * (n + 2) + 1;
                 let (p, q) = (&self.p[inner..][..n], &self.q[inner..][..n]);
@@ -288,7 +295,7 @@ impl Sweeps {
                 for i in 0..n {
                     phi[i] += self.alpha * p[i];
                     r[i] -= self.alpha * q[i];
-                    single[i] = (self.scale * r[i]) as f32;
+                    single[i] = T::of(self.scale * r[i]);
                 }
                 [weighted(w, n, |i| r[i], |r| r * r), 0.0]
             }
@@ -299,9 +306,9 @@ impl Sweeps {
     /// Subtracts the mean of a dense field.
     pub(super) fn remove_mean(&mut self, phi: &mut [f64]) {
         struct Shift(f64);
-        impl RowSweep for Shift {
+        impl RowSweep<f32> for Shift {
             #[inline(always)]
-            fn row(&self, _: At, row: Row, w: &[f64]) -> [f64; 2] {
+            fn row(&self, _: At, row: Row<f32>, w: &[f64]) -> [f64; 2] {
                 let phi = row.dense;
                 phi.iter_mut().for_each(|phi| *phi -= self.0);
                 [weighted(w, phi.len(), |i| phi[i], |phi| phi), 0.0]

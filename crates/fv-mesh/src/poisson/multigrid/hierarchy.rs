@@ -2,18 +2,19 @@
 use super::axis::{AxisLevel, Transfer};
 use super::coarsest::Coarsest;
 use super::level::Level;
+use super::stencil::Real;
 
 /// Cells of the coarsest level at most, if the box can be coarsened so far.
 const COARSEST: usize = 64;
 
 /// Levels from fine to coarse. Approximates the inverse of `unit` A.
-pub(super) struct Hierarchy {
-    pub(super) levels: Vec<Level>,
+pub(super) struct Hierarchy<T> {
+    pub(super) levels: Vec<Level<T>>,
     coarsest: Coarsest,
     sweeps: usize,
 }
 
-impl Hierarchy {
+impl<T: Real> Hierarchy<T> {
     /// `merge`: cells up to this wide \[m\] are merged first.
     pub(super) fn new(
         axes: [AxisLevel; 3],

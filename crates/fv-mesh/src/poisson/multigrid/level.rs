@@ -1,7 +1,8 @@
-//! One level of the hierarchy: its operator in single precision and its fields.
+//! One level of the hierarchy: its operator and its fields.
 use super::axis::{AxisLevel, Transfer};
-use super::stencil::Stencil;
+use super::stencil::{Real, Stencil};
 use super::transfer::{Prolong, ProlongScratch, Restrict, RestrictScratch};
+use super::weighted::{WeightedProlong, WeightedRestrict};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
@@ -15,27 +16,29 @@ pub(super) fn layers_per_task(cells: [usize; 3]) -> usize {
 }
 
 /// Operator and fields of a level.
-pub(super) struct Level {
+pub(super) struct Level<T> {
     pub(super) axes: [AxisLevel; 3],
-    pub(super) stencil: Stencil<f32>,
+    pub(super) stencil: Stencil<T>,
     /// Right-hand side; the ghosts are not used.
-    pub(super) f: Vec<f32>,
-    pub(super) phi: Vec<f32>,
+    pub(super) f: Vec<T>,
+    pub(super) phi: Vec<T>,
     /// Receives the next φ.
-    next: Vec<f32>,
+    next: Vec<T>,
     per_task: usize,
     /// Three layers per task.
-    rings: Vec<Vec<f32>>,
+    rings: Vec<Vec<T>>,
     /// To the next coarser level; none on the coarsest.
-    pub(super) transfer: Option<[Transfer; 3]>,
-    restrict_scratch: Vec<RestrictScratch>,
-    prolong_scratch: Vec<ProlongScratch>,
+    pub(super) transfer: Option<[Transfer<T>; 3]>,
+    /// What part of the interpolated value comes from the neighbour group along each axis, if β varies.
+    pub(super) pulls: [Vec<T>; 3],
+    restrict_scratch: Vec<RestrictScratch<T>>,
+    prolong_scratch: Vec<ProlongScratch<T>>,
 }
 
-impl Level {
+impl<T: Real> Level<T> {
     pub(super) fn new(
         axes: [AxisLevel; 3],
-        transfer: Option<[Transfer; 3]>,
+        transfer: Option<[Transfer<T>; 3]>,
         unit: f64,
         shift: f64,
         variable: bool,
@@ -43,13 +46,16 @@ impl Level {
         let stencil = Stencil::new(&axes, unit, shift, variable);
         let per_task = layers_per_task(stencil.cells);
         let tasks = stencil.cells[2].div_ceil(per_task);
-        let zeros = vec![0.0; stencil.len()];
+        let zeros = vec![T::default(); stencil.len()];
         let mut level = Self {
             f: zeros.clone(),
             next: if transfer.is_some() { zeros.clone() } else { Vec::new() },
             phi: zeros,
-            rings: vec![vec![0.0; 3 * stencil.layer()]; if transfer.is_some() { tasks } else { 0 }],
+            rings: vec![vec![T::default(); 3 * stencil.layer()]; if transfer.is_some() { tasks } else { 0 }],
             per_task,
+            pulls: std::array::from_fn(|_| {
+                vec![T::default(); if variable && transfer.is_some() { stencil.len() } else { 0 }]
+            }),
             restrict_scratch: Vec::new(),
             prolong_scratch: Vec::new(),
             axes,
@@ -79,7 +85,7 @@ impl Level {
     pub(super) fn smooth(&mut self, first: usize, zero: bool) {
         let (stencil, phi, f) = (&self.stencil, &self.phi, &self.f);
         let chunk = self.per_task * stencil.layer();
-        let job = |task: usize, out: &mut [f32], ring: &mut [f32]| {
+        let job = |task: usize, out: &mut [T], ring: &mut [T]| {
             Arch::new().dispatch(Smooth {
                 stencil,
                 phi,
@@ -106,8 +112,15 @@ impl Level {
         let Some(transfer) = &self.transfer else { return };
         let (stencil, phi, f) = (&self.stencil, &self.phi, &self.f);
         let (layer, stride) = (coarse.stencil.layer(), coarse.stencil.stride());
-        let job = |task: usize, out: &mut [f32], scratch: &mut RestrictScratch| {
+        let (axes, coarse_axes, pulls) = (&self.axes, &coarse.axes, &self.pulls);
+        let job = |task: usize, out: &mut [T], scratch: &mut RestrictScratch<T>| {
             let start = task * per_task;
+            if stencil.beta.is_some() {
+                let row = scratch.row();
+                let job =
+                    WeightedRestrict { stencil, transfer, axes, coarse_axes, pulls, phi, f, start, row, out };
+                return Arch::new().dispatch(job);
+            }
             Arch::new().dispatch(Restrict { stencil, transfer, phi, f, start, layer, stride, out, scratch });
         };
         if let [scratch] = self.restrict_scratch.as_mut_slice() {
@@ -121,10 +134,20 @@ impl Level {
     /// Adds the interpolated φ of the next coarser level.
     pub(super) fn prolong(&mut self, coarse: &Self) {
         let Some(transfer) = &self.transfer else { return };
-        let (stencil, per_task) = (&self.stencil, self.per_task);
-        let job = |task: usize, phi: &mut [f32], scratch: &mut ProlongScratch| {
+        let (stencil, per_task, pulls) = (&self.stencil, self.per_task, &self.pulls);
+        let job = |task: usize, phi: &mut [T], scratch: &mut ProlongScratch<T>| {
             let start = task * per_task;
             let coarse = (&coarse.stencil, coarse.phi.as_slice());
+            if stencil.beta.is_some() {
+                return Arch::new().dispatch(WeightedProlong {
+                    stencil,
+                    transfer,
+                    pulls,
+                    coarse,
+                    start,
+                    phi,
+                });
+            }
             Arch::new().dispatch(Prolong { stencil, transfer, coarse, start, phi, scratch });
         };
         if let [scratch] = self.prolong_scratch.as_mut_slice() {
@@ -141,19 +164,19 @@ impl Level {
 
 /// Both half sweeps in a run of layers. The first one is made in a ring of three layers that moves ahead of the
 /// second.
-struct Smooth<'a> {
-    stencil: &'a Stencil<f32>,
-    phi: &'a [f32],
-    f: &'a [f32],
+struct Smooth<'a, T> {
+    stencil: &'a Stencil<T>,
+    phi: &'a [T],
+    f: &'a [T],
     first: usize,
     zero: bool,
     /// First layer of `out`.
     start: usize,
-    out: &'a mut [f32],
-    ring: &'a mut [f32],
+    out: &'a mut [T],
+    ring: &'a mut [T],
 }
 
-impl Smooth<'_> {
+impl<T: Real> Smooth<'_, T> {
     /// First half sweep in layer `start` − 1 + `ahead`, into its place in the ring.
     #[inline(always)]
     fn first_half(&mut self, ahead: usize) {
@@ -162,7 +185,7 @@ impl Smooth<'_> {
         let slot = &mut self.ring[ahead % 3 * layer..][..layer];
         let at = (self.start + ahead) as isize - 1;
         if !s.periodic[2] && !(0..layers as isize).contains(&at) {
-            slot.fill(0.0);
+            slot.fill(T::default());
             return;
         }
         let k = at.rem_euclid(layers as isize) as usize;
@@ -180,7 +203,7 @@ impl Smooth<'_> {
     }
 }
 
-impl WithSimd for Smooth<'_> {
+impl<T: Real> WithSimd for Smooth<'_, T> {
     type Output = ();
 
     #[inline(always)]

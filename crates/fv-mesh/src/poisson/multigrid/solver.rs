@@ -1,16 +1,18 @@
 //! Multigrid on its own.
+use super::MultigridParams;
 use super::axis::{self, AxisLevel};
 use super::fields::Sweeps;
 use super::hierarchy::Hierarchy;
+use super::precision::Precision;
 use super::stencil::Stencil;
-use super::{MultigridAxis, MultigridParams};
+use crate::poisson::PoissonAxis;
 use crate::poisson::{PoissonError, PoissonInfo, PoissonSolver};
 
 /// Geometric multigrid: V-cycles, one after the other. [`MultigridCg`](super::MultigridCg) needs fewer of them.
 pub struct Multigrid<const D: usize> {
     pub(super) params: MultigridParams,
     pub(super) operator: Stencil<f64>,
-    pub(super) hierarchy: Hierarchy,
+    pub(super) hierarchy: Precision,
     pub(super) sweeps: Sweeps,
     /// The hierarchy inverts `unit` A.
     pub(super) unit: f64,
@@ -41,7 +43,7 @@ impl<const D: usize> Multigrid<D> {
     /// # Errors
     /// [`PoissonError::NoCells`], [`PoissonError::Spacing`], [`PoissonError::Shift`] and
     /// [`PoissonError::Parameter`].
-    pub fn new(axes: [MultigridAxis; D], shift: f64, params: MultigridParams) -> Result<Self, PoissonError> {
+    pub fn new(axes: [PoissonAxis; D], shift: f64, params: MultigridParams) -> Result<Self, PoissonError> {
         const { assert!(D == 2 || D == 3, "multigrid works in two and three dimensions") };
         for (axis, a) in axes.iter().enumerate() {
             if a.widths.is_empty() {
@@ -80,15 +82,14 @@ impl<const D: usize> Multigrid<D> {
         let singular = shift == 0.0 && levels.iter().all(|a| !a.ends.contains(&axis::End::ZeroValue));
         let unit = narrowest * narrowest;
         let operator = Stencil::new(&levels, 1.0, shift, params.variable);
-        let hierarchy = Hierarchy::new(
-            levels.clone(),
-            unit,
-            shift,
-            params.variable,
-            params.sweeps,
-            params.widest_merged * narrowest,
-            singular,
-        );
+        let longest = levels.iter().map(|a| a.widths.iter().sum()).fold(0.0, f64::max);
+        let MultigridParams { variable, sweeps, widest_merged, .. } = params;
+        let (axes, merge) = (levels.clone(), widest_merged * narrowest);
+        let hierarchy = if Precision::single(longest / narrowest) {
+            Precision::Single(Hierarchy::new(axes, unit, shift, variable, sweeps, merge, singular))
+        } else {
+            Precision::Double(Hierarchy::new(axes, unit, shift, variable, sweeps, merge, singular))
+        };
         let zeros = vec![0.0; operator.len()];
         let mut multigrid = Self {
             sweeps: Sweeps::new(&levels),
@@ -103,7 +104,7 @@ impl<const D: usize> Multigrid<D> {
             singular,
             shift,
         };
-        multigrid.renew();
+        multigrid.set_ones();
         Ok(multigrid)
     }
 
@@ -118,8 +119,8 @@ impl<const D: usize> Multigrid<D> {
     }
 
     /// One V-cycle from zero: an approximation of the φ that belongs to f, both dense. The map is linear, symmetric in
-    /// the volume-weighted product and, in single precision, negative definite as the operator (up to constants if
-    /// that is singular).
+    /// the volume-weighted product and negative definite as the operator (up to constants if that is singular),
+    /// all to the precision that [`describe`](Self::describe) tells.
     ///
     /// # Errors
     /// [`PoissonError::Length`] and [`PoissonError::NonFinite`]; f is then left as it was.
@@ -139,29 +140,33 @@ impl<const D: usize> Multigrid<D> {
     pub(super) fn begin(&mut self, fill: impl Fn(usize, &mut [f64]) + Sync) -> Result<Begun, PoissonError> {
         let [mean, square] = self.sweeps.load(&fill, &mut self.r);
         if !square.is_finite() {
-            let layer = self.operator.layer();
-            let sums = self.r.chunks_exact(layer).map(|r| r.iter().map(|r| r * r).sum::<f64>());
-            let (low, sum) = sums.enumerate().find(|(_, sum)| !sum.is_finite()).unwrap_or((0, square));
-            return Err(PoissonError::NonFinite { low, high: low, sum });
+            return Err(self.not_finite(&self.r, square));
         }
         let removed = if self.singular { mean } else { 0.0 };
         let scale = if square > 0.0 { 1.0 / square.sqrt() } else { 0.0 };
-        let square_left = self.sweeps.centre(removed, scale, &mut self.r, &mut self.hierarchy.levels[0].f);
+        let square_left = self.hierarchy.centre(&mut self.sweeps, removed, scale, &mut self.r);
         // What is left of a constant is round-off.
         let norm = if square_left > 1e-28 * square { square_left.sqrt() } else { 0.0 };
         Ok(Begun { removed_mean: 0.0 - removed, norm, scale, residual: 1.0 })
     }
 
+    /// The error that tells which layer of `field` is not finite.
+    pub(super) fn not_finite(&self, field: &[f64], sum: f64) -> PoissonError {
+        let sums = field.chunks_exact(self.operator.layer()).map(|r| r.iter().map(|r| r * r).sum::<f64>());
+        let (low, sum) = sums.enumerate().find(|(_, sum)| !sum.is_finite()).unwrap_or((0, sum));
+        PoissonError::NonFinite { low, high: low, sum }
+    }
+
     /// p ← the correction of the V-cycle + `beta` p.
     pub(super) fn direct(&mut self, begun: &Begun, beta: f64) {
         let scale = self.unit / begun.scale;
-        self.sweeps.direct(&self.operator, scale, &self.hierarchy.levels[0].phi, beta, &mut self.p);
+        self.hierarchy.direct(&mut self.sweeps, &self.operator, scale, beta, &mut self.p);
     }
 
     /// φ ← φ + `alpha` p and the residual with it; returns the residual over f.
     pub(super) fn advance(&mut self, begun: &Begun, alpha: f64, phi: &mut [f64]) -> f64 {
-        let single = &mut self.hierarchy.levels[0].f;
-        let square = self.sweeps.advance(alpha, &self.p, &self.q, begun.scale, &mut self.r, single, phi);
+        let (p, q) = (&self.p, &self.q);
+        let square = self.hierarchy.advance(&mut self.sweeps, alpha, p, q, begun.scale, &mut self.r, phi);
         square.sqrt() / begun.norm
     }
 
@@ -186,16 +191,15 @@ impl<const D: usize> Multigrid<D> {
 
     /// Levels, coarsening and smoother in one sentence.
     pub fn describe(&self) -> String {
-        let levels = &self.hierarchy.levels;
-        let size = |l: &super::level::Level| {
-            let [x, m, z] = l.stencil.cells;
-            if D == 3 { format!("{x}×{m}×{z}") } else { format!("{x}×{z}") }
-        };
+        let levels = self.hierarchy.cells();
+        let size =
+            |[x, m, z]: &[usize; 3]| if D == 3 { format!("{x}×{m}×{z}") } else { format!("{x}×{z}") };
         let sizes: Vec<String> = levels.iter().map(size).collect();
-        let total: usize = levels.iter().map(|l| l.stencil.cells.iter().product::<usize>()).sum();
+        let total: usize = levels.iter().map(|l| l.iter().product::<usize>()).sum();
+        let precision = if matches!(self.hierarchy, Precision::Single(_)) { "single" } else { "double" };
         format!(
             "Multigrid on {} levels ({}; {:.2} times the cells of the finest) that merge the narrow cells of every axis \
-             first, with {} + {} red–black Gauss–Seidel sweeps per level in single precision and dense Cholesky on \
+             first, with {} + {} red–black Gauss–Seidel sweeps per level in {precision} precision and dense Cholesky on \
              the coarsest.",
             levels.len(),
             sizes.join(", "),

@@ -1,43 +1,52 @@
 //! Restriction of the residual and interpolation of the correction, layer by layer.
 use super::axis::Transfer;
-use super::stencil::Stencil;
+use super::stencil::{Real, Stencil};
 use pulp::{Simd, WithSimd};
 
 /// Layers that the restriction keeps.
 const KEPT: usize = 4;
 
 /// Work space of a task of the restriction.
-pub(super) struct RestrictScratch {
+pub(super) struct RestrictScratch<T> {
     /// Layers of the residual, restricted along the middle axis.
-    layers: Vec<f32>,
+    layers: Vec<T>,
     /// Which layer each of them is.
     tags: [usize; KEPT],
-    row: Vec<f32>,
+    row: Vec<T>,
 }
 
-impl RestrictScratch {
-    pub(super) fn new(stencil: &Stencil<f32>, coarse_rows: usize) -> Self {
+impl<T: Real> RestrictScratch<T> {
+    pub(super) fn new(stencil: &Stencil<T>, coarse_rows: usize) -> Self {
         let n = stencil.cells[0];
-        Self { layers: vec![0.0; KEPT * n * coarse_rows], tags: [usize::MAX; KEPT], row: vec![0.0; n] }
+        Self {
+            layers: vec![T::default(); KEPT * n * coarse_rows],
+            tags: [usize::MAX; KEPT],
+            row: vec![T::default(); n],
+        }
+    }
+
+    /// Place for a row.
+    pub(super) fn row(&mut self) -> &mut [T] {
+        &mut self.row
     }
 }
 
 /// Restricts f − A φ to a run of coarse layers.
-pub(super) struct Restrict<'a> {
-    pub(super) stencil: &'a Stencil<f32>,
-    pub(super) transfer: &'a [Transfer; 3],
-    pub(super) phi: &'a [f32],
-    pub(super) f: &'a [f32],
+pub(super) struct Restrict<'a, T> {
+    pub(super) stencil: &'a Stencil<T>,
+    pub(super) transfer: &'a [Transfer<T>; 3],
+    pub(super) phi: &'a [T],
+    pub(super) f: &'a [T],
     /// First coarse layer.
     pub(super) start: usize,
     /// Values of a coarse layer and of a coarse row.
     pub(super) layer: usize,
     pub(super) stride: usize,
-    pub(super) out: &'a mut [f32],
-    pub(super) scratch: &'a mut RestrictScratch,
+    pub(super) out: &'a mut [T],
+    pub(super) scratch: &'a mut RestrictScratch<T>,
 }
 
-impl Restrict<'_> {
+impl<T: Real> Restrict<'_, T> {
     /// Computes the residual in layer `k`, restricts it along the middle axis and keeps it.
     #[inline(always)]
     fn residual(&mut self, k: usize) {
@@ -48,13 +57,13 @@ impl Restrict<'_> {
         self.scratch.tags[k % KEPT] = k;
         let row = &mut self.scratch.row[..n];
         let around = [-1, 0, 1].map(|d| s.layer_of(self.phi, k as isize + d));
-        kept.fill(0.0);
+        kept.fill(T::default());
         for j in 0..s.cells[1] {
             s.apply(around, j, k, row);
             let f = &self.f[k * s.layer() + j * s.stride() + 1..][..n];
             for m in 0..2 {
                 let share = middle.shares[j][m];
-                if share != 0.0 {
+                if share != T::default() {
                     let kept = &mut kept[middle.parents[j][m] * n..][..n];
                     for i in 0..n {
                         kept[i] += share * (f[i] - row[i]);
@@ -65,7 +74,7 @@ impl Restrict<'_> {
     }
 }
 
-impl WithSimd for Restrict<'_> {
+impl<T: Real> WithSimd for Restrict<'_, T> {
     type Output = ();
 
     #[inline(always)]
@@ -83,7 +92,7 @@ impl WithSimd for Restrict<'_> {
             for j in 0..rows {
                 let RestrictScratch { layers, row, .. } = &mut *self.scratch;
                 let row = &mut row[..n];
-                row.fill(0.0);
+                row.fill(T::default());
                 for &(k, share) in children {
                     let kept = &layers[(k % KEPT * rows + j) * n..][..n];
                     for i in 0..n {
@@ -92,7 +101,7 @@ impl WithSimd for Restrict<'_> {
                 }
                 let out = &mut self.out[i * self.layer + j * self.stride + 1..][..x.children.len()];
                 for (out, children) in out.iter_mut().zip(&x.children) {
-                    *out = children.iter().map(|&(i, share)| share * row[i]).sum();
+                    *out = children.iter().fold(T::default(), |sum, &(i, share)| sum + share * row[i]);
                 }
             }
         }
@@ -100,32 +109,32 @@ impl WithSimd for Restrict<'_> {
 }
 
 /// Work space of a task of the interpolation.
-pub(super) struct ProlongScratch {
+pub(super) struct ProlongScratch<T> {
     /// Two coarse layers, interpolated along x.
-    layers: Vec<f32>,
+    layers: Vec<T>,
     /// Which layer each of them is.
     tags: [usize; 2],
 }
 
-impl ProlongScratch {
-    pub(super) fn new(stencil: &Stencil<f32>, coarse_rows: usize) -> Self {
-        Self { layers: vec![0.0; 2 * stencil.cells[0] * coarse_rows], tags: [usize::MAX; 2] }
+impl<T: Real> ProlongScratch<T> {
+    pub(super) fn new(stencil: &Stencil<T>, coarse_rows: usize) -> Self {
+        Self { layers: vec![T::default(); 2 * stencil.cells[0] * coarse_rows], tags: [usize::MAX; 2] }
     }
 }
 
 /// Adds the interpolated correction to a run of layers.
-pub(super) struct Prolong<'a> {
-    pub(super) stencil: &'a Stencil<f32>,
-    pub(super) transfer: &'a [Transfer; 3],
+pub(super) struct Prolong<'a, T> {
+    pub(super) stencil: &'a Stencil<T>,
+    pub(super) transfer: &'a [Transfer<T>; 3],
     /// Layout and φ of the coarse level.
-    pub(super) coarse: (&'a Stencil<f32>, &'a [f32]),
+    pub(super) coarse: (&'a Stencil<T>, &'a [T]),
     /// First layer of `phi`.
     pub(super) start: usize,
-    pub(super) phi: &'a mut [f32],
-    pub(super) scratch: &'a mut ProlongScratch,
+    pub(super) phi: &'a mut [T],
+    pub(super) scratch: &'a mut ProlongScratch<T>,
 }
 
-impl Prolong<'_> {
+impl<T: Real> Prolong<'_, T> {
     /// Interpolates coarse layer `k` along x unless that is done, in a place that is not `busy`; tells the place.
     #[inline(always)]
     fn along_x(&mut self, k: usize, busy: Option<usize>) -> usize {
@@ -148,7 +157,7 @@ impl Prolong<'_> {
     }
 }
 
-impl WithSimd for Prolong<'_> {
+impl<T: Real> WithSimd for Prolong<'_, T> {
     type Output = ();
 
     #[inline(always)]
@@ -169,7 +178,7 @@ impl WithSimd for Prolong<'_> {
                 let to = &mut self.phi[i * s.layer() + j * s.stride()..][..n + 2];
                 let inner = &mut to[1..n + 1];
                 let (x, y) = (from(first, p), from(second, p));
-                if b == 0.0 {
+                if b == T::default() {
                     let (u, v) = (a * u, a * v);
                     for i in 0..n {
                         inner[i] += u * x[i] + v * y[i];

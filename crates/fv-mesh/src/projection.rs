@@ -62,6 +62,8 @@ pub struct Projection<const D: usize> {
     tendency: [Field<D>; D],
     pressure: Field<D>,
     phi: Vec<f64>,
+    /// The pressure at rest where some is given (dense), else empty.
+    rest_pressure: Vec<f64>,
     /// Scratch of one row.
     row: Vec<f64>,
     pressure_solver: Pressure<D>,
@@ -116,6 +118,7 @@ impl<const D: usize> Projection<D> {
             tendency: field(),
             pressure: Field::zeros(&grid),
             phi: vec![0.0; grid.n_cells()],
+            rest_pressure: Vec::new(),
             row: vec![0.0; grid.cells()[0]],
             pressure_solver,
             diffusion: Diffusion::Auto,
@@ -133,7 +136,13 @@ impl<const D: usize> Projection<D> {
             fluid,
         };
         flow.fill_velocity();
-        flow.boundaries.fill_pressure(&mut flow.pressure);
+        if let Some(rhs) = flow.boundaries.given_pressures() {
+            flow.rest_pressure = vec![0.0; rhs.len()];
+            let n = flow.grid.cells()[0];
+            let rows = |r: usize, row: &mut [f64]| row.copy_from_slice(&rhs[r * n..(r + 1) * n]);
+            flow.pressure_solver.solve_rows(rows, &mut flow.rest_pressure)?;
+        }
+        flow.reset_pressure();
         flow.rates = flow.measure_rates();
         Ok(flow)
     }
@@ -205,8 +214,7 @@ impl<const D: usize> Projection<D> {
             r = 0.0;
         } else if r > LONGEST_GROWTH {
             r = 0.0;
-            self.pressure.data_mut().fill(0.0);
-            self.boundaries.fill_pressure(&mut self.pressure);
+            self.reset_pressure();
         } else if implicit != self.implicit_axes {
             // The last tendency holds other terms.
             r = 0.0;
@@ -252,7 +260,7 @@ impl<const D: usize> Projection<D> {
         for c in 0..D {
             std::mem::swap(&mut self.velocity.components[c], &mut self.next[c]);
         }
-        self.boundaries.advance_outlets(&self.metrics, &self.velocity.components, dt)?;
+        self.boundaries.advance_outlets(&self.metrics, &self.velocity.components, dt, nu)?;
         self.last_dt = dt;
         self.fill_velocity();
         if any_implicit {
@@ -260,6 +268,16 @@ impl<const D: usize> Projection<D> {
             self.wall_impulse += 0.5 * dt * self.fluid.density * viscous;
         }
         Ok(())
+    }
+
+    /// The pressure at rest: zero, or harmonic between the given ones.
+    fn reset_pressure(&mut self) {
+        if self.rest_pressure.is_empty() {
+            self.pressure.data_mut().fill(0.0);
+        } else {
+            kernels::copy_dense(&self.grid, &self.rest_pressure, &mut self.pressure);
+        }
+        self.boundaries.fill_pressure(&mut self.pressure);
     }
 
     fn side_fluxes(&self, [explicit, implicit]: [[f64; D]; 2]) -> [Vector; 2] {

@@ -61,7 +61,7 @@ pub enum Side {
     FreeSlip,
     /// Fluid enters with this velocity.
     Inlet(Profile),
-    /// Fluid leaves: ∂u/∂t + U ∂u/∂n = 0 for the component through the side, U the largest speed there, and ∂u/∂n = 0 for
+    /// Fluid leaves: ∂u/∂t + U ∂u/∂n = 0 for the component through the side, U the largest speed there plus ν/h, and ∂u/∂n = 0 for
     /// the others. What leaves through all such faces is shifted by one velocity so that it equals what enters.
     ConvectiveOutlet,
     /// Fluid leaves (or enters) through a side of given pressure \[Pa\], with ∂u/∂n = 0.

@@ -183,6 +183,7 @@ impl<const D: usize> Boundaries<D> {
         metrics: &Metrics<D>,
         velocity: &[Field<D>; D],
         dt: f64,
+        viscosity: f64,
     ) -> Result<(), FlowError> {
         if self.sides.closed() {
             return Ok(());
@@ -194,12 +195,12 @@ impl<const D: usize> Boundaries<D> {
                 if state.kind.iter().all(|k| k.is_fixed()) {
                     continue;
                 }
-                // The largest speed, so that what is left when the outflow stops leaves too.
+                // The largest speed, and that of viscosity, so that what is left when the outflow stops leaves too.
                 let fastest = (0..lines.len())
                     .filter(|&l| lines.inside(l) && state.kind[l] == FaceKind::Convective)
                     .fold(0.0, |top: f64, l| top.max(state.normal[l].abs()));
                 let gap = self.grid.axis(a).width(if upper == 1 { lines.cells - 1 } else { 0 });
-                let courant = fastest * dt / gap;
+                let courant = (fastest + viscosity / gap) * dt / gap;
                 for (l, o) in lines.starts().enumerate().filter(|&(l, _)| lines.inside(l)) {
                     let inside =
                         u[if upper == 1 { o + (lines.cells - 1) * lines.step } else { o + lines.step }];
@@ -335,6 +336,30 @@ impl<const D: usize> Boundaries<D> {
             .map(|s| if a == c { s.normal_change.as_slice() } else { s.laws[c].change.as_slice() });
         let weights = pair.each_ref().map(|s| if a == c { 1.0 } else { s.beyond.wall });
         Some(Ends { kinds, changes, weights, moving: pair.iter().any(|s| !s.steady) })
+    }
+
+    /// −2 p/w² in the cells before faces of given pressure p, zero elsewhere (dense): the right-hand side of the harmonic
+    /// pressure that takes those values. `None` without such faces.
+    pub(crate) fn given_pressures(&self) -> Option<Vec<f64>> {
+        let sides = || {
+            self.lines.iter().zip(&self.states).flat_map(|(lines, pair)| {
+                pair.iter()
+                    .flat_map(|p| p.iter())
+                    .enumerate()
+                    .map(move |(upper, state)| (lines, upper, state))
+            })
+        };
+        if !sides().any(|(_, _, state)| state.has_pressure()) {
+            return None;
+        }
+        let mut rhs = vec![0.0; self.grid.n_cells()];
+        for (lines, upper, state) in sides() {
+            let width = self.grid.axis(lines.axis).width(if upper == 1 { lines.cells - 1 } else { 0 });
+            for l in (0..lines.len()).filter(|&l| lines.inside(l) && state.kind[l] == FaceKind::Pressure) {
+                rhs[lines.end_cell(&self.grid, l, upper == 1)] -= 2.0 * state.pressure[l] / (width * width);
+            }
+        }
+        Some(rhs)
     }
 
     /// Per side of axis `a`: what holds at each face of the side, in the order of dense cells; `None` if periodic.

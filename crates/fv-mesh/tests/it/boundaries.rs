@@ -63,7 +63,7 @@ fn an_inlet_that_stops_leaves_fluid_at_rest() {
     for outlet in [Side::ConvectiveOutlet, Side::PressureOutlet(0.0)] {
         let sides = [[Side::Inlet(gust.clone()), outlet], Side::WALL.both()];
         let mut flow = Projection::new(grid.clone(), sides, OIL).unwrap();
-        while flow.time() < 8.0 {
+        while flow.time() < 12.0 {
             flow.advance(flow.stable_dt(0.4).min(0.01), [0.0; 2]).unwrap();
         }
         let left = norms::velocity(&flow, |_| [0.0; 2]).max;

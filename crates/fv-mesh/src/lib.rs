@@ -20,6 +20,7 @@
 //! ```
 #![deny(missing_docs)]
 
+pub mod algebra;
 mod axis;
 mod boundary;
 mod convection;
@@ -31,6 +32,7 @@ mod kernels;
 mod metrics;
 pub mod poisson;
 mod projection;
+mod sample;
 mod statistics;
 #[cfg(test)]
 mod tests;
@@ -38,6 +40,7 @@ mod velocity;
 mod vti;
 mod walls;
 
+pub use algebra::GridMismatch;
 pub use axis::{Axis, Cluster};
 pub use boundary::{Patch, Profile, Side, Sides};
 pub use convection::Convection;
@@ -45,6 +48,7 @@ pub use error::FlowError;
 pub use field::Field;
 pub use grid::CartesianGrid;
 pub use projection::{Diffusion, Fluid, Projection};
+pub use sample::{Extreme, Integrals, Norms};
 pub use statistics::FlowStatistics;
 pub use velocity::Velocity;
 pub use vti::ImageWriter;

@@ -30,6 +30,7 @@ mod grid;
 mod implicit;
 mod kernels;
 mod metrics;
+mod output;
 pub mod poisson;
 mod projection;
 mod sample;
@@ -37,7 +38,6 @@ mod statistics;
 #[cfg(test)]
 mod tests;
 mod velocity;
-mod vti;
 mod walls;
 
 pub use algebra::GridMismatch;
@@ -48,7 +48,7 @@ pub use error::FlowError;
 pub use field::Field;
 pub use grid::CartesianGrid;
 pub use projection::{Diffusion, Fluid, Projection};
-pub use sample::{Extreme, Integrals, Norms};
+pub use output::{CellWriter, OutputError, Precision, TimeSeries};
+pub use sample::{Extreme, Integrals, Line, Norms, Plane, Probes, Quantity, SampleError, Sampler};
 pub use statistics::FlowStatistics;
 pub use velocity::Velocity;
-pub use vti::ImageWriter;

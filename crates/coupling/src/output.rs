@@ -150,8 +150,7 @@ impl FileOutput {
         let (flow, particles) = (&simulation.flow, &simulation.particles);
         let grid = flow.grid();
         let image = CellWriter::new(grid);
-        let names =
-            [format!("fields/{index:05}.{}", image.extension()), format!("bodies/{index:05}.vtp")];
+        let names = [format!("fields/{index:05}.{}", image.extension()), format!("bodies/{index:05}.vtp")];
         let mut file = BufWriter::new(File::create(self.folder.join(&names[0]))?);
         image
             .scalar("lambda", self.lambda.iter().copied())

@@ -29,14 +29,19 @@ impl<'a> Arrays<'a> {
         }
         let expected = cells * components;
         let (mut found, mut beyond) = (0, None);
-        let kept = values.into_iter().take(expected.saturating_add(1)).enumerate().filter_map(|(i, value)| {
-            found += 1;
-            let wanted = i < expected && keep.is_none_or(|k| k[i / components]);
-            if wanted && precision == Precision::Single && value.is_finite() && !(value as f32).is_finite() {
-                beyond.get_or_insert(value);
-            }
-            wanted.then_some(value)
-        });
+        let kept =
+            values.into_iter().take(expected.saturating_add(1)).enumerate().filter_map(|(i, value)| {
+                found += 1;
+                let wanted = i < expected && keep.is_none_or(|k| k[i / components]);
+                if wanted
+                    && precision == Precision::Single
+                    && value.is_finite()
+                    && !(value as f32).is_finite()
+                {
+                    beyond.get_or_insert(value);
+                }
+                wanted.then_some(value)
+            });
         let array = DataArray::float(name, components, precision, kept);
         if found != expected {
             let found = found.div_ceil(components);

@@ -3,6 +3,8 @@ mod arrays;
 mod cells;
 mod rectilinear;
 mod series;
+#[cfg(test)]
+mod tests;
 mod unstructured;
 
 pub(crate) use arrays::Arrays;
@@ -33,7 +35,9 @@ pub enum OutputError {
         name: String,
     },
     /// A finite value that single precision does not hold.
-    #[error("the value {value:e} in the array \"{name}\", beyond single precision; write it in double precision")]
+    #[error(
+        "the value {value:e} in the array \"{name}\", beyond single precision; write it in double precision"
+    )]
     Range {
         /// The array.
         name: String,

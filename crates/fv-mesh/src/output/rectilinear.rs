@@ -17,7 +17,9 @@ pub(crate) fn write_cells(
     if uniform {
         let origin = faces.map(|f| f[0]);
         let h: [f64; 3] =
-            std::array::from_fn(|a| if n[a] == 0 { 1.0 } else { (faces[a][n[a]] - faces[a][0]) / n[a] as f64 });
+            std::array::from_fn(
+                |a| if n[a] == 0 { 1.0 } else { (faces[a][n[a]] - faces[a][0]) / n[a] as f64 },
+            );
         let grid = format!(
             "{whole} Origin=\"{} {} {}\" Spacing=\"{} {} {}\"",
             origin[0], origin[1], origin[2], h[0], h[1], h[2]

@@ -29,7 +29,9 @@ pub(super) fn write<const D: usize>(
             let node = (0..D).rev().fold(0, |sum, a| sum * shape[a] + cell[a] + corner[a]);
             if numbers[node] < 0 {
                 numbers[node] = (points.len() / 3) as i64;
-                points.extend((0..3).map(|a| if a < D { grid.axis(a).faces()[cell[a] + corner[a]] } else { 0.0 }));
+                points.extend(
+                    (0..3).map(|a| if a < D { grid.axis(a).faces()[cell[a] + corner[a]] } else { 0.0 }),
+                );
             }
             connectivity.push(numbers[node]);
         }

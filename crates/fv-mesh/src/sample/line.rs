@@ -41,11 +41,7 @@ impl<const D: usize> Line<'_, D> {
     ///
     /// # Errors
     /// [`SampleError::Grid`] if it lives on another grid.
-    pub fn with<'q>(
-        mut self,
-        name: &str,
-        quantity: impl Into<Quantity<'q, D>>,
-    ) -> Result<Self, SampleError> {
+    pub fn with<'q>(mut self, name: &str, quantity: impl Into<Quantity<'q, D>>) -> Result<Self, SampleError> {
         let quantity = quantity.into();
         self.sampler.check(&quantity)?;
         for (c, name) in quantity.columns(name).enumerate() {
@@ -65,9 +61,7 @@ impl<const D: usize> Line<'_, D> {
 
     /// Distance of each point from the first \[m\].
     pub fn distance(&self) -> impl Iterator<Item = f64> + '_ {
-        self.points.iter().map(|x| {
-            (0..D).map(|a| (x[a] - self.points[0][a]).powi(2)).sum::<f64>().sqrt()
-        })
+        self.points.iter().map(|x| (0..D).map(|a| (x[a] - self.points[0][a]).powi(2)).sum::<f64>().sqrt())
     }
 
     /// The column of this name.

@@ -5,6 +5,8 @@ mod line;
 mod plane;
 mod probes;
 mod sampler;
+#[cfg(test)]
+mod tests;
 
 pub use integrals::{Extreme, Integrals, Norms};
 pub use line::Line;
@@ -19,7 +21,9 @@ use std::io;
 #[derive(Debug, thiserror::Error)]
 pub enum SampleError {
     /// A point beyond a bounded side, or not a number.
-    #[error("a point at {x} m along axis {axis}; the box goes from {lower} m to {upper} m: take a point inside")]
+    #[error(
+        "a point at {x} m along axis {axis}; the box goes from {lower} m to {upper} m: take a point inside"
+    )]
     Outside {
         /// The axis.
         axis: usize,

@@ -34,11 +34,7 @@ impl<const D: usize> Plane<'_, D> {
     ///
     /// # Errors
     /// [`SampleError::Grid`] if it lives on another grid.
-    pub fn with<'q>(
-        mut self,
-        name: &str,
-        quantity: impl Into<Quantity<'q, D>>,
-    ) -> Result<Self, SampleError> {
+    pub fn with<'q>(mut self, name: &str, quantity: impl Into<Quantity<'q, D>>) -> Result<Self, SampleError> {
         let quantity = quantity.into();
         self.sampler.check(&quantity)?;
         let components = (0..quantity.components())

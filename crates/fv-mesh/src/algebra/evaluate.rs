@@ -85,15 +85,23 @@ impl<const D: usize> Field<D> {
         let layer = grid.stride()[D - 1];
         let (layers, rows) = (grid.cells()[D - 1], grid.rows_per_layer());
         let per_task = layers_per_task(layers);
-        self.layers_mut().par_chunks_mut(layer * per_task).enumerate().for_each(|(task, out)| {
+        let run = |(task, out): (usize, &mut [f64])| {
             let first = task * per_task;
             let end = (first + per_task).min(layers);
             let start = (GHOSTS + first) * layer;
             let rows = first * rows..end * rows;
             Arch::new().dispatch(Evaluate { grid: &grid, expression, f: &f, rows, start, out });
-        });
+        };
+        if grid.n_cells() < WORTH_THREADS {
+            self.layers_mut().chunks_mut(layer * per_task).enumerate().for_each(run);
+        } else {
+            self.layers_mut().par_chunks_mut(layer * per_task).enumerate().for_each(run);
+        }
     }
 }
+
+/// Cells from which on threads gain more than it costs to wake them.
+const WORTH_THREADS: usize = 16_384;
 
 /// Evaluates a run of rows.
 struct Evaluate<'a, E, F, const D: usize> {

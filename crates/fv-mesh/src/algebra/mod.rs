@@ -53,7 +53,12 @@ pub trait Expression<const D: usize>: Sync {
 pub trait RowExpression {
     /// Its value in cell `i` of the row.
     fn at(&self, i: usize) -> f64;
+    /// Its values in the cells from `i` on, as many as sums take at once.
+    fn block(&self, i: usize) -> [f64; LANES];
 }
+
+/// Cells that sums take at once, so that they run in vector registers in a fixed order.
+pub const LANES: usize = 8;
 
 /// What can stand in an expression: a field by reference, a number, another expression.
 pub trait Operand {

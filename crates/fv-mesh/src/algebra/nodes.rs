@@ -1,5 +1,5 @@
 //! The nodes of an expression tree.
-use super::{Expression, GridMismatch, RowExpression, check_grid};
+use super::{Expression, GridMismatch, LANES, RowExpression, check_grid};
 use crate::field::row_start;
 use crate::kernels::row_place;
 use crate::{CartesianGrid, Field};
@@ -47,6 +47,12 @@ impl RowExpression for &[f64] {
     fn at(&self, i: usize) -> f64 {
         self[i]
     }
+    #[inline(always)]
+    fn block(&self, i: usize) -> [f64; LANES] {
+        let mut block = [0.0; LANES];
+        block.copy_from_slice(&self[i..][..LANES]);
+        block
+    }
 }
 
 /// A number.
@@ -68,6 +74,10 @@ impl RowExpression for Constant {
     #[inline(always)]
     fn at(&self, _: usize) -> f64 {
         self.0
+    }
+    #[inline(always)]
+    fn block(&self, _: usize) -> [f64; LANES] {
+        [self.0; LANES]
     }
 }
 
@@ -107,6 +117,10 @@ impl<F: Fn([f64; D]) -> f64, const D: usize> RowExpression for FunctionRow<'_, F
         let mut x = self.x;
         x[0] = 0.5 * (self.faces[i] + self.faces[i + 1]);
         (self.f)(x)
+    }
+    #[inline(always)]
+    fn block(&self, i: usize) -> [f64; LANES] {
+        std::array::from_fn(|l| self.at(i + l))
     }
 }
 
@@ -177,6 +191,11 @@ impl<O: Operation, A: RowExpression, B: RowExpression> RowExpression for BinaryR
     fn at(&self, i: usize) -> f64 {
         O::apply(self.a.at(i), self.b.at(i))
     }
+    #[inline(always)]
+    fn block(&self, i: usize) -> [f64; LANES] {
+        let (a, b) = (self.a.block(i), self.b.block(i));
+        std::array::from_fn(|l| O::apply(a[l], b[l]))
+    }
 }
 
 /// A function of one number.
@@ -239,6 +258,10 @@ impl<T: Transformation, A: RowExpression> RowExpression for UnaryRow<T, A> {
     fn at(&self, i: usize) -> f64 {
         T::apply(self.a.at(i))
     }
+    #[inline(always)]
+    fn block(&self, i: usize) -> [f64; LANES] {
+        self.a.block(i).map(T::apply)
+    }
 }
 
 /// Any function of an expression.
@@ -273,5 +296,9 @@ impl<F: Fn(f64) -> f64, A: RowExpression> RowExpression for MapRow<'_, F, A> {
     #[inline(always)]
     fn at(&self, i: usize) -> f64 {
         (self.f)(self.a.at(i))
+    }
+    #[inline(always)]
+    fn block(&self, i: usize) -> [f64; LANES] {
+        self.a.block(i).map(self.f)
     }
 }

@@ -18,7 +18,7 @@ fn compare<const D: usize>(grid: &CartesianGrid<D>, s: f64) {
     let (b, c) = (irregular(grid, s), irregular(grid, 2.0 * s + 1.0));
     let mut a = irregular(grid, 0.3);
     let old = values(&a);
-    let expression = 2.0 * &b + &b * &c - s / (&c * &c + 1.5) - (-&b).abs().sqrt() + (&b).min(&c).max(-0.5)
+    let expression = 2.0 * &b + &b * &c - s / (&c * &c + 1.5) - (-&b).abs().sqrt() + b.min(&c).max(-0.5)
         - (3.0 - &b).map(|v| v * v * v) * c.square() / 7.0;
     a.assign(expression).unwrap();
     let naive = |b: f64, c: f64| {
@@ -102,8 +102,8 @@ fn what_is_not_a_number_is_passed_on() {
     for b in [
         Field::from_expression(&grid, a.min(0.0)),
         Field::from_expression(&grid, a.max(1.0)),
-        Field::from_expression(&grid, (&zero).min(&a)),
-        Field::from_expression(&grid, (&zero).max(&a)),
+        Field::from_expression(&grid, zero.min(&a)),
+        Field::from_expression(&grid, zero.max(&a)),
     ] {
         assert!(b.unwrap().row(0)[0].is_nan());
     }

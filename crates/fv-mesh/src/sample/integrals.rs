@@ -1,5 +1,5 @@
 //! Integrals, norms and extremes over the cells.
-use crate::algebra::{Expression, GridMismatch, Operand, RowExpression, RowPlace};
+use crate::algebra::{Expression, GridMismatch, LANES, Operand, RowExpression, RowPlace};
 use crate::kernels::layers_per_task;
 use crate::{CartesianGrid, Field};
 use pulp::{Arch, Simd, WithSimd};
@@ -144,6 +144,7 @@ impl<const D: usize> Integrals<D> {
         expression.check(&self.grid)?;
         let (layers, rows) = (self.grid.cells()[D - 1], self.grid.rows_per_layer());
         let per_task = layers_per_task(layers);
+        // At most 16 tasks.
         let mut parts = [Totals::default(); 16];
         parts[..layers.div_ceil(per_task)].par_iter_mut().enumerate().for_each(|(task, part)| {
             let first = task * per_task;
@@ -179,9 +180,6 @@ impl Totals {
     }
 }
 
-/// Independent partial sums, so that they run in vector registers in a fixed order.
-const LANES: usize = 8;
-
 /// Sums over a run of rows.
 struct Rows<'a, E, const D: usize> {
     integrals: &'a Integrals<D>,
@@ -201,24 +199,26 @@ impl<E: Expression<D>, const D: usize> WithSimd for Rows<'_, E, D> {
             let along = &widths[0][..place.cells];
             let (mut sum, mut absolute, mut square) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
             let (mut largest, mut unordered) = ([0.0_f64; LANES], [0.0_f64; LANES]);
-            let mut take = |l: usize, i: usize| {
-                let f = row.at(i);
-                let size = f.abs();
-                sum[l] += along[i] * f;
-                absolute[l] += along[i] * size;
-                square[l] += along[i] * f * f;
-                largest[l] = if size > largest[l] { size } else { largest[l] };
-                unordered[l] += if f.is_nan() { f } else { 0.0 };
-            };
-            let whole = place.cells - place.cells % LANES;
-            for i in (0..whole).step_by(LANES) {
-                for l in 0..LANES {
-                    take(l, i + l);
+            let mut last = [0.0; LANES];
+            let mut take = |w: &[f64], f: &[f64]| {
+                for (l, (w, f)) in w.iter().zip(f).enumerate() {
+                    let size = f.abs();
+                    sum[l] += w * f;
+                    absolute[l] += w * size;
+                    square[l] += w * f * f;
+                    largest[l] = if size > largest[l] { size } else { largest[l] };
+                    unordered[l] += if f.is_nan() { *f } else { 0.0 };
                 }
+            };
+            let (whole, rest) = along.as_chunks::<LANES>();
+            for (block, along) in whole.iter().enumerate() {
+                take(along, &row.block(block * LANES));
             }
-            for i in whole..place.cells {
-                take(i - whole, i);
+            let first = place.cells - rest.len();
+            for l in 0..rest.len() {
+                last[l] = row.at(first + l);
             }
+            take(rest, &last[..rest.len()]);
             let across: f64 = (1..D).map(|a| widths[a][place.at[a]]).product();
             let add = |lanes: [f64; LANES]| lanes.into_iter().sum::<f64>();
             totals = totals.plus(Totals {

@@ -1,7 +1,7 @@
 //! Files of a run: fields and bodies for ParaView, trajectories for everyone.
 use crate::{CouplingError, Observer, Particles, Simulation, StepInfo};
 use dem::RigidBodies;
-use fv_mesh::ImageWriter;
+use fv_mesh::CellWriter;
 use ibm::{Forcing, SolidFraction};
 use interfaces::{BodyId, Kinematics, Point, vtk};
 use std::fs::File;
@@ -9,7 +9,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Writes at every snapshot `fields/NNNNN.vti` (λ, velocity, pressure at the cell centres) and
+/// Writes at every snapshot `fields/NNNNN.vti` (`.vtr` on a stretched grid: λ, velocity, pressure at the cell centres) and
 /// `bodies/NNNNN.vtp`, the series `fields.pvd` and `bodies.pvd`, and a line per body to
 /// `trajectories.csv`. What is listed is complete; the lists lag a second behind at most, and the
 /// output must be finished or dropped at the end.
@@ -149,9 +149,10 @@ impl FileOutput {
     ) -> io::Result<()> {
         let (flow, particles) = (&simulation.flow, &simulation.particles);
         let grid = flow.grid();
-        let names = [format!("fields/{index:05}.vti"), format!("bodies/{index:05}.vtp")];
+        let image = CellWriter::new(grid);
+        let names = [format!("fields/{index:05}.{}", image.extension()), format!("bodies/{index:05}.vtp")];
         let mut file = BufWriter::new(File::create(self.folder.join(&names[0]))?);
-        ImageWriter::new(grid)
+        image
             .scalar("lambda", self.lambda.iter().copied())
             .vector("velocity", std::array::from_fn(|c| flow.centred_velocity(c)))
             .scalar("pressure", flow.pressure().values())

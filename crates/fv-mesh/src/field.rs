@@ -2,7 +2,7 @@
 use crate::CartesianGrid;
 use crate::grid::GHOSTS;
 
-/// One scalar per cell (or per lower face of a cell), x fastest, with one ghost layer around.
+/// One scalar per cell (or per lower face of a cell), x fastest, with two ghost layers around.
 #[derive(Clone, Debug)]
 pub struct Field<const D: usize> {
     grid: CartesianGrid<D>,
@@ -13,6 +13,10 @@ impl<const D: usize> Field<D> {
     /// A field of zeros.
     pub fn zeros(grid: &CartesianGrid<D>) -> Self {
         Self { grid: grid.clone(), data: vec![0.0; grid.storage()] }
+    }
+    /// The grid it lives on.
+    pub fn grid(&self) -> &CartesianGrid<D> {
+        &self.grid
     }
     /// Stored values, ghosts included.
     pub fn data(&self) -> &[f64] {

@@ -20,6 +20,7 @@
 //! ```
 #![deny(missing_docs)]
 
+pub mod algebra;
 mod axis;
 mod boundary;
 mod convection;
@@ -30,16 +31,18 @@ mod implicit;
 mod kernels;
 pub mod linear;
 mod metrics;
+mod output;
 pub mod poisson;
 mod pressure;
 mod projection;
+mod sample;
 mod statistics;
 #[cfg(test)]
 mod tests;
 mod velocity;
-mod vti;
 mod walls;
 
+pub use algebra::GridMismatch;
 pub use axis::{Axis, Cluster};
 pub use boundary::{Patch, Profile, Side, Sides};
 pub use convection::Convection;
@@ -47,7 +50,8 @@ pub use error::FlowError;
 pub use field::Field;
 pub use grid::CartesianGrid;
 pub use pressure::PressureSolver;
+pub use output::{CellWriter, OutputError, Precision, TimeSeries};
 pub use projection::{Diffusion, Fluid, Projection};
+pub use sample::{Extreme, Integrals, Line, Norms, Plane, Probes, Quantity, SampleError, Sampler};
 pub use statistics::FlowStatistics;
 pub use velocity::Velocity;
-pub use vti::ImageWriter;

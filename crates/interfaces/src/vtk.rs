@@ -1,7 +1,18 @@
 //! The container of VTK's XML files: a header of named arrays, then their bytes, raw and
-//! appended. `fv-mesh` writes images (`.vti`) with it, `dem` bodies (`.vtp`), anyone a series
+//! appended. `fv-mesh` writes grids (`.vti`, `.vtr`, `.vtu`) with it, `dem` bodies (`.vtp`), anyone a series
 //! (`.pvd`). Format: *The VTK User's Guide*, "XML file formats".
+use std::borrow::Cow;
 use std::io::{self, Write};
+
+/// How floating-point numbers are written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// 32 bits: half the file, seven digits, enough for pictures.
+    #[default]
+    Single,
+    /// 64 bits: what was computed.
+    Double,
+}
 
 /// One array of an XML file: `components` numbers per tuple.
 pub struct DataArray<'a> {
@@ -12,6 +23,18 @@ pub struct DataArray<'a> {
 }
 
 impl<'a> DataArray<'a> {
+    /// Numbers of this precision.
+    pub fn float(
+        name: &'a str,
+        components: usize,
+        precision: Precision,
+        values: impl IntoIterator<Item = f64>,
+    ) -> Self {
+        match precision {
+            Precision::Single => Self::float32(name, components, values),
+            Precision::Double => Self::float64(name, components, values),
+        }
+    }
     /// Single-precision numbers: half the file, seven digits, enough for pictures.
     pub fn float32(name: &'a str, components: usize, values: impl IntoIterator<Item = f64>) -> Self {
         let bytes = values.into_iter().flat_map(|v| (v as f32).to_le_bytes()).collect();
@@ -26,6 +49,10 @@ impl<'a> DataArray<'a> {
     pub fn int64(name: &'a str, values: impl IntoIterator<Item = i64>) -> Self {
         let bytes = values.into_iter().flat_map(i64::to_le_bytes).collect();
         Self { name, components: 1, kind: "Int64", bytes }
+    }
+    /// Bytes: types of cells, flags.
+    pub fn uint8(name: &'a str, values: impl IntoIterator<Item = u8>) -> Self {
+        Self { name, components: 1, kind: "UInt8", bytes: values.into_iter().collect() }
     }
 }
 
@@ -57,7 +84,9 @@ pub fn write(
             writeln!(
                 out,
                 "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{offset}\"/>",
-                a.kind, a.name, a.components
+                a.kind,
+                escaped(a.name),
+                a.components
             )?;
             offset += 8 + a.bytes.len();
         }
@@ -71,6 +100,14 @@ pub fn write(
     writeln!(out, "\n</AppendedData>\n</VTKFile>")
 }
 
+/// `text` as the value of an attribute.
+fn escaped(text: &str) -> Cow<'_, str> {
+    if !text.contains(['&', '<', '>', '"']) {
+        return text.into();
+    }
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;").into()
+}
+
 /// Writes a `.pvd` series: (time \[s\], part, file) for each entry.
 ///
 /// # Errors
@@ -79,7 +116,7 @@ pub fn write_series(out: &mut impl Write, entries: &[(f64, usize, String)]) -> i
     writeln!(out, "<?xml version=\"1.0\"?>")?;
     writeln!(out, "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>")?;
     for (time, part, file) in entries {
-        writeln!(out, "<DataSet timestep=\"{time:.9e}\" part=\"{part}\" file=\"{file}\"/>")?;
+        writeln!(out, "<DataSet timestep=\"{time:.9e}\" part=\"{part}\" file=\"{}\"/>", escaped(file))?;
     }
     writeln!(out, "</Collection>\n</VTKFile>")
 }

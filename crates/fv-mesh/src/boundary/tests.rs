@@ -1,1 +1,0 @@
-//! Boundary conditions: values, balance, ghosts.

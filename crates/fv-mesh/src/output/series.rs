@@ -1,0 +1,56 @@
+//! Series of files over time.
+use super::OutputError;
+use interfaces::vtk;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// A `.pvd` collection: the files of a run and their times, which ParaView plays as one.
+#[derive(Clone, Debug)]
+pub struct TimeSeries {
+    path: PathBuf,
+    entries: Vec<(f64, usize, String)>,
+}
+
+impl TimeSeries {
+    /// An empty series, to be written to `path`.
+    pub fn new(path: impl Into<PathBuf>) -> Self {
+        Self { path: path.into(), entries: Vec::new() }
+    }
+
+    /// Adds the file `name`, as seen from the folder of the series, at time `time` \[s\], and writes the series: beside
+    /// its old version and then in its place, so that what is there can always be opened.
+    ///
+    /// # Errors
+    /// [`OutputError::Time`] for a time that is not finite or before the last, [`OutputError::Io`] if the file cannot
+    /// be written; the entry is not kept then.
+    pub fn push(&mut self, time: f64, name: impl Into<String>) -> Result<(), OutputError> {
+        let last = self.entries.last().map_or(f64::NEG_INFINITY, |e| e.0);
+        if !(time.is_finite() && time >= last) {
+            return Err(OutputError::Time { time, last });
+        }
+        self.entries.push((time, 0, name.into()));
+        self.write().inspect_err(|_| {
+            self.entries.pop();
+        })
+    }
+
+    fn write(&self) -> Result<(), OutputError> {
+        let mut part = self.path.clone().into_os_string();
+        part.push(".part");
+        let mut file = BufWriter::new(File::create(&part)?);
+        vtk::write_series(&mut file, &self.entries)?;
+        file.flush()?;
+        std::fs::rename(&part, &self.path)?;
+        Ok(())
+    }
+
+    /// Where it is written.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+    /// Time \[s\] and file of each entry.
+    pub fn entries(&self) -> impl Iterator<Item = (f64, &str)> {
+        self.entries.iter().map(|(time, _, name)| (*time, name.as_str()))
+    }
+}

@@ -28,6 +28,7 @@ mod field;
 mod grid;
 mod implicit;
 mod kernels;
+pub mod linear;
 mod metrics;
 pub mod poisson;
 mod projection;

@@ -30,8 +30,10 @@ mod implicit;
 mod kernels;
 pub mod linear;
 mod metrics;
+pub mod operators;
 pub mod poisson;
 mod projection;
+mod scalar;
 mod statistics;
 #[cfg(test)]
 mod tests;
@@ -46,6 +48,7 @@ pub use error::FlowError;
 pub use field::Field;
 pub use grid::CartesianGrid;
 pub use projection::{Diffusion, Fluid, Projection};
+pub use scalar::{Given, Scalar, ScalarBoundaries, ScalarPatch, ScalarSide, ScalarTransport};
 pub use statistics::FlowStatistics;
 pub use velocity::Velocity;
 pub use vti::ImageWriter;

@@ -37,6 +37,7 @@ mod scalar;
 mod statistics;
 #[cfg(test)]
 mod tests;
+mod transport;
 mod velocity;
 mod vti;
 mod walls;
@@ -50,5 +51,6 @@ pub use grid::CartesianGrid;
 pub use projection::{Diffusion, Fluid, Projection};
 pub use scalar::{Given, Scalar, ScalarBoundaries, ScalarPatch, ScalarSide, ScalarTransport};
 pub use statistics::FlowStatistics;
+pub use transport::{CellTransport, FlowTransport, TransportMethod, TransportParams};
 pub use velocity::Velocity;
 pub use vti::ImageWriter;

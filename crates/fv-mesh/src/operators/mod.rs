@@ -42,7 +42,7 @@ mod convection;
 mod rows;
 mod strain;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 mod weighted;
 
 pub(crate) use convection::{CENTRAL, CarriedRow, Carrier, with_kind};
@@ -256,6 +256,15 @@ impl<const D: usize> Operators<D> {
     /// The kernel of [`strain_rate`](Self::strain_rate).
     pub(crate) fn strain_kernel<'a>(&'a self, velocity: &'a [Field<D>; D]) -> StrainRate<'a, D> {
         StrainRate { grid: &self.grid, metrics: &self.metrics, centred: &self.centred, velocity }
+    }
+
+    /// The distances.
+    pub(crate) fn metrics(&self) -> &Metrics<D> {
+        &self.metrics
+    }
+    /// Weights of the centred difference along each axis: below, here, above.
+    pub(crate) fn centred(&self) -> &[[Vec<f64>; 3]; D] {
+        &self.centred
     }
 
     /// Σ_P V_P φ_P in the order of the cells.

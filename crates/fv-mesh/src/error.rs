@@ -72,6 +72,29 @@ pub enum FlowError {
         /// The cell (i, j, k) where it is largest or not finite.
         cell: [usize; 3],
     },
+    /// A scalar is no longer finite.
+    #[error(
+        "the scalar is not finite any more in step {step} (t = {time} s, dt = {dt} s); take a smaller time step"
+    )]
+    ScalarDiverged {
+        /// Step number.
+        step: u64,
+        /// Time \[s\].
+        time: f64,
+        /// Step length \[s\].
+        dt: f64,
+    },
+    /// A field of another grid.
+    #[error(
+        "a field on a grid of {found:?} cells was given where one on a grid of {expected:?} cells is needed; \
+         make both with the same grid"
+    )]
+    OtherGrid {
+        /// Cells along the axes of the grid that is needed.
+        expected: Vec<usize>,
+        /// Those of the field.
+        found: Vec<usize>,
+    },
     /// The pressure solver could not work.
     #[error(transparent)]
     Poisson(PoissonError),

@@ -1,6 +1,6 @@
 //! One scalar on the grid.
-use crate::CartesianGrid;
 use crate::grid::GHOSTS;
+use crate::{CartesianGrid, FlowError};
 
 /// One scalar per cell (or per lower face of a cell), x fastest, with two ghost layers around.
 #[derive(Clone, Debug)]
@@ -17,6 +17,26 @@ impl<const D: usize> Field<D> {
     /// The grid it lives on.
     pub fn grid(&self) -> &CartesianGrid<D> {
         &self.grid
+    }
+    /// Takes `f(x)` at the cell centres x \[m\]; ghosts stay.
+    pub fn set(&mut self, mut f: impl FnMut([f64; D]) -> f64) {
+        let n = self.grid.cells();
+        for r in 0..self.n_rows() {
+            let o = self.row_start(r);
+            for i in 0..n[0] {
+                self.data[o + i] = f(self.grid.centre(self.grid.cell(r * n[0] + i)));
+            }
+        }
+    }
+    /// Is this a field on `grid`?
+    ///
+    /// # Errors
+    /// [`FlowError::OtherGrid`] if it is not.
+    pub(crate) fn check(&self, grid: &CartesianGrid<D>) -> Result<(), FlowError> {
+        if self.grid == *grid {
+            return Ok(());
+        }
+        Err(FlowError::OtherGrid { expected: grid.cells().to_vec(), found: self.grid.cells().to_vec() })
     }
     /// Stored values, ghosts included.
     pub fn data(&self) -> &[f64] {

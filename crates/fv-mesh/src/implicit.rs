@@ -17,6 +17,13 @@ pub(crate) struct ImplicitDiffusion<const D: usize> {
     /// Factors per component and axis, for the four kinds of lines: bit 0 set if the lower end is free, bit 1 if the
     /// upper one is.
     factors: [[[Tridiagonal; 4]; D]; D],
+    sweeps: Sweeps<D>,
+}
+
+/// What it takes to solve all lines along an axis.
+#[derive(Clone, Debug)]
+pub(crate) struct Sweeps<const D: usize> {
+    grid: CartesianGrid<D>,
     /// Rows side by side and what periodic ones need; one per task.
     scratch: Vec<Vec<f64>>,
     /// One line.
@@ -30,7 +37,7 @@ const ROWS: usize = 8;
 
 /// LU factors of 1 − κL on the nodes `first`, `first` + 1, … of a line.
 #[derive(Clone, Debug, Default)]
-struct Tridiagonal {
+pub(crate) struct Tridiagonal {
     first: usize,
     below: Vec<f64>,
     inv: Vec<f64>,
@@ -42,7 +49,12 @@ struct Tridiagonal {
 impl Tridiagonal {
     /// `low` and `high` are κ times what couples to the node below and above. `ends` say which parts of the two nodes at
     /// each end stand beyond it; `None` for a periodic line.
-    fn new(first: usize, mut low: Vec<f64>, mut high: Vec<f64>, ends: Option<[[f64; 2]; 2]>) -> Self {
+    pub(crate) fn new(
+        first: usize,
+        mut low: Vec<f64>,
+        mut high: Vec<f64>,
+        ends: Option<[[f64; 2]; 2]>,
+    ) -> Self {
         let n = low.len();
         let mut diagonal: Vec<f64> = (0..n).map(|i| 1.0 + low[i] + high[i]).collect();
         match ends {
@@ -123,15 +135,10 @@ impl Tridiagonal {
 
 impl<const D: usize> ImplicitDiffusion<D> {
     pub(crate) fn new(grid: &CartesianGrid<D>) -> Self {
-        let n = grid.cells();
-        let tasks = n[D - 1].div_ceil(layers_per_task(n[D - 1]));
-        let longest = n.into_iter().max().unwrap_or(0);
         Self {
             kappa: [0.0; D],
             factors: std::array::from_fn(|_| std::array::from_fn(|_| Default::default())),
-            scratch: vec![vec![0.0; ROWS * n[0] + ROWS.max(n[0])]; tasks],
-            line: vec![0.0; longest],
-            layer: vec![0.0; grid.stride()[D - 1]],
+            sweeps: Sweeps::new(grid),
             grid: grid.clone(),
         }
     }
@@ -191,41 +198,66 @@ impl<const D: usize> ImplicitDiffusion<D> {
                     }
                 }
                 if kind.is_none() {
-                    self.solve_each(c, lines, |l| ends.kind(l), delta);
+                    let factors = &self.factors[c][a];
+                    self.sweeps.each(lines, |l| &factors[ends.kind(l)], delta);
                     continue;
                 }
             }
-            let factor = &self.factors[c][a][kind.unwrap_or(0)];
-            let layer = self.grid.stride()[D - 1];
-            if a == D - 1 {
-                let rows = |i: usize| (GHOSTS + first + i) * layer;
-                Arch::new().dispatch(Sweep { factor, data: delta.data_mut(), rows, sums: &mut self.layer });
-                continue;
-            }
-            let per_task = layers_per_task(self.grid.cells()[D - 1]);
-            let grid = &self.grid;
-            delta.layers_mut().par_chunks_mut(layer * per_task).zip(&mut self.scratch).for_each(
-                |(layers, scratch)| {
-                    if a == 0 {
-                        Arch::new().dispatch(AlongX { grid, factor, layers, scratch });
-                        return;
-                    }
-                    let s = grid.stride()[1];
-                    for layer in layers.chunks_exact_mut(layer) {
-                        let sums = &mut scratch[..grid.cells()[0]];
-                        let rows = |i: usize| (GHOSTS + first + i) * s + GHOSTS;
-                        Arch::new().dispatch(Sweep { factor, data: layer, rows, sums });
-                    }
-                },
-            );
+            self.sweeps.all(a, &self.factors[c][a][kind.unwrap_or(0)], delta);
+        }
+    }
+}
+
+impl<const D: usize> Sweeps<D> {
+    pub(crate) fn new(grid: &CartesianGrid<D>) -> Self {
+        let n = grid.cells();
+        let tasks = n[D - 1].div_ceil(layers_per_task(n[D - 1]));
+        let longest = n.into_iter().max().unwrap_or(0);
+        Self {
+            scratch: vec![vec![0.0; ROWS * n[0] + ROWS.max(n[0])]; tasks],
+            line: vec![0.0; longest],
+            layer: vec![0.0; grid.stride()[D - 1]],
+            grid: grid.clone(),
         }
     }
 
-    /// Line by line, where the ends differ from line to line.
-    fn solve_each(&mut self, c: usize, lines: &Lines, kind: impl Fn(usize) -> usize, delta: &mut Field<D>) {
+    /// Solves all lines along axis `a`.
+    pub(crate) fn all(&mut self, a: usize, factor: &Tridiagonal, delta: &mut Field<D>) {
+        let first = factor.first;
+        let layer = self.grid.stride()[D - 1];
+        if a == D - 1 {
+            let rows = |i: usize| (GHOSTS + first + i) * layer;
+            Arch::new().dispatch(Sweep { factor, data: delta.data_mut(), rows, sums: &mut self.layer });
+            return;
+        }
+        let per_task = layers_per_task(self.grid.cells()[D - 1]);
+        let grid = &self.grid;
+        delta.layers_mut().par_chunks_mut(layer * per_task).zip(&mut self.scratch).for_each(
+            |(layers, scratch)| {
+                if a == 0 {
+                    Arch::new().dispatch(AlongX { grid, factor, layers, scratch });
+                    return;
+                }
+                let s = grid.stride()[1];
+                for layer in layers.chunks_exact_mut(layer) {
+                    let sums = &mut scratch[..grid.cells()[0]];
+                    let rows = |i: usize| (GHOSTS + first + i) * s + GHOSTS;
+                    Arch::new().dispatch(Sweep { factor, data: layer, rows, sums });
+                }
+            },
+        );
+    }
+
+    /// Solves line by line, where the ends differ from line to line.
+    pub(crate) fn each<'a>(
+        &mut self,
+        lines: &Lines,
+        factor: impl Fn(usize) -> &'a Tridiagonal,
+        delta: &mut Field<D>,
+    ) {
         let data = delta.data_mut();
         for (l, o) in lines.starts().enumerate().filter(|&(l, _)| lines.inside(l)) {
-            let factor = &self.factors[c][lines.axis][kind(l)];
+            let factor = factor(l);
             let line = &mut self.line[..factor.inv.len()];
             let at = |i: usize| o + (factor.first + i) * lines.step;
             line.iter_mut().enumerate().for_each(|(i, x)| *x = data[at(i)]);

@@ -37,6 +37,12 @@ fn lanes(n: usize, mut term: impl FnMut(usize) -> f64) -> f64 {
     ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]))
 }
 
+/// Are all cells' values finite?
+pub(crate) fn is_finite<const D: usize>(u: &Field<D>) -> bool {
+    // 0·x is 0 for every finite x and NaN for the others.
+    (0..u.n_rows()).map(|r| u.row(r).iter().map(|x| 0.0 * x).sum::<f64>()).sum::<f64>() == 0.0
+}
+
 /// Largest |u_c|/h over all cells, h the distance of the nodes along c \[1/s\], or NaN if any value is not finite.
 pub(crate) fn largest_rate<const D: usize>(
     grid: &CartesianGrid<D>,

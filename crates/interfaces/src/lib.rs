@@ -1,7 +1,8 @@
 //! The words that the siltflow crates share, and nothing else: where things are ([`Pose`],
 //! [`Aabb`], [`Periods`]), how they move ([`Twist`]) and are pushed ([`Wrench`]), what a body
 //! owes its neighbours ([`Solid`], [`Kinematics`], [`Bodies`], [`Dynamics`]), how a flow shows
-//! its velocity ([`Lattice`], [`VelocityField`]), what a restart needs ([`Checkpoint`]) and the
+//! its velocity ([`Lattice`], [`VelocityField`]), what a restart needs ([`Checkpoint`]), what a turbulence model asks of a flow
+//! ([`Transport`], [`Closure`]) and the
 //! container of the files that ParaView reads ([`vtk`]).
 //!
 //! The numerical crates depend on this one and on none of each other, so each can be taken
@@ -22,6 +23,7 @@ mod geometry;
 mod lattice;
 mod restart;
 mod solid;
+mod transport;
 pub mod vtk;
 
 pub use bodies::{Bodies, BodyId, Dynamics, Freedom, Inertia, Kinematics, Load};
@@ -29,3 +31,4 @@ pub use geometry::{Aabb, Periods, Point, Pose, Rotation, Twist, Vector, Wrench};
 pub use lattice::{Lattice, VelocityField};
 pub use restart::{Checkpoint, RestartError};
 pub use solid::{Solid, SurfaceElement};
+pub use transport::{Closure, Equation, SolveError, SolveInfo, Transport};

@@ -22,6 +22,21 @@ impl Checkpoint for () {
     }
 }
 
+/// The names of element i begin with "i.".
+impl<T: Checkpoint> Checkpoint for Vec<T> {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        for (i, element) in self.iter().enumerate() {
+            element.save(&mut |name, values| sink(&format!("{i}.{name}"), values));
+        }
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        for (i, element) in self.iter_mut().enumerate() {
+            element.restore(&|name| source(&format!("{i}.{name}")))?;
+        }
+        Ok(())
+    }
+}
+
 /// Why saved state does not fit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RestartError {

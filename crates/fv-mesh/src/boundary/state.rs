@@ -616,7 +616,12 @@ fn place<const D: usize>(metrics: &Metrics<D>, lines: &Lines, c: usize, at: f64,
 }
 
 /// Centre of the face at which line `l` ends, ghost lines moved to the edge of the side.
-fn face_centre<const D: usize>(grid: &CartesianGrid<D>, lines: &Lines, at: f64, l: usize) -> [f64; 3] {
+pub(crate) fn face_centre<const D: usize>(
+    grid: &CartesianGrid<D>,
+    lines: &Lines,
+    at: f64,
+    l: usize,
+) -> [f64; 3] {
     let index = lines.place(l);
     let mut x = [0.0; 3];
     x[lines.axis] = at;
@@ -645,7 +650,7 @@ fn ends(lines: &Lines, o: usize, upper: usize) -> (usize, usize) {
 }
 
 /// Ghosts of a periodic axis.
-fn wrap(lines: &Lines, u: &mut [f64]) {
+pub(crate) fn wrap(lines: &Lines, u: &mut [f64]) {
     let (n, s) = (lines.cells, lines.step);
     let (before, after) = ((2 * n - 2) % n, 1 % n);
     for o in lines.starts() {

@@ -45,8 +45,8 @@ enum Kind {
 }
 
 const MEAN: u8 = 0;
-const LINEAR: u8 = 1;
-const LIMITED: u8 = 2;
+pub(crate) const LINEAR: u8 = 1;
+pub(crate) const LIMITED: u8 = 2;
 
 impl<const D: usize> Momentum<D> {
     pub(crate) fn new(grid: &CartesianGrid<D>, metrics: &Metrics<D>, scheme: Convection) -> Self {
@@ -247,7 +247,7 @@ fn interface<const KIND: u8>(w: &InterfaceWeights, j: usize, carry: f64, [m2, m1
 
 /// The value between the upwind node `u` and the downwind node `d`.
 #[inline(always)]
-fn upwinded<const KIND: u8>(a: f64, b: f64, g: f64, [far, u, d]: [f64; 3]) -> f64 {
+pub(crate) fn upwinded<const KIND: u8>(a: f64, b: f64, g: f64, [far, u, d]: [f64; 3]) -> f64 {
     let (ahead, behind) = (d - u, u - far);
     if KIND == LIMITED {
         let behind = g * behind;

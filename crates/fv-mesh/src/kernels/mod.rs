@@ -3,7 +3,7 @@
 mod advance;
 mod project;
 
-pub(crate) use advance::{Advance, Momentum, flux};
+pub(crate) use advance::{Advance, LIMITED, LINEAR, Momentum, flux, upwinded};
 pub(crate) use project::{
     add_dense, change, copy_dense, correct_component, divergence_row, subtract_second_differences,
 };

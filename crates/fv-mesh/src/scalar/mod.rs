@@ -1,0 +1,12 @@
+//! Scalars at the cell centres: boundary conditions and transport.
+mod boundaries;
+mod diffusion;
+mod kernel;
+mod side;
+#[cfg(test)]
+mod tests;
+mod transported;
+
+pub use boundaries::ScalarBoundaries;
+pub use side::{Given, ScalarPatch, ScalarSide};
+pub use transported::{Scalar, ScalarTransport};

@@ -1,0 +1,301 @@
+//! A passive scalar that a flow carries.
+use super::diffusion::ScalarDiffusion;
+use super::kernel::{Input, Step, advance};
+use super::{ScalarBoundaries, ScalarSide};
+use crate::metrics::Metrics;
+use crate::operators::{Carrier, integral};
+use crate::{CartesianGrid, Convection, Diffusion, Field, FlowError, Velocity, kernels, statistics};
+use interfaces::{Checkpoint, RestartError, VelocityField};
+
+/// Adams–Bashforth is used while a step is at most so many times longer than the last.
+const LONGEST_GROWTH: f64 = 10.0;
+
+/// Implicit steps are at most so many times the explicit limit, for the sake of accuracy.
+const IMPLICIT_GAIN: f64 = 10.0;
+
+/// A passive scalar φ at the cell centres (temperature, concentration) in a staggered velocity:
+///
+/// ```text
+/// ∂φ/∂t + ∇·(uφ) = ∇·(Γ∇φ) + S
+/// Π_a (1 − κ_a L_a)(φⁿ⁺¹ − φⁿ) = dt [(1 + r/2) Hⁿ − (r/2) Hⁿ⁻¹ + Γ L φⁿ],   r = dt/dt_last,   κ = ½Γ dt
+/// ```
+///
+/// H = −∇·(uφ) + Γ∇²φ + S takes the diffusion along the axes where the step is within its stability limit, L that along
+/// the others ([`Diffusion`]): second order in time, after a first step of Euler's. In space second order with
+/// [`Convection::Central`], which is the default, [`LinearUpwind`](Convection::LinearUpwind),
+/// [`Quick`](Convection::Quick) and, away from extrema, [`Limited`](Convection::Limited). What leaves a cell enters its
+/// neighbour, so that ∫φ dV changes by what the sides and S bring alone.
+///
+/// φ stays within its bounds with [`Upwind`](Convection::Upwind) up to Courant numbers Σ|u_a|dt/h_a of 4/9 and with
+/// [`Limited`](Convection::Limited) up to 2/9 (steps that do not grow; explicit diffusion takes its share; Hundsdorfer,
+/// Ruuth & Spiteri 2003), if the velocity is free of divergence; Crank–Nicolson keeps bounds while Γdt ≤ h².
+#[derive(Clone, Debug)]
+pub struct Scalar<const D: usize> {
+    grid: CartesianGrid<D>,
+    metrics: Metrics<D>,
+    boundaries: ScalarBoundaries<D>,
+    carrier: Carrier<D>,
+    implicit: ScalarDiffusion<D>,
+    diffusivity: f64,
+    diffusion: Diffusion,
+    /// The axes whose diffusion was implicit in the last step.
+    implicit_axes: [bool; D],
+    phi: Field<D>,
+    next: Field<D>,
+    tendency: Field<D>,
+    source: Option<Field<D>>,
+    zeros: Vec<f64>,
+    step: u64,
+    last_dt: f64,
+}
+
+impl<const D: usize> Scalar<D> {
+    /// φ = 0 in a box whose periodic axes are those of the flow; `sides[axis]` are its lower and upper side,
+    /// `diffusivity` is Γ \[m²/s\], which may be zero.
+    ///
+    /// # Errors
+    /// [`FlowError::Boundary`] for sides and [`FlowError::Fluid`] for a diffusivity that make no sense.
+    pub fn new(
+        grid: &CartesianGrid<D>,
+        sides: [[ScalarSide; 2]; D],
+        diffusivity: f64,
+    ) -> Result<Self, FlowError> {
+        if !(diffusivity.is_finite() && diffusivity >= 0.0) {
+            return Err(FlowError::Fluid { name: "diffusivity", value: diffusivity, unit: "m²/s" });
+        }
+        let boundaries = ScalarBoundaries::new(grid, sides)?;
+        let metrics = Metrics::new(grid, boundaries.periodic());
+        let mut new = Self {
+            carrier: Carrier::new(&metrics, Convection::Central),
+            implicit: ScalarDiffusion::new(&boundaries),
+            diffusivity,
+            diffusion: Diffusion::Auto,
+            implicit_axes: [false; D],
+            phi: Field::zeros(grid),
+            next: Field::zeros(grid),
+            tendency: Field::zeros(grid),
+            source: None,
+            zeros: vec![0.0; grid.cells()[0]],
+            step: 0,
+            last_dt: 0.0,
+            grid: grid.clone(),
+            metrics,
+            boundaries,
+        };
+        new.boundaries.fill_ghosts(&mut new.phi);
+        Ok(new)
+    }
+
+    /// The same with another convection scheme than [`Convection::Central`].
+    #[must_use]
+    pub fn with_convection(mut self, scheme: Convection) -> Self {
+        self.carrier = Carrier::new(&self.metrics, scheme);
+        self
+    }
+    /// The same with diffusion as told rather than [`Diffusion::Auto`].
+    #[must_use]
+    pub fn with_diffusion(mut self, diffusion: Diffusion) -> Self {
+        self.diffusion = diffusion;
+        self
+    }
+
+    /// Takes `phi(x)` at the cell centres x \[m\]. The next step starts anew, as an Euler step.
+    pub fn set(&mut self, phi: impl FnMut([f64; D]) -> f64) {
+        self.phi.set(phi);
+        self.boundaries.fill_ghosts(&mut self.phi);
+        self.step = 0;
+    }
+    /// φ, ghosts filled.
+    pub fn field(&self) -> &Field<D> {
+        &self.phi
+    }
+    /// The source S per time, to write before each step: that at its start counts. It is zero, and costs nothing, until
+    /// this is first called.
+    pub fn source_mut(&mut self) -> &mut Field<D> {
+        self.source.get_or_insert_with(|| Field::zeros(&self.grid))
+    }
+    /// Γ \[m²/s\].
+    pub fn diffusivity(&self) -> f64 {
+        self.diffusivity
+    }
+    /// The grid.
+    pub fn grid(&self) -> &CartesianGrid<D> {
+        &self.grid
+    }
+    /// ∫ φ dV.
+    pub fn integral(&self) -> f64 {
+        integral(&self.grid, &self.metrics, &self.phi)
+    }
+    /// Steps made since the start or the last [`set`](Self::set).
+    pub fn steps(&self) -> u64 {
+        self.step
+    }
+
+    /// The longest step \[s\] for which explicit diffusion is stable along all axes, 1/(4Γ Σ 1/h²), h the narrowest cell
+    /// along each.
+    pub fn diffusive_limit(&self) -> f64 {
+        self.limit_along(&[false; D])
+    }
+
+    fn limit_along(&self, implicit: &[bool; D]) -> f64 {
+        let stiffness = |a: usize| self.grid.axis(a).narrowest().powi(-2);
+        1.0 / (4.0 * self.diffusivity * (0..D).filter(|&a| !implicit[a]).map(stiffness).sum::<f64>())
+    }
+
+    /// The fewest axes that have to be implicit for the others to be stable with a step of `dt`.
+    fn stiff_axes(&self, dt: f64) -> [bool; D] {
+        let mut implicit = [false; D];
+        while dt > self.limit_along(&implicit) {
+            let stiffest = (0..D)
+                .filter(|&a| !implicit[a])
+                .min_by(|&a, &b| self.grid.axis(a).narrowest().total_cmp(&self.grid.axis(b).narrowest()));
+            let Some(a) = stiffest else { break };
+            implicit[a] = true;
+        }
+        implicit
+    }
+
+    /// The axes whose diffusion has to be implicit in a step of `dt`.
+    fn choose_implicit(&self, dt: f64) -> Result<[bool; D], FlowError> {
+        match self.diffusion {
+            Diffusion::Implicit => Ok([self.diffusivity > 0.0; D]),
+            Diffusion::Explicit => {
+                let limit = self.diffusive_limit();
+                if dt > limit { Err(FlowError::Unstable { dt, limit }) } else { Ok([false; D]) }
+            }
+            Diffusion::Auto => {
+                // Not to and fro with small changes of the step.
+                let (needed, soon) = (self.stiff_axes(dt), self.stiff_axes(2.0 * dt));
+                let last = self.implicit_axes;
+                let keep = (0..D).all(|a| (last[a] || !needed[a]) && (soon[a] || !last[a]));
+                Ok(if keep { last } else { needed })
+            }
+        }
+    }
+
+    fn check_velocity(&self, velocity: &Velocity<D>) -> Result<(), FlowError> {
+        velocity.components[0].check(&self.grid)?;
+        let (own, flow) = (self.boundaries.periodic(), velocity.lattice(0).periodic);
+        match (0..D).find(|&a| own[a] != flow[a]) {
+            None => Ok(()),
+            Some(a) => Err(FlowError::Boundary {
+                what: format!("axis {a} periodic for either the flow or a scalar in it; make it so for both"),
+            }),
+        }
+    }
+}
+
+/// Scalars that a flow carries along: `()` (none, at no cost), one [`Scalar`], a `Vec` of them, or your own.
+pub trait ScalarTransport<const D: usize> {
+    /// Moves from `time` on by `dt` \[s\]; `velocity` is that at `time`.
+    ///
+    /// # Errors
+    /// [`FlowError::TimeStep`] for a step that is not positive and finite, [`FlowError::Unstable`] for one that is too
+    /// long, [`FlowError::OtherGrid`] or [`FlowError::Boundary`] for a velocity that does not fit,
+    /// [`FlowError::ScalarDiverged`] if a scalar is not finite any more.
+    fn advance(&mut self, velocity: &Velocity<D>, time: f64, dt: f64) -> Result<(), FlowError>;
+
+    /// The longest step \[s\] that diffusion allows.
+    fn longest_step(&self) -> f64;
+}
+
+impl<const D: usize> ScalarTransport<D> for () {
+    #[inline(always)]
+    fn advance(&mut self, _: &Velocity<D>, _: f64, _: f64) -> Result<(), FlowError> {
+        Ok(())
+    }
+    #[inline(always)]
+    fn longest_step(&self) -> f64 {
+        f64::INFINITY
+    }
+}
+
+impl<const D: usize> ScalarTransport<D> for Vec<Scalar<D>> {
+    fn advance(&mut self, velocity: &Velocity<D>, time: f64, dt: f64) -> Result<(), FlowError> {
+        self.iter_mut().try_for_each(|scalar| scalar.advance(velocity, time, dt))
+    }
+    fn longest_step(&self) -> f64 {
+        self.iter().map(Scalar::longest_step).fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl<const D: usize> ScalarTransport<D> for Scalar<D> {
+    fn advance(&mut self, velocity: &Velocity<D>, time: f64, dt: f64) -> Result<(), FlowError> {
+        if !(dt.is_finite() && dt > 0.0) {
+            return Err(FlowError::TimeStep { dt, time });
+        }
+        self.check_velocity(velocity)?;
+        let implicit = self.choose_implicit(dt)?;
+        if self.boundaries.time() != time {
+            self.boundaries.set_time(time);
+            self.boundaries.fill_ghosts(&mut self.phi);
+        }
+        // The last tendency is no guide at the start, after a much shorter step, or if it holds other terms.
+        let growth = dt / self.last_dt;
+        let usable = self.step > 0 && growth <= LONGEST_GROWTH && implicit == self.implicit_axes;
+        let r = if usable { growth } else { 0.0 };
+        self.implicit_axes = implicit;
+        let [explicit_part, implicit_part] =
+            [false, true].map(|which| implicit.map(|i| if i == which { self.diffusivity } else { 0.0 }));
+        let input = Input {
+            grid: &self.grid,
+            metrics: &self.metrics,
+            carrier: &self.carrier,
+            velocity: &velocity.components,
+            phi: self.phi.data(),
+            source: self.source.as_ref().map(Field::data),
+            zeros: &self.zeros,
+        };
+        let weights = [1.0 + 0.5 * r, -0.5 * r];
+        let step = Step { dt, weights, explicit: explicit_part, implicit: implicit_part };
+        advance(input, step, &mut self.next, &mut self.tendency);
+        self.boundaries.set_time(time + dt);
+        if implicit.contains(&true) {
+            self.implicit.set(&self.metrics, implicit_part.map(|gamma| 0.5 * dt * gamma));
+            kernels::change(&self.grid, -1.0, &self.phi, &mut self.next);
+            self.implicit.solve(&self.metrics, &self.boundaries, &mut self.next);
+            kernels::change(&self.grid, 1.0, &self.phi, &mut self.next);
+        }
+        std::mem::swap(&mut self.phi, &mut self.next);
+        self.boundaries.fill_ghosts(&mut self.phi);
+        self.step += 1;
+        self.last_dt = dt;
+        if !statistics::is_finite(&self.phi) {
+            return Err(FlowError::ScalarDiverged { step: self.step, time, dt });
+        }
+        Ok(())
+    }
+
+    fn longest_step(&self) -> f64 {
+        let gain = if self.diffusion == Diffusion::Explicit { 0.9 } else { IMPLICIT_GAIN };
+        gain * self.diffusive_limit()
+    }
+}
+
+impl<const D: usize> Checkpoint for Scalar<D> {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        sink("scalar", self.phi.data());
+        sink("tendency", self.tendency.data());
+        sink("clock", &[self.step as f64, self.last_dt]);
+        sink("implicit", &self.implicit_axes.map(|i| f64::from(u8::from(i))));
+        if let Some(source) = &self.source {
+            sink("source", source.data());
+        }
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        let n = self.grid.storage();
+        self.phi.data_mut().copy_from_slice(RestartError::take(source, "scalar", n)?);
+        self.tendency.data_mut().copy_from_slice(RestartError::take(source, "tendency", n)?);
+        let clock = RestartError::take(source, "clock", 2)?;
+        (self.step, self.last_dt) = (clock[0] as u64, clock[1]);
+        let implicit = RestartError::take(source, "implicit", D)?;
+        self.implicit_axes = std::array::from_fn(|a| implicit[a] != 0.0);
+        if source("source").is_none() {
+            self.source = None;
+            return Ok(());
+        }
+        let values = RestartError::take(source, "source", n)?;
+        self.source_mut().data_mut().copy_from_slice(values);
+        Ok(())
+    }
+}

@@ -1,0 +1,358 @@
+//! Implicit transport of cell-centred quantities for turbulence models.
+mod kernels;
+mod sides;
+#[cfg(test)]
+mod tests;
+mod walls;
+
+use crate::kernels::copy_dense;
+use crate::linear::{
+    BiCgStabParams, BiCgStabScratch, Dilu, GaussSeidelParams, GaussSeidelScratch, GaussSeidelSweep,
+    LinearError, StencilMatrix, Sweep, SweepOrder, bicgstab, gauss_seidel,
+};
+use crate::operators::{Operators, fill_dense};
+use crate::{CartesianGrid, Convection, Field, FlowError, Sides, Velocity};
+use interfaces::{Equation, SolveError, SolveInfo, Transport};
+use kernels::{DotGradients, Neighbour};
+use sides::CellSides;
+
+/// How [`CellTransport`] discretises and solves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TransportParams {
+    /// Convection scheme. Anything but [`Convection::Upwind`] enters by deferred correction (Khosla & Rubin 1974): the
+    /// matrix is upwind's, the difference is taken from the φ given, so that repeated solves converge to the scheme.
+    pub scheme: Convection,
+    /// Method of the linear solver.
+    pub method: TransportMethod,
+    /// Largest ‖b − Aφ‖ over the larger of ‖b‖ and ‖a_P φ‖, taken over the cells that are not pinned.
+    pub tolerance: f64,
+    /// Iterations allowed.
+    pub max_iterations: usize,
+}
+
+impl Default for TransportParams {
+    fn default() -> Self {
+        Self {
+            scheme: Convection::Upwind,
+            method: TransportMethod::BiCgStab,
+            tolerance: 1e-9,
+            max_iterations: 1000,
+        }
+    }
+}
+
+/// Linear solver of [`CellTransport`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TransportMethod {
+    /// [`bicgstab`] with [`Dilu`].
+    #[default]
+    BiCgStab,
+    /// [`gauss_seidel`], forward and backward in turn: for short time steps and strong sinks.
+    GaussSeidel,
+}
+
+/// What it takes to solve transport equations at the cells of a grid: matrix, scratch, wall distance. It is made
+/// once; [`on`](Self::on) joins it with a velocity to an [`interfaces::Transport`].
+///
+/// ```text
+/// a_P φ_P + Σ_N a_N φ_N = b_P,   a_N = −(Γ_f A/d + max(inflow, 0)),   a_P = −Σ_N a_N + V (sink + 1/dt)
+/// ```
+///
+/// over faces of area A between centres at distance d, Γ_f interpolated linearly. This is ∇·(uφ) − φ∇·u for convection, so
+/// that the matrix is an M-matrix whatever ∇·u is: with upwind, and sources and boundary values that are not negative,
+/// φ is not negative either. With [`Convection::Upwind`] of first order in space where the flow carries, with the other
+/// schemes of second order (their deferred part may break positivity). Solves allocate nothing.
+#[derive(Clone, Debug)]
+pub struct CellTransport<const D: usize> {
+    ops: Operators<D>,
+    sides: CellSides<D>,
+    params: TransportParams,
+    volume: Vec<f64>,
+    wall_distance: Vec<f64>,
+    matrix: StencilMatrix<D>,
+    dilu: Dilu,
+    b: Vec<f64>,
+    pinned: Vec<bool>,
+    bicgstab: BiCgStabScratch,
+    gauss_seidel: GaussSeidelScratch,
+    /// Γ or a, φ or b, and two terms.
+    fields: [Field<D>; 4],
+}
+
+/// A [`CellTransport`] on a velocity: what a closure sees.
+#[derive(Debug)]
+pub struct FlowTransport<'a, const D: usize> {
+    cells: &'a mut CellTransport<D>,
+    velocity: &'a Velocity<D>,
+}
+
+impl<const D: usize> CellTransport<D> {
+    /// For flows on `grid` between `sides`.
+    ///
+    /// # Errors
+    /// [`FlowError::Boundary`] for patches that leave out a face.
+    pub fn new(
+        grid: &CartesianGrid<D>,
+        sides: &Sides<D>,
+        params: TransportParams,
+    ) -> Result<Self, FlowError> {
+        let periodic = std::array::from_fn(|a| sides.periodic(a));
+        let n = grid.n_cells();
+        let too_large = |e: LinearError| FlowError::Grid { what: e.to_string() };
+        let mut matrix = StencilMatrix::new(grid.cells(), periodic).map_err(too_large)?;
+        matrix.parts_mut().0.fill(1.0);
+        Ok(Self {
+            ops: Operators::new(grid, periodic),
+            sides: CellSides::new(grid, sides)?,
+            volume: (0..n).map(|i| grid.cell_volume(grid.cell(i))).collect(),
+            wall_distance: walls::wall_distance(grid, sides),
+            dilu: Dilu::new(&matrix).map_err(too_large)?,
+            matrix,
+            b: vec![0.0; n],
+            pinned: vec![false; n],
+            bicgstab: BiCgStabScratch::new(n),
+            gauss_seidel: GaussSeidelScratch::new(n),
+            fields: std::array::from_fn(|_| Field::zeros(grid)),
+            params,
+        })
+    }
+
+    /// The transport by `velocity`.
+    ///
+    /// # Errors
+    /// [`FlowError::OtherGrid`] for a velocity on another grid.
+    pub fn on<'a>(&'a mut self, velocity: &'a Velocity<D>) -> Result<FlowTransport<'a, D>, FlowError> {
+        velocity.components[0].check(self.ops.grid())?;
+        Ok(FlowTransport { cells: self, velocity })
+    }
+
+    /// The distance of every cell from the nearest wall, to lower where bodies are nearer than the walls of the box.
+    pub fn wall_distance_mut(&mut self) -> &mut [f64] {
+        &mut self.wall_distance
+    }
+
+    fn check(&self, e: &Equation<'_>, phi: &[f64]) -> Result<(), SolveError> {
+        let n = self.volume.len();
+        let lists =
+            [("the diffusivity", e.diffusivity), ("the source", e.source), ("the sink", e.sink), ("φ", phi)];
+        for (k, (what, list)) in lists.into_iter().enumerate() {
+            check_length(what, n, list.len())?;
+            let signed = k % 2 == 1;
+            if let Some(cell) = list.iter().position(|v| !v.is_finite() || !signed && *v < 0.0) {
+                let range = if signed { "finite" } else { "finite and not negative" };
+                return Err(SolveError::Value { what, cell: Some(cell), value: list[cell], range });
+            }
+        }
+        let value = |what, cell, value, range| Err(SolveError::Value { what, cell, value, range });
+        for &(cell, weight, v) in e.blend {
+            if !(0.0..=1.0).contains(&weight) {
+                return value("the weight of a blend", Some(cell), weight, "in 0 … 1");
+            }
+            self.check_row(cell, v)?;
+        }
+        e.pinned.iter().try_for_each(|&(cell, v)| self.check_row(cell, v))?;
+        if !e.inlet.is_finite() {
+            return value("the value on inlets", None, e.inlet, "finite");
+        }
+        match (e.wall, e.dt) {
+            (Some(wall), _) if !wall.is_finite() => value("the value on walls", None, wall, "finite"),
+            (_, Some(dt)) if !(dt.is_finite() && dt > 0.0) => {
+                value("the time step", None, dt, "positive and finite")
+            }
+            _ if !(e.relax > 0.0 && e.relax <= 1.0) => {
+                value("the relaxation factor", None, e.relax, "above 0 and at most 1")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn check_row(&self, cell: usize, value: f64) -> Result<(), SolveError> {
+        let n = self.volume.len();
+        if cell >= n {
+            return Err(SolveError::Value {
+                what: "a pinned or blended cell",
+                cell: Some(cell),
+                value,
+                range: "a cell of the flow",
+            });
+        }
+        if value.is_finite() {
+            return Ok(());
+        }
+        Err(SolveError::Value { what: "the given value", cell: Some(cell), value, range: "finite" })
+    }
+
+    /// Matrix and right-hand side without relaxation, pins and blends.
+    fn assemble(&mut self, velocity: &Velocity<D>, e: &Equation<'_>, phi: &[f64]) -> Result<(), FlowError> {
+        let Self { ops, sides, params, volume, matrix, b, fields, .. } = self;
+        let (grid, metrics) = (ops.grid(), ops.metrics());
+        let [gamma, carried, high, low] = fields;
+        copy_dense(grid, e.diffusivity, gamma);
+        sides.fill(gamma, None, None);
+        let (centre, mut lower, mut upper) = matrix.parts_mut();
+        for axis in 0..D {
+            let (gamma, velocity) = (&*gamma, &velocity.components[axis]);
+            let kernel = Neighbour::<false, D> { grid, metrics, axis, gamma, velocity };
+            fill_dense(grid, &kernel, lower[axis]);
+            let kernel = Neighbour::<true, D> { grid, metrics, axis, gamma, velocity };
+            fill_dense(grid, &kernel, upper[axis]);
+        }
+        centre.fill(0.0);
+        b.copy_from_slice(e.source);
+        b.iter_mut().zip(&*volume).for_each(|(b, v)| *b *= v);
+        sides.close(grid, e, [&mut *centre, b], [&mut lower, &mut upper], metrics);
+        let rate = e.dt.map_or(0.0, f64::recip);
+        for (i, centre) in centre.iter_mut().enumerate() {
+            let mut sum = *centre + volume[i] * (e.sink[i] + rate);
+            for axis in 0..D {
+                sum -= lower[axis][i] + upper[axis][i];
+            }
+            *centre = sum;
+            b[i] += volume[i] * rate * phi[i];
+        }
+        if params.scheme != Convection::Upwind {
+            copy_dense(grid, phi, carried);
+            sides.fill(carried, Some(e.inlet), e.wall);
+            ops.convection(velocity, carried, params.scheme, high)?;
+            ops.convection(velocity, carried, Convection::Upwind, low)?;
+            for ((b, v), (high, low)) in b.iter_mut().zip(&*volume).zip(high.values().zip(low.values())) {
+                *b += v * (high - low);
+            }
+        }
+        Ok(())
+    }
+
+    /// Norms of b and of the larger of b and a_P φ, over the cells that are not pinned for the latter.
+    fn scales(&self, phi: &[f64]) -> [f64; 2] {
+        let (mut all, mut given, mut carried) = (0.0, 0.0, 0.0);
+        for (i, b) in self.b.iter().enumerate() {
+            all += b * b;
+            if !self.pinned[i] {
+                let term = self.matrix.diagonal(i) * phi[i];
+                given += b * b;
+                carried += term * term;
+            }
+        }
+        [all.sqrt(), f64::max(given, carried).sqrt()]
+    }
+
+    fn iterate(&mut self, phi: &mut [f64]) -> Result<SolveInfo, LinearError> {
+        let [all, scale] = self.scales(phi);
+        let TransportParams { method, tolerance, max_iterations, .. } = self.params;
+        let absolute = tolerance * scale;
+        let Self { matrix, dilu, b, bicgstab: scratch, gauss_seidel: sweeps, .. } = self;
+        // The solvers tell residuals relative to the whole b.
+        let ratio = if scale > 0.0 { all / scale } else { 0.0 };
+        let result = match method {
+            TransportMethod::BiCgStab => {
+                dilu.refactor(matrix)?;
+                let params = BiCgStabParams { relative: 0.0, absolute, max_iterations };
+                let solved = bicgstab(&*matrix, &mut dilu.with(matrix)?, b, phi, scratch, &params);
+                solved.map(|i| (i.iterations, i.initial_residual, i.residual))
+            }
+            TransportMethod::GaussSeidel => {
+                let params = GaussSeidelParams {
+                    relative: 0.0,
+                    absolute,
+                    max_iterations,
+                    order: SweepOrder::Symmetric,
+                    ..GaussSeidelParams::default()
+                };
+                let solved = gauss_seidel(&*matrix, b, phi, sweeps, &params);
+                solved.map(|i| (i.iterations, i.initial_residual, i.residual))
+            }
+        };
+        match result {
+            Ok((iterations, initial, residual)) => {
+                Ok(SolveInfo { iterations, initial_residual: ratio * initial, residual: ratio * residual })
+            }
+            Err(LinearError::NotConverged { iterations, residual, .. }) => {
+                Err(LinearError::NotConverged { iterations, residual: ratio * residual, tolerance })
+            }
+            Err(other) => Err(other),
+        }
+    }
+
+    /// Where no term is negative the solution is not: what the iteration left below zero is set to zero, and swept
+    /// over once, which keeps signs.
+    fn keep_sign(&mut self, phi: &mut [f64], work: usize) {
+        if self.b.iter().any(|b| *b < 0.0) || phi.iter().all(|p| *p >= 0.0) {
+            return;
+        }
+        phi.iter_mut().for_each(|p| *p = p.max(0.0));
+        let work = &mut self.fields[work].data_mut()[..phi.len()];
+        self.matrix.sweep(Sweep::Forward, &self.b, phi, work);
+        self.matrix.sweep(Sweep::Backward, &self.b, phi, work);
+    }
+
+    fn solve(
+        &mut self,
+        velocity: &Velocity<D>,
+        e: &Equation<'_>,
+        phi: &mut [f64],
+    ) -> Result<SolveInfo, SolveError> {
+        self.check(e, phi)?;
+        self.assemble(velocity, e, phi).map_err(|e| SolveError::Solver(e.to_string()))?;
+        self.pinned.fill(false);
+        let rows = self.matrix.under_relax(e.relax, phi, &mut self.b).and_then(|()| {
+            for &(cell, weight, value) in e.blend {
+                self.matrix.blend(cell, weight, value, &mut self.b)?;
+            }
+            for &(cell, value) in e.pinned {
+                self.matrix.pin(cell, value, &mut self.b)?;
+                (phi[cell], self.pinned[cell]) = (value, true);
+            }
+            Ok(())
+        });
+        let solved = rows.and_then(|()| self.iterate(phi));
+        if solved.is_ok() {
+            self.keep_sign(phi, 2);
+            e.pinned.iter().for_each(|&(cell, value)| phi[cell] = value);
+        }
+        solved.map_err(|error| match error {
+            LinearError::NotConverged { iterations, residual, tolerance } => {
+                SolveError::NotConverged { iterations, residual, tolerance }
+            }
+            other => SolveError::Solver(other.to_string()),
+        })
+    }
+}
+
+fn check_length(what: &'static str, expected: usize, found: usize) -> Result<(), SolveError> {
+    if expected == found { Ok(()) } else { Err(SolveError::Length { what, expected, found }) }
+}
+
+impl<const D: usize> Transport for FlowTransport<'_, D> {
+    fn n_cells(&self) -> usize {
+        self.cells.volume.len()
+    }
+    fn cell_volume(&self, c: usize) -> f64 {
+        self.cells.volume[c]
+    }
+    fn wall_distance(&self) -> &[f64] {
+        &self.cells.wall_distance
+    }
+    fn strain_rate(&mut self, out: &mut [f64]) -> Result<(), SolveError> {
+        check_length("the strain rate", self.n_cells(), out.len())?;
+        let ops = &self.cells.ops;
+        fill_dense(ops.grid(), &ops.strain_kernel(&self.velocity.components), out);
+        Ok(())
+    }
+    fn dot_gradients(&mut self, a: &[f64], b: &[f64], out: &mut [f64]) -> Result<(), SolveError> {
+        for (what, list) in [("a", a), ("b", b), ("∇a·∇b", &*out)] {
+            check_length(what, self.n_cells(), list.len())?;
+        }
+        let CellTransport { ops, sides, fields: [first, second, ..], .. } = &mut *self.cells;
+        let grid = ops.grid();
+        for (dense, field) in [(a, &mut *first), (b, &mut *second)] {
+            copy_dense(grid, dense, field);
+            sides.extrapolate(field);
+        }
+        let kernel = DotGradients { grid, centred: ops.centred(), a: first.data(), b: second.data() };
+        fill_dense(grid, &kernel, out);
+        Ok(())
+    }
+    fn solve(&mut self, equation: &Equation<'_>, phi: &mut [f64]) -> Result<SolveInfo, SolveError> {
+        self.cells.solve(self.velocity, equation, phi)
+    }
+}

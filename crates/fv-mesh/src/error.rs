@@ -95,6 +95,14 @@ pub enum FlowError {
         /// Those of the field.
         found: Vec<usize>,
     },
+    /// The turbulence model could not go on.
+    #[error("the closure could not be brought up to date at t = {time} s: {source}")]
+    Closure {
+        /// When \[s\].
+        time: f64,
+        /// Why.
+        source: interfaces::SolveError,
+    },
     /// The pressure solver could not work.
     #[error(transparent)]
     Poisson(PoissonError),

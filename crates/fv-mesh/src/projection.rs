@@ -64,6 +64,11 @@ pub struct Projection<const D: usize> {
     phi: Vec<f64>,
     /// The pressure at rest where some is given (dense), else empty.
     rest_pressure: Vec<f64>,
+    /// Accelerations that vary in space, for the next predictor step; made when first needed.
+    sources: Option<Box<[Field<D>; D]>>,
+    sources_given: bool,
+    /// ν_t with ghosts; made when first needed.
+    eddy: Option<Box<Field<D>>>,
     /// Scratch of one row.
     row: Vec<f64>,
     pressure_solver: Pressure<D>,
@@ -119,6 +124,9 @@ impl<const D: usize> Projection<D> {
             pressure: Field::zeros(&grid),
             phi: vec![0.0; grid.n_cells()],
             rest_pressure: Vec::new(),
+            sources: None,
+            sources_given: false,
+            eddy: None,
             row: vec![0.0; grid.cells()[0]],
             pressure_solver,
             diffusion: Diffusion::Auto,
@@ -172,13 +180,10 @@ impl<const D: usize> Projection<D> {
 
     /// Sets every velocity component to `u(x)[c]` at its nodes \[m/s\], outlets included; walls and inlets keep theirs.
     pub fn set_velocity(&mut self, u: impl Fn([f64; D]) -> [f64; D]) {
-        let s = self.grid.stride();
         for c in 0..D {
-            let data = self.velocity.components[c].data_mut();
-            for cell in (0..self.grid.n_cells()).map(|i| self.grid.cell(i)) {
-                let x = std::array::from_fn(|a| self.metrics.of(Some(c), a).x[GHOSTS + cell[a]]);
-                data[self.grid.base() + (0..D).map(|a| cell[a] * s[a]).sum::<usize>()] = u(x)[c];
-            }
+            let mut component = std::mem::replace(&mut self.velocity.components[c], Field::zeros(&self.grid));
+            self.each_node(c, |o, x| component.data_mut()[o] = u(x)[c]);
+            self.velocity.components[c] = component;
         }
         self.boundaries.start(&self.metrics, u);
         self.fill_velocity();
@@ -247,6 +252,13 @@ impl<const D: usize> Projection<D> {
                 &mut self.tendency[c],
             );
         }
+        if let Some(sources) = self.sources.as_deref().filter(|_| self.sources_given) {
+            for c in 0..D {
+                kernels::change(&self.grid, weights[0] * dt, &sources[c], &mut self.next[c]);
+                kernels::change(&self.grid, 1.0, &sources[c], &mut self.tendency[c]);
+            }
+        }
+        self.sources_given = false;
         self.boundaries.advance(&self.metrics, self.time + dt);
         if any_implicit {
             self.implicit.set(&self.metrics, viscosity[1].map(|nu| 0.5 * dt * nu));
@@ -278,6 +290,58 @@ impl<const D: usize> Projection<D> {
             kernels::copy_dense(&self.grid, &self.rest_pressure, &mut self.pressure);
         }
         self.boundaries.fill_pressure(&mut self.pressure);
+    }
+
+    /// Lets `f` add accelerations that vary in space \[m/s²\] for the next predictor step.
+    pub(crate) fn with_sources(&mut self, f: impl FnOnce(&Self, &mut [Field<D>; D])) {
+        let zeros = || Box::new(std::array::from_fn(|_| Field::zeros(&self.grid)));
+        let mut sources = self.sources.take().unwrap_or_else(zeros);
+        if !self.sources_given {
+            sources.iter_mut().for_each(|s| s.data_mut().fill(0.0));
+        }
+        f(self, &mut sources);
+        self.sources = Some(sources);
+        self.sources_given = true;
+    }
+
+    /// Adds ∇·[ν_t(∇u + ∇uᵀ)] of the eddy viscosity ν_t \[m²/s\] (dense) to the next predictor step of `dt`.
+    pub(crate) fn add_eddy_stress(&mut self, eddy: &[f64], dt: f64) -> Result<(), FlowError> {
+        let most = eddy.iter().copied().fold(0.0, f64::max);
+        let limit = 1.0 / (4.0 * most * self.stiffness.iter().sum::<f64>());
+        if dt > limit {
+            return Err(FlowError::Unstable { dt, limit });
+        }
+        let mut field = self.eddy.take().unwrap_or_else(|| Box::new(Field::zeros(&self.grid)));
+        kernels::copy_dense(&self.grid, eddy, &mut field);
+        self.boundaries.fill_even(&mut field);
+        self.with_sources(|flow, sources| {
+            for (c, source) in sources.iter_mut().enumerate() {
+                let u = &flow.velocity.components;
+                kernels::add_eddy_stress(&flow.grid, &flow.metrics, c, u, &field, source);
+            }
+        });
+        self.eddy = Some(field);
+        Ok(())
+    }
+
+    /// Calls `f` with the storage index and the place of every node of component `c` (those on bounded sides too).
+    pub(crate) fn each_node(&self, c: usize, mut f: impl FnMut(usize, [f64; D])) {
+        self.each_cell(|o, cell| {
+            f(o, std::array::from_fn(|a| self.metrics.of(Some(c), a).x[GHOSTS + cell[a]]))
+        });
+    }
+
+    /// Calls `f` with the storage index and the place of every cell.
+    pub(crate) fn each_cell(&self, mut f: impl FnMut(usize, [usize; D])) {
+        let (base, s) = (self.grid.base(), self.grid.stride());
+        for cell in (0..self.grid.n_cells()).map(|i| self.grid.cell(i)) {
+            f(base + (0..D).map(|a| cell[a] * s[a]).sum::<usize>(), cell);
+        }
+    }
+
+    /// Parts of the distance between the centres beside every lower face along axis `a` that lie below and above it.
+    pub(crate) fn shares(&self, a: usize) -> [&[f64]; 2] {
+        self.metrics.axes[a].share.each_ref().map(|s| &s[GHOSTS..])
     }
 
     fn side_fluxes(&self, [explicit, implicit]: [[f64; D]; 2]) -> [Vector; 2] {

@@ -1,9 +1,11 @@
 //! The sweeps of a time step over the rows of the grid. Rows are handed to threads in fixed
 //! chunks of layers, so a result does not depend on the number of threads.
 mod advance;
+mod eddy;
 mod project;
 
 pub(crate) use advance::{Advance, LIMITED, LINEAR, Momentum, flux, upwinded};
+pub(crate) use eddy::add_eddy_stress;
 pub(crate) use project::{
     add_dense, change, copy_dense, correct_component, divergence_row, subtract_second_differences,
 };

@@ -134,8 +134,8 @@ pub(crate) fn copy_dense<const D: usize>(grid: &CartesianGrid<D>, dense: &[f64],
     }
 }
 
-/// out += sign·u, ghosts left alone.
-pub(crate) fn change<const D: usize>(grid: &CartesianGrid<D>, sign: f64, u: &Field<D>, out: &mut Field<D>) {
+/// out += factor·u, ghosts left alone.
+pub(crate) fn change<const D: usize>(grid: &CartesianGrid<D>, factor: f64, u: &Field<D>, out: &mut Field<D>) {
     let layer = grid.stride()[D - 1];
     let per_task = layers_per_task(grid.cells()[D - 1]);
     let (range, _) = u.layer_range();
@@ -144,7 +144,7 @@ pub(crate) fn change<const D: usize>(grid: &CartesianGrid<D>, sign: f64, u: &Fie
         .zip(u.data()[range].par_chunks(layer * per_task))
         .for_each(|(out, u)| {
             for (out, u) in out.iter_mut().zip(u) {
-                *out += sign * u;
+                *out += factor * u;
             }
         });
 }

@@ -1,5 +1,6 @@
 //! The flow solver as its users see it: exact solutions, boundary conditions, stress.
 mod boundaries;
 mod exact;
+mod hooks;
 mod norms;
 mod stress;

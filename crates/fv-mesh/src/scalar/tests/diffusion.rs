@@ -124,7 +124,8 @@ fn solution_error<const D: usize>(family: Family, kind: Kind, n: usize) -> [f64;
     let params = CgParams { relative: 1e-11, ..CgParams::default() };
     conjugate_gradient(&a, &mut jacobi, &b, &mut x, &mut CgScratch::new(cells), &params).unwrap();
     let mut values = x.iter();
-    let found = Field::from_fn(&grid, |_| *values.next().unwrap());
+    let mut found = Field::zeros(&grid);
+    found.set(|_| *values.next().unwrap());
     norms(&found, &Field::from_fn(&grid, |x| value(place(x), D)), |_| 1.0)
 }
 

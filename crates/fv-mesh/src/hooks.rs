@@ -1,0 +1,238 @@
+//! What acts on a flow beside pressure and viscosity, each slot a type: `()` is nothing and costs nothing.
+use crate::transport::CellTransport;
+use crate::{Field, FlowError, Projection, Scalar, ScalarTransport, TransportParams};
+use interfaces::{Closure, Vector};
+
+/// The slots of [`Projection::advance_with`].
+///
+/// ```
+/// use fv_mesh::{CartesianGrid, Fluid, ForceField, Hooks, Projection, Side};
+/// let water = Fluid { density: 1000.0, viscosity: 1e-6 };
+/// let mut flow = Projection::new(CartesianGrid::new([8, 8], [0.1, 0.1])?, Side::WALL.everywhere(), water)?;
+/// // A force that turns the fluid round.
+/// let mut hooks = Hooks::none().with_body_force(ForceField(|x: [f64; 2], _t| [0.05 - x[1], x[0] - 0.05]));
+/// flow.advance_with(1e-3, &mut hooks)?;
+/// assert!(flow.statistics().kinetic_energy > 0.0);
+/// # Ok::<(), fv_mesh::FlowError>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Hooks<B = (), F = (), C = (), S = ()> {
+    /// Acceleration by forces of the body of the fluid: [`BodyForce`].
+    pub body_force: B,
+    /// What immersed bodies do to the velocity: [`ImmersedForcing`].
+    pub forcing: F,
+    /// Turbulence model: [`Modelled`].
+    pub closure: C,
+    /// Passive or buoyant scalars: [`ScalarTransport`].
+    pub scalars: S,
+}
+
+impl Hooks {
+    /// Nothing.
+    #[must_use]
+    pub fn none() -> Self {
+        Self::default()
+    }
+}
+
+impl<B, F, C, S> Hooks<B, F, C, S> {
+    /// The same with this body force.
+    #[must_use]
+    pub fn with_body_force<B2>(self, body_force: B2) -> Hooks<B2, F, C, S> {
+        Hooks { body_force, forcing: self.forcing, closure: self.closure, scalars: self.scalars }
+    }
+    /// The same with this forcing by immersed bodies.
+    #[must_use]
+    pub fn with_forcing<F2>(self, forcing: F2) -> Hooks<B, F2, C, S> {
+        Hooks { body_force: self.body_force, forcing, closure: self.closure, scalars: self.scalars }
+    }
+    /// The same with this turbulence model.
+    #[must_use]
+    pub fn with_closure<C2>(self, closure: C2) -> Hooks<B, F, C2, S> {
+        Hooks { body_force: self.body_force, forcing: self.forcing, closure, scalars: self.scalars }
+    }
+    /// The same with these scalars.
+    #[must_use]
+    pub fn with_scalars<S2>(self, scalars: S2) -> Hooks<B, F, C, S2> {
+        Hooks { body_force: self.body_force, forcing: self.forcing, closure: self.closure, scalars }
+    }
+}
+
+/// A force per mass \[m/s²\]. `()` is none; `[f64; D]` is the same everywhere and always; a [`ForceField`] is a function
+/// of place and time; [`Boussinesq`] is buoyancy by a scalar.
+pub trait BodyForce<const D: usize, S = ()> {
+    /// Does it differ from place to place?
+    const VARIES: bool = false;
+    /// The part that is the same everywhere.
+    fn uniform(&self, _time: f64) -> [f64; D] {
+        [0.0; D]
+    }
+    /// Adds the part that varies, at the velocity nodes, to `source[c]`.
+    fn add(&self, _flow: &Projection<D>, _scalars: &S, _source: &mut [Field<D>; D]) {}
+}
+
+impl<const D: usize, S> BodyForce<D, S> for () {}
+
+impl<const D: usize, S> BodyForce<D, S> for [f64; D] {
+    fn uniform(&self, _time: f64) -> [f64; D] {
+        *self
+    }
+}
+
+/// A force per mass \[m/s²\] that is a function of place \[m\] and time \[s\].
+#[derive(Clone, Copy, Debug)]
+pub struct ForceField<F>(
+    /// The function.
+    pub F,
+);
+
+impl<const D: usize, S, F: Fn([f64; D], f64) -> [f64; D]> BodyForce<D, S> for ForceField<F> {
+    const VARIES: bool = true;
+    fn add(&self, flow: &Projection<D>, _scalars: &S, source: &mut [Field<D>; D]) {
+        let time = flow.time();
+        for (c, source) in source.iter_mut().enumerate() {
+            flow.each_node(c, |o, x| source.data_mut()[o] += self.0(x, time)[c]);
+        }
+    }
+}
+
+/// Buoyancy of a fluid that expands a little: −β (φ − φ₀) g with the first scalar φ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Boussinesq {
+    /// Expansion coefficient β \[1/unit of φ\].
+    pub expansion: f64,
+    /// φ₀, at which nothing is buoyant.
+    pub reference: f64,
+    /// Gravity g \[m/s²\].
+    pub gravity: Vector,
+}
+
+impl<const D: usize> BodyForce<D, Scalar<D>> for Boussinesq {
+    const VARIES: bool = true;
+    fn add(&self, flow: &Projection<D>, scalar: &Scalar<D>, source: &mut [Field<D>; D]) {
+        let phi = scalar.field().data();
+        for (c, source) in source.iter_mut().enumerate().filter(|(c, _)| self.gravity[*c] != 0.0) {
+            let (factor, s) = (-self.expansion * self.gravity[c], flow.grid().stride()[c]);
+            let shares = flow.shares(c);
+            flow.each_cell(|o, cell| {
+                let [below, above] = [shares[0][cell[c]], shares[1][cell[c]]];
+                // Linear between the centres beside the face.
+                let mean = above * phi[o - s] + below * phi[o];
+                source.data_mut()[o] += factor * (mean - self.reference);
+            });
+        }
+    }
+}
+
+impl<const D: usize> BodyForce<D, Vec<Scalar<D>>> for Boussinesq {
+    const VARIES: bool = true;
+    fn add(&self, flow: &Projection<D>, scalars: &Vec<Scalar<D>>, source: &mut [Field<D>; D]) {
+        if let Some(first) = scalars.first() {
+            self.add(flow, first, source);
+        }
+    }
+}
+
+/// Forces the velocity between predictor and projection.
+pub trait ImmersedForcing<const D: usize> {
+    /// Changes `flow.velocity_mut()`, which is u*; the projection follows.
+    ///
+    /// # Errors
+    /// Whatever stops the run.
+    fn force(&mut self, flow: &mut Projection<D>, dt: f64) -> Result<(), FlowError>;
+}
+
+impl<const D: usize> ImmersedForcing<D> for () {
+    #[inline(always)]
+    fn force(&mut self, _flow: &mut Projection<D>, _dt: f64) -> Result<(), FlowError> {
+        Ok(())
+    }
+}
+
+/// What a turbulence model does to a flow; `()` does nothing.
+pub trait ClosureSlot<const D: usize> {
+    /// ν_t of every cell \[m²/s\]; `None` if there is none.
+    fn eddy_viscosity(&self) -> Option<&[f64]>;
+    /// Brings the model up to date with the flow after a step of `dt` \[s\].
+    ///
+    /// # Errors
+    /// [`FlowError::Closure`].
+    fn correct(&mut self, flow: &Projection<D>, dt: f64) -> Result<(), FlowError>;
+}
+
+impl<const D: usize> ClosureSlot<D> for () {
+    #[inline(always)]
+    fn eddy_viscosity(&self) -> Option<&[f64]> {
+        None
+    }
+    #[inline(always)]
+    fn correct(&mut self, _flow: &Projection<D>, _dt: f64) -> Result<(), FlowError> {
+        Ok(())
+    }
+}
+
+/// A [`Closure`] and the equations it may ask for on a flow's cells.
+pub struct Modelled<const D: usize, C> {
+    /// The model.
+    pub closure: C,
+    transport: CellTransport<D>,
+}
+
+impl<const D: usize, C: Closure> Modelled<D, C> {
+    /// The model on the cells of `flow`.
+    ///
+    /// # Errors
+    /// [`FlowError`] for parameters that make no sense.
+    pub fn new(closure: C, flow: &Projection<D>, params: TransportParams) -> Result<Self, FlowError> {
+        Ok(Self { closure, transport: CellTransport::new(flow.grid(), flow.sides(), params)? })
+    }
+    /// The equations on the flow's cells; their wall distance may be changed.
+    pub fn transport_mut(&mut self) -> &mut CellTransport<D> {
+        &mut self.transport
+    }
+}
+
+impl<const D: usize, C: Closure> ClosureSlot<D> for Modelled<D, C> {
+    fn eddy_viscosity(&self) -> Option<&[f64]> {
+        self.closure.eddy_viscosity()
+    }
+    fn correct(&mut self, flow: &Projection<D>, dt: f64) -> Result<(), FlowError> {
+        let mut cells = self.transport.on(flow.velocity())?;
+        let corrected = self.closure.correct(&mut cells, flow.fluid().viscosity, Some(dt));
+        corrected.map_err(|source| FlowError::Closure { time: flow.time(), source })
+    }
+}
+
+impl<const D: usize> Projection<D> {
+    /// One whole step of length `dt` with everything in `hooks`: scalars and body force from the flow as it is, predictor,
+    /// forcing, projection, and the closure from the flow that results.
+    ///
+    /// # Errors
+    /// See [`predict`](Self::predict) and [`project`](Self::project), and what the hooks answer.
+    pub fn advance_with<B, F, C, S>(
+        &mut self,
+        dt: f64,
+        hooks: &mut Hooks<B, F, C, S>,
+    ) -> Result<(), FlowError>
+    where
+        B: BodyForce<D, S>,
+        F: ImmersedForcing<D>,
+        C: ClosureSlot<D>,
+        S: ScalarTransport<D>,
+    {
+        let Hooks { body_force, forcing, closure, scalars } = hooks;
+        let uniform = body_force.uniform(self.time());
+        if B::VARIES {
+            self.with_sources(|flow, sources| body_force.add(flow, scalars, sources));
+        }
+        if let Some(eddy) = closure.eddy_viscosity() {
+            self.add_eddy_stress(eddy, dt)?;
+        }
+        scalars.advance(self.velocity(), self.time(), dt)?;
+        self.predict(dt, uniform)?;
+        forcing.force(self, dt)?;
+        self.project(dt)?;
+        self.finish(dt)?;
+        closure.correct(self, dt)
+    }
+}

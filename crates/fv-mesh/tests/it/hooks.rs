@@ -1,0 +1,125 @@
+//! Body forces, buoyancy, closures, scalars.
+use crate::norms;
+use fv_mesh::{
+    Boussinesq, CartesianGrid, Fluid, ForceField, Hooks, Modelled, Projection, Scalar, ScalarSide, Side,
+    TransportParams,
+};
+use interfaces::{Closure, SolveError, Transport, Vector, VelocityField};
+use std::f64::consts::TAU;
+
+fn vortices(nu: f64) -> Projection<2> {
+    let grid = CartesianGrid::new([24, 20], [TAU, TAU]).unwrap();
+    let fluid = Fluid { density: 1.5, viscosity: nu };
+    let mut flow = Projection::new(grid, Side::Periodic.everywhere(), fluid).unwrap();
+    flow.set_velocity(|x| [-x[0].cos() * x[1].sin() + 0.3, x[0].sin() * x[1].cos()]);
+    flow
+}
+
+fn difference(a: &Projection<2>, b: &Projection<2>) -> f64 {
+    let pairs = (0..2).flat_map(|c| a.velocity().component(c).iter().zip(b.velocity().component(c)));
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn empty_hooks_change_no_bit() {
+    assert_eq!(size_of::<Hooks>(), 0);
+    let (mut plain, mut hooked) = (vortices(0.01), vortices(0.01));
+    for _ in 0..20 {
+        plain.advance(0.02, [0.0; 2]).unwrap();
+        hooked.advance_with(0.02, &mut Hooks::none()).unwrap();
+    }
+    assert_eq!(difference(&plain, &hooked), 0.0);
+}
+
+#[test]
+fn a_force_field_that_is_uniform_is_the_uniform_force() {
+    let (mut plain, mut hooked) = (vortices(0.01), vortices(0.01));
+    let mut hooks = Hooks::none().with_body_force(ForceField(|_, t: f64| [0.2 + t, -0.1]));
+    for _ in 0..20 {
+        // The field is extrapolated like all that is explicit: the force of the middle of the step.
+        let t = plain.time();
+        let middle = if plain.steps() == 0 { t } else { t + 0.01 };
+        plain.advance(0.02, [0.2 + middle, -0.1]).unwrap();
+        hooked.advance_with(0.02, &mut hooks).unwrap();
+    }
+    assert!(difference(&plain, &hooked) < 1e-13, "{}", difference(&plain, &hooked));
+}
+
+/// A closure with one eddy viscosity everywhere.
+struct Uniform(Vec<f64>);
+impl Closure for Uniform {
+    fn eddy_viscosity(&self) -> Option<&[f64]> {
+        Some(&self.0)
+    }
+    fn correct(&mut self, flow: &mut dyn Transport, _: f64, _: Option<f64>) -> Result<(), SolveError> {
+        let mut strain = vec![0.0; flow.n_cells()];
+        flow.strain_rate(&mut strain)?;
+        assert!(strain.iter().all(|s| s.is_finite()));
+        Ok(())
+    }
+}
+
+#[test]
+fn a_uniform_eddy_viscosity_is_a_viscosity() {
+    // ∇·(∇u)ᵀ is a gradient times div u = 0: in a box without walls the discrete operators agree to round-off.
+    let (mut thick, mut thin) = (vortices(0.05), vortices(0.02));
+    let closure = Uniform(vec![0.03; thin.grid().n_cells()]);
+    let modelled = Modelled::new(closure, &thin, TransportParams::default()).unwrap();
+    let mut hooks = Hooks::none().with_closure(modelled);
+    thick.project(1.0).unwrap();
+    thin.project(1.0).unwrap();
+    for _ in 0..20 {
+        thick.advance(0.02, [0.0; 2]).unwrap();
+        thin.advance_with(0.02, &mut hooks).unwrap();
+    }
+    assert!(difference(&thick, &thin) < 1e-13, "{}", difference(&thick, &thin));
+}
+
+fn heated(ra: f64, n: usize) -> (Projection<2>, Scalar<2>, Boussinesq) {
+    // De Vahl Davis' square: Pr 0.71, ν and κ from Ra with β g ΔT H³ = 1.
+    let (pr, grid) = (0.71_f64, CartesianGrid::new([n, n], [1.0, 1.0]).unwrap());
+    let (nu, kappa) = ((pr / ra).sqrt(), 1.0 / (pr * ra).sqrt());
+    let flow = Projection::new(grid.clone(), Side::WALL.everywhere(), Fluid { density: 1.0, viscosity: nu }).unwrap();
+    let sides = [
+        [ScalarSide::value(1.0), ScalarSide::value(0.0)],
+        [ScalarSide::NO_GRADIENT, ScalarSide::NO_GRADIENT],
+    ];
+    let scalar = Scalar::new(&grid, sides, kappa).unwrap();
+    let buoyancy = Boussinesq { expansion: 1.0, reference: 0.5, gravity: Vector::new(0.0, -1.0, 0.0) };
+    (flow, scalar, buoyancy)
+}
+
+#[test]
+fn natural_convection_in_a_square_carries_the_heat_of_the_benchmark() {
+    // De Vahl Davis 1983, Ra 10⁴: mean Nusselt number 2.243, largest u 16.178 κ/H.
+    let n = 40;
+    let (mut flow, scalar, body_force) = heated(1e4, n);
+    let mut hooks = Hooks::none().with_body_force(body_force).with_scalars(scalar);
+    while flow.time() < 60.0 {
+        let dt = flow.stable_dt(0.4).min(0.02);
+        flow.advance_with(dt, &mut hooks).unwrap();
+    }
+    let phi = hooks.scalars.field();
+    let flux: f64 = (0..n).map(|j| (1.0 - phi.row(j)[0]) * 2.0 * n as f64 / n as f64).sum();
+    assert!((flux / 2.243 - 1.0).abs() < 0.015, "{flux}");
+    let fastest = norms::velocity(&flow, |_| [0.0; 2]).max;
+    let unit = hooks.scalars.diffusivity();
+    // The largest component is v, 19.617 κ/H.
+    assert!((fastest / unit / 19.617 - 1.0).abs() < 0.01, "{}", fastest / unit);
+}
+
+#[test]
+fn stratified_fluid_stays_at_rest() {
+    let (mut flow, _, body_force) = heated(1e4, 12);
+    let sides = [
+        [ScalarSide::NO_GRADIENT, ScalarSide::NO_GRADIENT],
+        [ScalarSide::value(0.0), ScalarSide::value(1.0)],
+    ];
+    let mut scalar = Scalar::new(flow.grid(), sides, 1e-3).unwrap();
+    scalar.set(|x| x[1]);
+    let mut hooks = Hooks::none().with_body_force(body_force).with_scalars(vec![scalar]);
+    for _ in 0..50 {
+        flow.advance_with(0.01, &mut hooks).unwrap();
+    }
+    assert!(norms::velocity(&flow, |_| [0.0; 2]).max < 1e-14);
+}

@@ -83,14 +83,13 @@ impl<const D: usize> Field<D> {
     fn evaluate<E: Expression<D>>(&mut self, expression: &E, f: impl Fn(f64, f64) -> f64 + Sync) {
         let grid = self.grid().clone();
         let layer = grid.stride()[D - 1];
-        let (layers, rows) = (grid.cells()[D - 1], grid.rows_per_layer());
+        let layers = grid.cells()[D - 1];
         let per_task = layers_per_task(layers);
         let run = |(task, out): (usize, &mut [f64])| {
             let first = task * per_task;
             let end = (first + per_task).min(layers);
             let start = (GHOSTS + first) * layer;
-            let rows = first * rows..end * rows;
-            Arch::new().dispatch(Evaluate { grid: &grid, expression, f: &f, rows, start, out });
+            Arch::new().dispatch(Evaluate { grid: &grid, expression, f: &f, layers: first..end, start, out });
         };
         if grid.n_cells() < WORTH_THREADS {
             self.layers_mut().chunks_mut(layer * per_task).enumerate().for_each(run);
@@ -103,12 +102,12 @@ impl<const D: usize> Field<D> {
 /// Cells from which on threads gain more than it costs to wake them.
 const WORTH_THREADS: usize = 16_384;
 
-/// Evaluates a run of rows.
+/// Evaluates a run of layers.
 struct Evaluate<'a, E, F, const D: usize> {
     grid: &'a CartesianGrid<D>,
     expression: &'a E,
     f: &'a F,
-    rows: std::ops::Range<usize>,
+    layers: std::ops::Range<usize>,
     /// Storage index of the first entry of `out`.
     start: usize,
     out: &'a mut [f64],
@@ -118,13 +117,16 @@ impl<E: Expression<D>, F: Fn(f64, f64) -> f64, const D: usize> WithSimd for Eval
     type Output = ();
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { grid, expression, f, rows, start, out } = self;
-        for r in rows {
-            let place = RowPlace::new(grid, r);
-            let row = expression.row(&place);
-            let out = &mut out[place.start - start..][..place.cells];
-            for i in 0..out.len() {
-                out[i] = f(out[i], row.at(i));
+        let Self { grid, expression, f, layers, start, out } = self;
+        let rows = grid.rows_per_layer();
+        for layer in layers {
+            for row in 0..rows {
+                let place = RowPlace::new(grid, layer, row);
+                let row = expression.row(&place);
+                let out = &mut out[place.start - start..][..place.cells];
+                for i in 0..out.len() {
+                    out[i] = f(out[i], row.at(i));
+                }
             }
         }
     }

@@ -1,7 +1,5 @@
 //! The nodes of an expression tree.
 use super::{Expression, GridMismatch, LANES, RowExpression, check_grid};
-use crate::field::row_start;
-use crate::kernels::row_place;
 use crate::{CartesianGrid, Field};
 use std::marker::PhantomData;
 
@@ -17,10 +15,17 @@ pub struct RowPlace<const D: usize> {
 }
 
 impl<const D: usize> RowPlace<D> {
-    /// Row `r` = j + n_y k.
+    /// Row `row` of layer `layer` of the last axis.
     #[inline(always)]
-    pub(crate) fn new(grid: &CartesianGrid<D>, r: usize) -> Self {
-        Self { start: row_start(grid, r), cells: grid.axis(0).cells(), at: row_place(grid, r) }
+    pub(crate) fn new(grid: &CartesianGrid<D>, layer: usize, row: usize) -> Self {
+        let mut at = [0; D];
+        at[D - 1] = layer;
+        if D == 3 {
+            at[1] = row;
+        }
+        let stride = grid.stride();
+        let start = grid.base() + (1..D).map(|a| at[a] * stride[a]).sum::<usize>();
+        Self { start, cells: grid.axis(0).cells(), at }
     }
 }
 

@@ -120,10 +120,10 @@ impl<const D: usize> Integrals<D> {
     ) -> Result<Extreme<D>, GridMismatch> {
         let expression = f.node();
         expression.check(&self.grid)?;
-        let rows = self.grid.n_cells() / self.grid.cells()[0];
+        let per_layer = self.grid.rows_per_layer();
         let mut found: Option<(f64, [usize; D])> = None;
-        for r in 0..rows {
-            let place = RowPlace::new(&self.grid, r);
+        for r in 0..self.grid.cells()[D - 1] * per_layer {
+            let place = RowPlace::new(&self.grid, r / per_layer, r % per_layer);
             let row = expression.row(&place);
             for i in 0..place.cells {
                 let value = row.at(i);
@@ -142,15 +142,14 @@ impl<const D: usize> Integrals<D> {
     fn totals<A: Operand<Node: Expression<D>>>(&self, f: A) -> Result<Totals, GridMismatch> {
         let expression = f.node();
         expression.check(&self.grid)?;
-        let (layers, rows) = (self.grid.cells()[D - 1], self.grid.rows_per_layer());
+        let layers = self.grid.cells()[D - 1];
         let per_task = layers_per_task(layers);
         // At most 16 tasks.
         let mut parts = [Totals::default(); 16];
         parts[..layers.div_ceil(per_task)].par_iter_mut().enumerate().for_each(|(task, part)| {
             let first = task * per_task;
-            let end = (first + per_task).min(layers);
-            let rows = first * rows..end * rows;
-            *part = Arch::new().dispatch(Rows { integrals: self, expression: &expression, rows });
+            let layers = first..(first + per_task).min(layers);
+            *part = Arch::new().dispatch(Layers { integrals: self, expression: &expression, layers });
         });
         Ok(parts.into_iter().fold(Totals::default(), Totals::plus))
     }
@@ -180,56 +179,77 @@ impl Totals {
     }
 }
 
-/// Sums over a run of rows.
-struct Rows<'a, E, const D: usize> {
-    integrals: &'a Integrals<D>,
-    expression: &'a E,
-    rows: std::ops::Range<usize>,
+/// [`Totals`] in as many partial sums as fill vector registers.
+#[derive(Default)]
+struct Lanes {
+    sum: [f64; LANES],
+    absolute: [f64; LANES],
+    square: [f64; LANES],
+    largest: [f64; LANES],
+    check: [f64; LANES],
 }
 
-impl<E: Expression<D>, const D: usize> WithSimd for Rows<'_, E, D> {
+impl Lanes {
+    /// Adds the values `f` of cells of volumes `across`·`along`.
+    #[inline(always)]
+    fn add(&mut self, across: f64, along: &[f64; LANES], f: &[f64; LANES]) {
+        for l in 0..LANES {
+            let (volume, size) = (across * along[l], f[l].abs());
+            self.sum[l] += volume * f[l];
+            self.absolute[l] += volume * size;
+            self.square[l] += volume * f[l] * f[l];
+            self.largest[l] = if size > self.largest[l] { size } else { self.largest[l] };
+            self.check[l] += if f[l].is_nan() { f[l] } else { 0.0 };
+        }
+    }
+
+    fn totals(self) -> Totals {
+        let add = |lanes: [f64; LANES]| lanes.into_iter().sum();
+        Totals {
+            sum: add(self.sum),
+            absolute: add(self.absolute),
+            square: add(self.square),
+            largest: self.largest.into_iter().fold(0.0, f64::max),
+            check: add(self.check),
+        }
+    }
+}
+
+/// Sums over a run of layers.
+struct Layers<'a, E, const D: usize> {
+    integrals: &'a Integrals<D>,
+    expression: &'a E,
+    layers: std::ops::Range<usize>,
+}
+
+impl<E: Expression<D>, const D: usize> WithSimd for Layers<'_, E, D> {
     type Output = Totals;
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Totals {
-        let Self { integrals: Integrals { grid, widths }, expression, rows } = self;
-        let mut totals = Totals::default();
-        for r in rows {
-            let place = RowPlace::new(grid, r);
-            let row = expression.row(&place);
-            let along = &widths[0][..place.cells];
-            let (mut sum, mut absolute, mut square) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-            let (mut largest, mut unordered) = ([0.0_f64; LANES], [0.0_f64; LANES]);
-            let mut last = [0.0; LANES];
-            let mut take = |w: &[f64], f: &[f64]| {
-                for (l, (w, f)) in w.iter().zip(f).enumerate() {
-                    let size = f.abs();
-                    sum[l] += w * f;
-                    absolute[l] += w * size;
-                    square[l] += w * f * f;
-                    largest[l] = if size > largest[l] { size } else { largest[l] };
-                    unordered[l] += if f.is_nan() { *f } else { 0.0 };
+        let Self { integrals: Integrals { grid, widths }, expression, layers } = self;
+        let mut lanes = Lanes::default();
+        let (whole, rest) = widths[0].as_chunks::<LANES>();
+        let rows = grid.rows_per_layer();
+        for layer in layers {
+            for row in 0..rows {
+                let place = RowPlace::new(grid, layer, row);
+                let row = expression.row(&place);
+                let mut across = 1.0;
+                for a in 1..D {
+                    across *= widths[a][place.at[a]];
                 }
-            };
-            let (whole, rest) = along.as_chunks::<LANES>();
-            for (block, along) in whole.iter().enumerate() {
-                take(along, &row.block(block * LANES));
+                for (block, along) in whole.iter().enumerate() {
+                    lanes.add(across, along, &row.block(block * LANES));
+                }
+                // The cells left, filled up with zeros.
+                let (mut along, mut f) = ([0.0; LANES], [0.0; LANES]);
+                for l in 0..rest.len() {
+                    (along[l], f[l]) = (rest[l], row.at(place.cells - rest.len() + l));
+                }
+                lanes.add(across, &along, &f);
             }
-            let first = place.cells - rest.len();
-            for l in 0..rest.len() {
-                last[l] = row.at(first + l);
-            }
-            take(rest, &last[..rest.len()]);
-            let across: f64 = (1..D).map(|a| widths[a][place.at[a]]).product();
-            let add = |lanes: [f64; LANES]| lanes.into_iter().sum::<f64>();
-            totals = totals.plus(Totals {
-                sum: across * add(sum),
-                absolute: across * add(absolute),
-                square: across * add(square),
-                largest: largest.into_iter().fold(0.0, f64::max),
-                check: add(unordered),
-            });
         }
-        totals
+        lanes.totals()
     }
 }
 

@@ -79,7 +79,8 @@ fn heated(ra: f64, n: usize) -> (Projection<2>, Scalar<2>, Boussinesq) {
     // De Vahl Davis' square: Pr 0.71, ν and κ from Ra with β g ΔT H³ = 1.
     let (pr, grid) = (0.71_f64, CartesianGrid::new([n, n], [1.0, 1.0]).unwrap());
     let (nu, kappa) = ((pr / ra).sqrt(), 1.0 / (pr * ra).sqrt());
-    let flow = Projection::new(grid.clone(), Side::WALL.everywhere(), Fluid { density: 1.0, viscosity: nu }).unwrap();
+    let flow = Projection::new(grid.clone(), Side::WALL.everywhere(), Fluid { density: 1.0, viscosity: nu })
+        .unwrap();
     let sides = [
         [ScalarSide::value(1.0), ScalarSide::value(0.0)],
         [ScalarSide::NO_GRADIENT, ScalarSide::NO_GRADIENT],

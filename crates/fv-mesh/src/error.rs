@@ -70,7 +70,9 @@ pub enum FlowError {
         courant: f64,
     },
     /// A scalar is no longer finite.
-    #[error("the scalar is not finite any more in step {step} (t = {time} s, dt = {dt} s); take a smaller time step")]
+    #[error(
+        "the scalar is not finite any more in step {step} (t = {time} s, dt = {dt} s); take a smaller time step"
+    )]
     ScalarDiverged {
         /// Step number.
         step: u64,

@@ -510,7 +510,12 @@ fn place<const D: usize>(metrics: &Metrics<D>, lines: &Lines, c: usize, at: f64,
 }
 
 /// Centre of the face at which line `l` ends, ghost lines moved to the edge of the side.
-pub(crate) fn face_centre<const D: usize>(grid: &CartesianGrid<D>, lines: &Lines, at: f64, l: usize) -> [f64; 3] {
+pub(crate) fn face_centre<const D: usize>(
+    grid: &CartesianGrid<D>,
+    lines: &Lines,
+    at: f64,
+    l: usize,
+) -> [f64; 3] {
     let index = lines.place(l);
     let mut x = [0.0; 3];
     x[lines.axis] = at;

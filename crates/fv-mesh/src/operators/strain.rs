@@ -47,7 +47,8 @@ impl<const D: usize> RowKernel<D> for StrainRate<'_, D> {
                 if b == 0 {
                     let wb = [0, 1, 2].map(|k| &self.centred[0][k][GHOSTS..][..n]);
                     for i in 0..n {
-                        let slope = centred(&along_b, [wb[0][i], wb[1][i], wb[2][i]], i) + centred(&along_a, wa, i);
+                        let slope =
+                            centred(&along_b, [wb[0][i], wb[1][i], wb[2][i]], i) + centred(&along_a, wa, i);
                         out[i] += slope * slope;
                     }
                 } else {

@@ -140,7 +140,8 @@ impl SideState {
         let axis = grid.axis(lines.axis);
         let at = if upper { axis.upper() } else { axis.lower() };
         let list = || vec![0.0; lines.len()];
-        let patch = (0..lines.len()).map(|l| find(grid, lines, &side, at, l, upper)).collect::<Result<_, _>>()?;
+        let patch =
+            (0..lines.len()).map(|l| find(grid, lines, &side, at, l, upper)).collect::<Result<_, _>>()?;
         let steady = match &side {
             ScalarSide::Patches(patches) => patches.iter().all(|p| is_steady(&p.side)),
             side => is_steady(side),

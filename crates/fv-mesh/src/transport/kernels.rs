@@ -67,7 +67,8 @@ impl<const D: usize> RowKernel<D> for DotGradients<'_, D> {
         for c in 0..D {
             let rows = |f| -> [&[f64]; 3] { [o - s[c], o, o + s[c]].map(|o| slice(f, o, n)) };
             let (a, b) = (rows(self.a), rows(self.b));
-            let slope = |r: &[&[f64]; 3], w: [f64; 3], i: usize| w[0] * r[0][i] + w[1] * r[1][i] + w[2] * r[2][i];
+            let slope =
+                |r: &[&[f64]; 3], w: [f64; 3], i: usize| w[0] * r[0][i] + w[1] * r[1][i] + w[2] * r[2][i];
             if c == 0 {
                 let w = [0, 1, 2].map(|k| &self.centred[0][k][GHOSTS..][..n]);
                 for i in 0..n {

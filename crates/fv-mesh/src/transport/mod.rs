@@ -7,8 +7,8 @@ mod walls;
 
 use crate::kernels::copy_dense;
 use crate::linear::{
-    BiCgStabParams, BiCgStabScratch, Dilu, GaussSeidelParams, GaussSeidelScratch, GaussSeidelSweep, LinearError,
-    StencilMatrix, Sweep, SweepOrder, bicgstab, gauss_seidel,
+    BiCgStabParams, BiCgStabScratch, Dilu, GaussSeidelParams, GaussSeidelScratch, GaussSeidelSweep,
+    LinearError, StencilMatrix, Sweep, SweepOrder, bicgstab, gauss_seidel,
 };
 use crate::operators::{Operators, fill_dense};
 use crate::{CartesianGrid, Convection, Field, FlowError, Sides, Velocity};
@@ -263,11 +263,9 @@ impl<const D: usize> CellTransport<D> {
             }
         };
         match result {
-            Ok((iterations, initial, residual)) => Ok(SolveInfo {
-                iterations,
-                initial_residual: ratio * initial,
-                residual: ratio * residual,
-            }),
+            Ok((iterations, initial, residual)) => {
+                Ok(SolveInfo { iterations, initial_residual: ratio * initial, residual: ratio * residual })
+            }
             Err(LinearError::NotConverged { iterations, residual, .. }) => {
                 Err(LinearError::NotConverged { iterations, residual: ratio * residual, tolerance })
             }

@@ -43,7 +43,7 @@ impl<const D: usize> CellSides<D> {
             let of = |upper: usize| -> Result<Vec<Kind>, FlowError> {
                 let at = [grid.axis(a).lower(), grid.axis(a).upper()][upper];
                 (0..lines[a].len())
-                      .map(|l| kind::<D>(&sides.of(a)[upper], a, face_centre(grid, &lines[a], at, l)))
+                    .map(|l| kind::<D>(&sides.of(a)[upper], a, face_centre(grid, &lines[a], at, l)))
                     .collect()
             };
             kinds[a] = Some([of(0)?, of(1)?]);
@@ -105,8 +105,7 @@ impl<const D: usize> CellSides<D> {
                 let i = if end == 1 { lines.cells - 1 } else { 0 };
                 for l in (0..lines.len()).filter(|&l| lines.inside(l)) {
                     let cell = lines.end_cell(grid, l, end == 1);
-                    let coefficient =
-                        if end == 1 { &mut upper[a][cell] } else { &mut lower[a][cell] };
+                    let coefficient = if end == 1 { &mut upper[a][cell] } else { &mut lower[a][cell] };
                     if let Some(value) = kinds[l].value(Some(e.inlet), e.wall) {
                         // The side is half as far away as the ghost.
                         let width = metrics.axes[a].centres.volume[GHOSTS + i];
@@ -133,7 +132,9 @@ fn kind<const D: usize>(side: &Side, a: usize, x: [f64; 3]) -> Result<Kind, Flow
             match patch {
                 Some(patch) => kind::<D>(&patch.side, a, x),
                 None => Err(FlowError::Boundary {
-                    what: format!("patches on a side of axis {a} that leave out the face at {x:?} m; cover the whole side"),
+                    what: format!(
+                        "patches on a side of axis {a} that leave out the face at {x:?} m; cover the whole side"
+                    ),
                 }),
             }
         }

@@ -57,11 +57,12 @@ fn walls_of<const D: usize>(
     walls: &mut Vec<Rectangle<D>>,
 ) {
     let at = if upper { grid.axis(a).upper() } else { grid.axis(a).lower() };
-    let clip = |x: [f64; 3]| -> [f64; D] {
-        std::array::from_fn(|b| {
-            if b == a { at } else { x[b].clamp(grid.axis(b).lower(), grid.axis(b).upper()) }
-        })
-    };
+    let clip =
+        |x: [f64; 3]| -> [f64; D] {
+            std::array::from_fn(|b| {
+                if b == a { at } else { x[b].clamp(grid.axis(b).lower(), grid.axis(b).upper()) }
+            })
+        };
     let whole = [Patch { lower: [f64::NEG_INFINITY; 3], upper: [f64::INFINITY; 3], side: side.clone() }];
     let patches = match side {
         Side::Patches(patches) => patches.as_slice(),

@@ -119,9 +119,12 @@ fn identities<const D: usize>(cells: [usize; D], seed: u64) {
     // (b, La) = (a, Lb), (a, La) ≤ 0, with any Γ > 0.
     let mut gamma = zeros();
     gamma.set(|_| 1.1 + random.next());
-    ScalarBoundaries::new(&grid, std::array::from_fn(|d| {
-        [ScalarSide::NO_GRADIENT, ScalarSide::Periodic][usize::from(boundaries.periodic()[d])].both()
-    }))
+    ScalarBoundaries::new(
+        &grid,
+        std::array::from_fn(|d| {
+            [ScalarSide::NO_GRADIENT, ScalarSide::Periodic][usize::from(boundaries.periodic()[d])].both()
+        }),
+    )
     .unwrap()
     .fill(&mut gamma)
     .unwrap();
@@ -223,7 +226,8 @@ fn translation<const D: usize>(cells: [usize; D], seed: u64) {
     for scheme in Convection::ALL {
         ops.convection(&velocity, &phi, scheme, &mut first).unwrap();
         ops.convection(&moved_velocity, &moved_phi, scheme, &mut second).unwrap();
-        let worst = moved(&first).values().zip(second.values()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let worst =
+            moved(&first).values().zip(second.values()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         // Interface weights come from coordinates, which are round-off apart.
         assert!(worst < 1e-11, "{scheme:?} {worst:e}");
     }

@@ -19,7 +19,11 @@ pub(crate) enum Family {
 
 /// All families; in space, where work is dear, those of one kind and the mixture.
 pub(crate) fn families(d: usize) -> &'static [Family] {
-    if d == 2 { &[Family::Uniform, Family::Tanh, Family::Geometric] } else { &[Family::Uniform, Family::Mixed] }
+    if d == 2 {
+        &[Family::Uniform, Family::Tanh, Family::Geometric]
+    } else {
+        &[Family::Uniform, Family::Mixed]
+    }
 }
 
 impl Family {
@@ -30,9 +34,7 @@ impl Family {
         };
         let axis = |a: usize| match kind(a) {
             Self::Uniform | Self::Mixed => Axis::uniform(n, 0.0, 1.0),
-            Self::Tanh => {
-                Axis::tanh(n, 0.0, 1.0, 1.2, [Cluster::Both, Cluster::Lower, Cluster::Upper][a])
-            }
+            Self::Tanh => Axis::tanh(n, 0.0, 1.0, 1.2, [Cluster::Both, Cluster::Lower, Cluster::Upper][a]),
             Self::Geometric => Axis::geometric(n, 0.0, 1.0, 1.05_f64.powf([-16.0, 16.0, -8.0][a] / n as f64)),
         };
         CartesianGrid::from_axes(std::array::from_fn(|a| axis(a).unwrap())).unwrap()
@@ -66,7 +68,8 @@ pub(crate) fn exact_velocity<const D: usize>(
     metrics: &Metrics<D>,
     u: impl Fn([f64; D]) -> [f64; D],
 ) -> Velocity<D> {
-    let sides = std::array::from_fn(|a| [Side::FreeSlip, Side::Periodic][usize::from(metrics.periodic[a])].both());
+    let sides =
+        std::array::from_fn(|a| [Side::FreeSlip, Side::Periodic][usize::from(metrics.periodic[a])].both());
     let mut velocity = Velocity::zeros(grid, &Sides::new(sides).unwrap());
     for c in 0..D {
         velocity.components[c] = exact(grid, metrics, Some(c), |x| u(x)[c]);

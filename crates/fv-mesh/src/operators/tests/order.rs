@@ -1,7 +1,7 @@
 //! Orders of accuracy.
 use super::*;
-use crate::operators::Operators;
 use crate::Convection;
+use crate::operators::Operators;
 use std::f64::consts::PI;
 
 /// φ and its derivatives; monotone along every axis of the unit box.
@@ -51,7 +51,8 @@ fn errors<const D: usize>(family: Family, n: usize) -> Vec<(String, f64, [f64; 2
     let metrics = Metrics::new(&grid, [false; D]);
     let ops = Operators::new(&grid, [false; D]);
     // Smooth, so that which cells count does not disturb the order.
-    let inner = |x: [f64; D]| x.iter().map(|x| (PI * ((x - 0.1) / 0.8).clamp(0.0, 1.0)).sin()).product::<f64>();
+    let inner =
+        |x: [f64; D]| x.iter().map(|x| (PI * ((x - 0.1) / 0.8).clamp(0.0, 1.0)).sin()).product::<f64>();
     let field = |f: &dyn Fn([f64; D]) -> f64| exact(&grid, &metrics, None, f);
     let phi = field(&Wave::value);
     let mut out = Field::zeros(&grid);

@@ -30,7 +30,7 @@ enum Kind {
     Patches,
 }
 
-fn side<const D: usize>(kind: Kind, c: usize, upper: usize) -> ScalarSide {
+fn side<const D: usize>(grid: &CartesianGrid<D>, kind: Kind, c: usize, upper: usize) -> ScalarSide {
     let sign = [-1.0, 1.0][upper];
     let (a, b) = (2.0, 0.7);
     let given = |f: fn([f64; 3], f64, usize, usize) -> f64| Given::function(move |x, _| f(x, sign, c, D));
@@ -48,10 +48,16 @@ fn side<const D: usize>(kind: Kind, c: usize, upper: usize) -> ScalarSide {
             let patch = |from: f64, to: f64, kind: Kind| {
                 let (mut lower, mut upper_corner) = ([-1.0; 3], [2.0; 3]);
                 (lower[across], upper_corner[across]) = (from, to);
-                ScalarPatch { lower, upper: upper_corner, side: side::<D>(kind, c, upper) }
+                ScalarPatch { lower, upper: upper_corner, side: side(grid, kind, c, upper) }
             };
-            let patches =
-                vec![patch(0.0, 0.25, Kind::Value), patch(0.25, 0.5, Kind::Mixed), patch(0.5, 1.0, Kind::Gradient)];
+            // The ends lie on faces, at the same places on all grids of a family.
+            let axis = grid.axis(across);
+            let end = |quarters: usize| axis.faces()[quarters * axis.cells() / 4];
+            let patches = vec![
+                patch(end(0), end(1), Kind::Value),
+                patch(end(1), end(2), Kind::Mixed),
+                patch(end(2), end(4), Kind::Gradient),
+            ];
             ScalarSide::Patches(patches)
         }
     }
@@ -92,7 +98,7 @@ impl<const D: usize> LinearOperator for Negative<D> {
 
 fn solution_error<const D: usize>(family: Family, kind: Kind, n: usize) -> [f64; 2] {
     let grid: CartesianGrid<D> = family.grid(n);
-    let sides = std::array::from_fn(|c| [0, 1].map(|upper| side::<D>(kind, c, upper)));
+    let sides = std::array::from_fn(|c| [0, 1].map(|upper| side(&grid, kind, c, upper)));
     let boundaries = ScalarBoundaries::new(&grid, sides).unwrap();
     let ops = Operators::new(&grid, boundaries.periodic());
     let cells = grid.n_cells();
@@ -145,7 +151,8 @@ fn solutions_are_of_second_order_with_every_condition() {
 fn ghosts_meet_the_condition_on_the_side() {
     let grid = CartesianGrid::new([4, 3], [2.0, 0.6]).unwrap();
     let mixed = ScalarSide::Mixed { a: 0.3, b: 1.1, c: 2.0.into() };
-    let sides = [[ScalarSide::value(5.0), ScalarSide::Gradient((-2.0).into())], [mixed, ScalarSide::flux(3.0, 0.5)]];
+    let sides =
+        [[ScalarSide::value(5.0), ScalarSide::Gradient((-2.0).into())], [mixed, ScalarSide::flux(3.0, 0.5)]];
     let boundaries = ScalarBoundaries::new(&grid, sides).unwrap();
     let mut phi = Field::from_fn(&grid, |x| x[0] * 7.0 + x[1] * x[1]);
     boundaries.fill(&mut phi).unwrap();
@@ -188,5 +195,11 @@ fn impossible_conditions_are_errors() {
         let error = ScalarBoundaries::new(&grid, sides).map(|_| ());
         assert!(matches!(error, Err(crate::FlowError::Boundary { .. })), "{side:?}");
     }
-    assert!(ScalarBoundaries::new(&grid, [patch(1.0, ScalarSide::value(1.0)).both(), ScalarSide::Periodic.both()]).is_ok());
+    assert!(
+        ScalarBoundaries::new(
+            &grid,
+            [patch(1.0, ScalarSide::value(1.0)).both(), ScalarSide::Periodic.both()]
+        )
+        .is_ok()
+    );
 }

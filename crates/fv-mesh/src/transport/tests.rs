@@ -56,7 +56,7 @@ fn steady_error<const D: usize>(family: Family, n: usize, scheme: Convection) ->
         let u = stream(place(x));
         std::array::from_fn(|a| u[a])
     });
-    let params = TransportParams { scheme, ..TransportParams::default() };
+    let params = TransportParams { scheme, tolerance: 1e-11, ..TransportParams::default() };
     let mut cells = CellTransport::new(&grid, &sides, params).unwrap();
     let mut flow = cells.on(&velocity).unwrap();
     let (gamma, sink) = (dense(&grid, |x| 0.3 + 0.2 * x[0]), dense(&grid, |x| 1.0 + x[1]));
@@ -71,11 +71,11 @@ fn steady_error<const D: usize>(family: Family, n: usize, scheme: Convection) ->
     let mut last = f64::INFINITY;
     for _ in 0..60 {
         last = flow.solve(&e, &mut phi).unwrap().initial_residual;
-        if last < 1e-7 {
+        if last < 1e-9 {
             break;
         }
     }
-    assert!(last < 1e-7, "deferred correction does not converge: {last:e}");
+    assert!(last < 1e-9, "deferred correction does not converge: {last:e}");
     for &(cell, value) in &pinned {
         assert_eq!(phi[cell], value);
     }
@@ -89,8 +89,10 @@ fn steady_solutions_have_the_order_of_the_scheme() {
     for &family in families(2) {
         for scheme in Convection::ALL {
             let order = if scheme == Convection::Upwind { 1.0 } else { 2.0 };
-            // Linear upwinding errs by another multiple of h² beside the sides: one cell must be small beside the box.
-            let n = if scheme == Convection::LinearUpwind { 64 } else { 32 };
+            // Schemes that look far err by another multiple of h² beside the sides: one cell must be small beside
+            // the box.
+            let near = matches!(scheme, Convection::Central | Convection::Upwind);
+            let n = if near { 32 } else { 64 };
             let errors = [n, 2 * n].map(|n| steady_error::<2>(family, n, scheme));
             assert_order(&format!("{family:?} {scheme:?}"), errors[0], errors[1], order);
         }
@@ -165,20 +167,20 @@ fn reacting(
         let pi = std::f64::consts::PI;
         [(pi * x).sin() * (pi * y).cos(), -(pi * x).cos() * (pi * y).sin()]
     });
-    let params = TransportParams { method, tolerance: 1e-10, max_iterations: 20_000, ..Default::default() };
+    let params = TransportParams { method, tolerance: 1e-12, max_iterations: 20_000, ..Default::default() };
     let mut cells = CellTransport::new(&grid, &sides, params).unwrap();
     let n = grid.n_cells();
     let gamma = vec![1e-4; n];
     let source = dense(&grid, |x| if (x[0] - 0.5).hypot(x[1] - 0.5) < 0.1 { 1.0 } else { 0.0 });
     let sink = dense(&grid, |x| 50.0 * (1.0 + x[0]));
-    let pinned = [(5, 0.0), (40, 1e6), (300, 2.5)];
+    let pinned = [(5, 0.0), (40, 50.0), (300, 2.5)];
     let e = Equation { wall: Some(0.0), relax, pinned: &pinned, blend, ..equation(&gamma, &source, &sink) };
     let mut phi = vec![0.3; n];
     let mut info = SolveInfo::default();
     for _ in 0..if relax < 1.0 { 80 } else { 1 } {
         info = cells.on(&velocity).unwrap().solve(&e, &mut phi).unwrap();
     }
-    assert_eq!([phi[5], phi[40], phi[300]], [0.0, 1e6, 2.5]);
+    assert_eq!([phi[5], phi[40], phi[300]], [0.0, 50.0, 2.5]);
     assert!(cells.matrix.is_m_matrix());
     (cells, phi, info)
 }
@@ -188,7 +190,7 @@ fn nothing_negative_from_nothing_negative() {
     for method in [TransportMethod::BiCgStab, TransportMethod::GaussSeidel] {
         let (_, phi, info) = reacting(method, 1.0, &[]);
         let low = phi.iter().copied().fold(f64::INFINITY, f64::min);
-        assert!(low >= 0.0 && info.residual <= 1e-10, "{method:?} {low:e} {info:?}");
+        assert!(low >= 0.0 && info.residual <= 1e-12, "{method:?} {low:e} {info:?}");
     }
 }
 

@@ -77,20 +77,38 @@ pub(crate) fn exact_velocity<const D: usize>(
     velocity
 }
 
-/// Root of the mean square and largest of the differences, weighted with `weight` of the place.
+/// Norms of differences, weighted with a function of the place.
+pub(crate) struct Norms {
+    weight: Vec<f64>,
+    volume: Vec<f64>,
+}
+
+impl Norms {
+    pub(crate) fn new<const D: usize>(grid: &CartesianGrid<D>, weight: impl Fn([f64; D]) -> f64) -> Self {
+        let cells = || (0..grid.n_cells()).map(|i| grid.cell(i));
+        Self {
+            weight: cells().map(|cell| weight(grid.centre(cell))).collect(),
+            volume: cells().map(|cell| grid.cell_volume(cell)).collect(),
+        }
+    }
+    /// Root of the mean square, and the largest.
+    pub(crate) fn of<const D: usize>(&self, a: &Field<D>, b: &Field<D>) -> [f64; 2] {
+        let (mut sum, mut volume, mut top) = (0.0, 0.0, 0.0_f64);
+        for ((a, b), (w, v)) in a.values().zip(b.values()).zip(self.weight.iter().zip(&self.volume)) {
+            let e = w * (a - b).abs();
+            (sum, volume, top) = (sum + v * e * e, volume + v, top.max(e));
+        }
+        [(sum / volume).sqrt(), top]
+    }
+}
+
+/// [`Norms`] of one difference.
 pub(crate) fn norms<const D: usize>(
     a: &Field<D>,
     b: &Field<D>,
     weight: impl Fn([f64; D]) -> f64,
 ) -> [f64; 2] {
-    let grid = a.grid();
-    let (mut sum, mut volume, mut top) = (0.0, 0.0, 0.0_f64);
-    for (i, (a, b)) in a.values().zip(b.values()).enumerate() {
-        let cell = grid.cell(i);
-        let (e, v) = (weight(grid.centre(cell)) * (a - b).abs(), grid.cell_volume(cell));
-        (sum, volume, top) = (sum + v * e * e, volume + v, top.max(e));
-    }
-    [(sum / volume).sqrt(), top]
+    Norms::new(a.grid(), weight).of(a, b)
 }
 
 /// Asserts that errors at n and 2n cells fall with this order: within 0.1 in the 2-norm and 0.2 in the largest.

@@ -51,8 +51,9 @@ fn errors<const D: usize>(family: Family, n: usize) -> Vec<(String, f64, [f64; 2
     let metrics = Metrics::new(&grid, [false; D]);
     let ops = Operators::new(&grid, [false; D]);
     // Smooth, so that which cells count does not disturb the order.
-    let inner =
-        |x: [f64; D]| x.iter().map(|x| (PI * ((x - 0.1) / 0.8).clamp(0.0, 1.0)).sin()).product::<f64>();
+    let norms = Norms::new(&grid, |x| {
+        x.iter().map(|x| (PI * ((x - 0.1) / 0.8).clamp(0.0, 1.0)).sin()).product::<f64>()
+    });
     let field = |f: &dyn Fn([f64; D]) -> f64| exact(&grid, &metrics, None, f);
     let phi = field(&Wave::value);
     let mut out = Field::zeros(&grid);
@@ -62,27 +63,27 @@ fn errors<const D: usize>(family: Family, n: usize) -> Vec<(String, f64, [f64; 2
     for c in 0..D {
         ops.gradient(&phi, c, &mut out).unwrap();
         let exact_slope = field(&|x| Wave::slope(c, x));
-        list.push((format!("gradient {c}"), 2.0, norms(&out, &exact_slope, inner)));
+        list.push((format!("gradient {c}"), 2.0, norms.of(&out, &exact_slope)));
         let on_faces = exact(&grid, &metrics, Some(c), |x| Wave::slope(c, x));
-        list.push((format!("face gradient {c}"), 2.0, norms(&faces[c], &on_faces, inner)));
+        list.push((format!("face gradient {c}"), 2.0, norms.of(&faces[c], &on_faces)));
         ops.to_faces(&phi, c, &mut out).unwrap();
         let on_faces = exact(&grid, &metrics, Some(c), Wave::value);
-        list.push((format!("to faces {c}"), 2.0, norms(&out, &on_faces, inner)));
+        list.push((format!("to faces {c}"), 2.0, norms.of(&out, &on_faces)));
         ops.to_centres(&on_faces, c, &mut out).unwrap();
-        list.push((format!("to centres {c}"), 2.0, norms(&out, &phi, inner)));
+        list.push((format!("to centres {c}"), 2.0, norms.of(&out, &phi)));
     }
     let flux = std::array::from_fn(|c| exact(&grid, &metrics, Some(c), |x| velocity(x)[c]));
     ops.divergence(&flux, &mut out).unwrap();
     let divergence = |x| (0..D).map(|c| velocity_slope::<D>(c, c, x)).sum::<f64>();
-    list.push(("divergence".into(), 2.0, norms(&out, &field(&divergence), inner)));
+    list.push(("divergence".into(), 2.0, norms.of(&out, &field(&divergence))));
     ops.laplacian(1.7, &phi, &mut out).unwrap();
-    list.push(("laplacian".into(), 2.0, norms(&out, &field(&|x| 1.7 * Wave::laplacian(x)), inner)));
+    list.push(("laplacian".into(), 2.0, norms.of(&out, &field(&|x| 1.7 * Wave::laplacian(x)))));
     ops.variable_laplacian(&field(&gamma), &phi, &mut out).unwrap();
     let variable = |x: [f64; D]| {
         let mixed = |a: usize| (x[a] + 0.3 * a as f64).cos() * Wave::slope(a, x);
         gamma(x) * Wave::laplacian(x) + (0..D).map(mixed).sum::<f64>()
     };
-    list.push(("variable laplacian".into(), 2.0, norms(&out, &field(&variable), inner)));
+    list.push(("variable laplacian".into(), 2.0, norms.of(&out, &field(&variable))));
 
     let u = exact_velocity(&grid, &metrics, velocity);
     let convected = |x: [f64; D]| {
@@ -91,12 +92,12 @@ fn errors<const D: usize>(family: Family, n: usize) -> Vec<(String, f64, [f64; 2
     for scheme in Convection::ALL {
         ops.convection(&u, &phi, scheme, &mut out).unwrap();
         let order = if scheme == Convection::Upwind { 1.0 } else { 2.0 };
-        list.push((format!("{scheme:?}"), order, norms(&out, &field(&convected), inner)));
+        list.push((format!("{scheme:?}"), order, norms.of(&out, &field(&convected))));
     }
     for (a, b) in (0..D).flat_map(|a| (0..D).map(move |b| (a, b))) {
         ops.velocity_gradient(&u, [a, b], &mut out).unwrap();
         let slope = field(&|x| velocity_slope(a, b, x));
-        list.push((format!("velocity gradient {a}{b}"), 2.0, norms(&out, &slope, inner)));
+        list.push((format!("velocity gradient {a}{b}"), 2.0, norms.of(&out, &slope)));
     }
     ops.strain_rate(&u, &mut out).unwrap();
     let strain = |x: [f64; D]| {
@@ -104,7 +105,7 @@ fn errors<const D: usize>(family: Family, n: usize) -> Vec<(String, f64, [f64; 2
         let pairs = (0..D).flat_map(|a| (0..D).map(move |b| (a, b)));
         (2.0 * pairs.map(|(a, b)| s(a, b) * s(a, b)).sum::<f64>()).sqrt()
     };
-    list.push(("strain rate".into(), 2.0, norms(&out, &field(&strain), inner)));
+    list.push(("strain rate".into(), 2.0, norms.of(&out, &field(&strain))));
     list
 }
 

@@ -5,15 +5,15 @@ use interfaces::Checkpoint;
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 
-/// φ, ∂φ/∂t, ∇φ and ∇²φ of 2 + sin(1.6x + 0.2 − t) cos(1.2y + 0.3t).
+/// φ, ∂φ/∂t, ∇φ and ∇²φ of 2 + sin(0.7x + 0.3 − 0.5t) cos(0.5y + 0.3 + 0.3t), without extrema in the box.
 fn wave([x, y]: [f64; 2], t: f64) -> (f64, f64, [f64; 2], f64) {
-    let (a, b) = (1.6 * x + 0.2 - t, 1.2 * y + 0.3 * t);
+    let (a, b) = (0.7 * x + 0.3 - 0.5 * t, 0.5 * y + 0.3 + 0.3 * t);
     let ((sa, ca), (sb, cb)) = (a.sin_cos(), b.sin_cos());
     (
         2.0 + sa * cb,
-        -ca * cb - 0.3 * sa * sb,
-        [1.6 * ca * cb, -1.2 * sa * sb],
-        -(1.6 * 1.6 + 1.2 * 1.2) * sa * cb,
+        -0.5 * ca * cb - 0.3 * sa * sb,
+        [0.7 * ca * cb, -0.5 * sa * sb],
+        -(0.7 * 0.7 + 0.5 * 0.5) * sa * cb,
     )
 }
 /// Steady in direction, not in time; free of divergence.
@@ -27,7 +27,7 @@ fn source(x: [f64; 2], t: f64, gamma: f64) -> f64 {
     rate + u[0] * slope[0] + u[1] * slope[1] - gamma * laplacian
 }
 
-/// The error at t = 0.4 after `steps` steps.
+/// φ at t = 0.2 and its error, after `steps` steps.
 fn run(
     family: Family,
     [n, steps]: [usize; 2],
@@ -51,13 +51,13 @@ fn run(
     let mut scalar =
         Scalar::new(&grid, sides, gamma).unwrap().with_convection(scheme).with_diffusion(diffusion);
     scalar.set(|x| wave(x, 0.0).0);
-    let dt = 0.4 / steps as f64;
+    let dt = 0.2 / steps as f64;
     for k in 0..steps {
         let t = k as f64 * dt;
         scalar.source_mut().set(|x| source(x, t, gamma));
         scalar.advance(&exact_velocity(&grid, &metrics, |x| stream(x, t)), t, dt).unwrap();
     }
-    let exact = Field::from_fn(&grid, |x| wave(x, 0.4).0);
+    let exact = Field::from_fn(&grid, |x| wave(x, 0.2).0);
     let error = norms(scalar.field(), &exact, |_| 1.0);
     (scalar.field().clone(), error)
 }
@@ -67,10 +67,15 @@ fn second_order_in_time_and_space() {
     for &family in families(2) {
         for scheme in Convection::ALL {
             // The diffusion that upwinding adds has to be small beside Γ for its error to be of first order.
-            let (order, gamma, n) =
-                if scheme == Convection::Upwind { (1.0, 1.0, 48) } else { (2.0, 0.2, 32) };
+            // One cell must be small beside the box: upwinding adds diffusion, linear upwinding errs by another
+            // multiple of h² in the first cell.
+            let (order, n) = match scheme {
+                Convection::Upwind => (1.0, 64),
+                Convection::LinearUpwind => (2.0, 64),
+                _ => (2.0, 32),
+            };
             let [coarse, fine] =
-                [n, 2 * n].map(|n| run(family, [n, 3 * n], scheme, Diffusion::Auto, gamma).1);
+                [n, 2 * n].map(|n| run(family, [n, 3 * n / 2], scheme, Diffusion::Auto, 0.2).1);
             assert_order(&format!("{family:?} {scheme:?}"), coarse, fine, order);
         }
     }

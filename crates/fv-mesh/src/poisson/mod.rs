@@ -30,12 +30,16 @@ mod column;
 mod direct;
 mod layers;
 mod modes;
+mod poisson_axis;
+mod separable;
 #[cfg(test)]
 mod tests;
 mod transform;
 mod tridiagonal;
 
 pub use direct::DirectPoisson;
+pub use poisson_axis::PoissonAxis;
+pub use separable::SeparablePoisson;
 
 /// What holds at the two ends of an axis. "Low" and "high" order the ends along the axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,9 +50,9 @@ pub enum AxisBounds {
     Neumann,
     /// Zero value at both end faces: the ghost value is minus the inner one.
     Dirichlet,
-    /// Zero gradient at the low face, zero value at the high face; on the last axis only.
+    /// Zero gradient at the low face, zero value at the high face; in [`DirectPoisson`] on the last axis only.
     NeumannDirichlet,
-    /// Zero value at the low face, zero gradient at the high face; on the last axis only.
+    /// Zero value at the low face, zero gradient at the high face; in [`DirectPoisson`] on the last axis only.
     DirichletNeumann,
 }
 
@@ -110,6 +114,17 @@ pub enum PoissonError {
         /// Cells in the box.
         cells: usize,
     },
+    /// The eigenvalues of an axis could not be computed.
+    #[error(
+        "the eigenvalues of axis {axis} with {cells} cells could not be computed; \
+         give its cells widths that differ less from each other"
+    )]
+    Eigen {
+        /// Axis, 0 for x.
+        axis: usize,
+        /// Its cells.
+        cells: usize,
+    },
     /// Infinities or NaN in the right-hand side. The solution was not written.
     #[error(
         "the right-hand side sums to {sum} in layer {low} or {high} (of the last axis): it holds a \
@@ -118,9 +133,9 @@ pub enum PoissonError {
     NonFinite {
         /// One of the two layers that are transformed together.
         low: usize,
-        /// The other one.
+        /// The other one; the same if there is only one.
         high: usize,
-        /// The sum found.
+        /// The sum found, of values or of absolute values.
         sum: f64,
     },
     /// An iterative solver ran out of iterations. The best φ found was written.

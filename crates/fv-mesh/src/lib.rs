@@ -29,6 +29,7 @@ mod grid;
 mod implicit;
 mod kernels;
 mod metrics;
+pub mod linear;
 pub mod poisson;
 mod projection;
 mod statistics;

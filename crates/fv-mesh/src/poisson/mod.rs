@@ -32,6 +32,7 @@ mod layers;
 mod modes;
 mod poisson_axis;
 mod separable;
+pub mod multigrid;
 #[cfg(test)]
 mod tests;
 mod transform;
@@ -137,6 +138,36 @@ pub enum PoissonError {
         high: usize,
         /// The sum found, of values or of absolute values.
         sum: f64,
+    },
+    /// A parameter of a solver that is too small or no number.
+    #[error("the parameter {name} is {value}; it must be finite and at least {least}")]
+    Parameter {
+        /// Its name.
+        name: &'static str,
+        /// What was given; 1 for yes and 0 for no.
+        value: f64,
+        /// Least value allowed.
+        least: f64,
+    },
+    /// A coefficient that makes the operator indefinite or is no number.
+    #[error("the coefficient at face {face} of axis {axis} is {value}; it must be from 0 to 1e30")]
+    Coefficient {
+        /// Axis, 0 for x.
+        axis: usize,
+        /// Number of the face among those normal to the axis, x fastest.
+        face: usize,
+        /// Its coefficient.
+        value: f64,
+    },
+    /// A wrong number of faces.
+    #[error("{length} values were given for the faces of axis {axis} but there are {faces}; give one per face, x fastest")]
+    Faces {
+        /// Axis, 0 for x.
+        axis: usize,
+        /// Values given.
+        length: usize,
+        /// Faces that need one.
+        faces: usize,
     },
     /// An iterative solver ran out of iterations. The best φ found was written.
     #[error(

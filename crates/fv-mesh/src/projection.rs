@@ -18,6 +18,18 @@ pub struct Fluid {
     pub viscosity: f64,
 }
 
+/// An inviscid fluid is allowed; one without mass is not.
+pub(crate) fn check_fluid(fluid: Fluid) -> Result<(), FlowError> {
+    for (name, value, unit) in
+        [("density", fluid.density, "kg/m³"), ("kinematic viscosity", fluid.viscosity, "m²/s")]
+    {
+        if !(value.is_finite() && (value > 0.0 || value == 0.0 && unit == "m²/s")) {
+            return Err(FlowError::Fluid { name, value, unit });
+        }
+    }
+    Ok(())
+}
+
 /// How viscous terms are advanced in time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Diffusion {
@@ -84,14 +96,7 @@ impl<const D: usize> Projection<D> {
     /// [`FlowError`] for sides or fluid properties that make no sense.
     pub fn new(grid: CartesianGrid<D>, sides: [[Side; 2]; D], fluid: Fluid) -> Result<Self, FlowError> {
         let sides = Sides::new(sides)?;
-        for (name, value, unit) in
-            [("density", fluid.density, "kg/m³"), ("kinematic viscosity", fluid.viscosity, "m²/s")]
-        {
-            // An inviscid fluid is allowed; one without mass is not.
-            if !(value.is_finite() && (value > 0.0 || value == 0.0 && unit == "m²/s")) {
-                return Err(FlowError::Fluid { name, value, unit });
-            }
-        }
+        check_fluid(fluid)?;
         let metrics = Metrics::new(&grid, std::array::from_fn(|a| sides.periodic(a)));
         let velocity = Velocity::zeros(&grid, &sides);
         let boundaries = Boundaries::new(&grid, sides, &metrics)?;

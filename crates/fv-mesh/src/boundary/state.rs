@@ -1,4 +1,6 @@
 //! The boundary conditions as the flow algorithms use them: values on every face of the bounded sides.
+mod segregated;
+
 use super::{Lines, Patch, Profile, Side, Sides};
 use crate::metrics::Metrics;
 use crate::{CartesianGrid, Field, FlowError};

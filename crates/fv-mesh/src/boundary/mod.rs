@@ -7,4 +7,4 @@ mod tests;
 
 pub(crate) use lines::Lines;
 pub use side::{Patch, Profile, Side, Sides};
-pub(crate) use state::{Boundaries, FaceKind};
+pub(crate) use state::{Boundaries, FaceKind, PressureFace};

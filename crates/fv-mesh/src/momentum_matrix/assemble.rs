@@ -10,14 +10,29 @@ use pulp::{Arch, Simd, WithSimd};
 /// Rows that one task works on.
 const ROWS: usize = 16;
 
+/// Convection in the matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Implicit {
+    /// First order.
+    Upwind,
+    /// Second order; the rows need not be diagonally dominant.
+    Central,
+    /// Central as far as no coefficient changes its sign, else upwind without viscous terms (Spalding 1972).
+    Hybrid,
+}
+
+const UPWIND: u8 = 0;
+const CENTRAL: u8 = 1;
+const HYBRID: u8 = 2;
+
 /// What the equation of one velocity component is made of. With the velocity u at hand it reads
 ///
 /// ```text
 /// A δ = H(u) − ∂p/∂x_c /ρ + f − (w₀ u + w₁ u₁ + w₂ u₂)
 /// ```
 ///
-/// for the change δ of the component. A holds w₀, viscosity and convection: central if `central`, else upwind. Whatever A
-/// leaves out is in H, so that the flow for which δ vanishes has the order of H.
+/// for the change δ of the component. A holds w₀, viscosity and convection as `implicit` says. Whatever A leaves out is in
+/// H, so that the flow for which δ vanishes has the order of H.
 #[derive(Clone, Copy)]
 pub(crate) struct Terms<'a, const D: usize> {
     pub(crate) velocity: &'a [Field<D>; D],
@@ -34,12 +49,12 @@ pub(crate) struct Terms<'a, const D: usize> {
     pub(crate) force: f64,
     /// 1/(relaxation factor).
     pub(crate) relaxation: f64,
+    pub(crate) kappa: f64,
     /// Kinematic viscosity \[m²/s\].
     pub(crate) viscosity: f64,
     /// Kinematic eddy viscosity at the cell centres \[m²/s\].
     pub(crate) eddy: Option<&'a Field<D>>,
-    /// Convection in A is central.
-    pub(crate) central: bool,
+    pub(crate) implicit: Implicit,
 }
 
 /// Fills the matrix and right-hand side of component `c`. `sums` (two per row) receive Σ (|H| + |∂p/∂x_c|/ρ + |f|) V and
@@ -57,19 +72,21 @@ pub(crate) fn assemble<const D: usize>(
     let (centre, lower, upper) = matrix.parts_mut();
     let part = Part { first: 0, centre, lower, upper, rhs, sums };
     let job = Job { grid, metrics, terms };
-    match (c, terms.central, terms.eddy.is_some()) {
-        (0, false, false) => split::<D, 0, false, false>(job, part),
-        (0, false, true) => split::<D, 0, false, true>(job, part),
-        (0, true, false) => split::<D, 0, true, false>(job, part),
-        (0, true, true) => split::<D, 0, true, true>(job, part),
-        (1, false, false) => split::<D, 1, false, false>(job, part),
-        (1, false, true) => split::<D, 1, false, true>(job, part),
-        (1, true, false) => split::<D, 1, true, false>(job, part),
-        (1, true, true) => split::<D, 1, true, true>(job, part),
-        (_, false, false) => split::<D, 2, false, false>(job, part),
-        (_, false, true) => split::<D, 2, false, true>(job, part),
-        (_, true, false) => split::<D, 2, true, false>(job, part),
-        (_, true, true) => split::<D, 2, true, true>(job, part),
+    match (terms.implicit, terms.eddy.is_some()) {
+        (Implicit::Upwind, false) => of_component::<D, UPWIND, false>(c, job, part),
+        (Implicit::Upwind, true) => of_component::<D, UPWIND, true>(c, job, part),
+        (Implicit::Central, false) => of_component::<D, CENTRAL, false>(c, job, part),
+        (Implicit::Central, true) => of_component::<D, CENTRAL, true>(c, job, part),
+        (Implicit::Hybrid, false) => of_component::<D, HYBRID, false>(c, job, part),
+        (Implicit::Hybrid, true) => of_component::<D, HYBRID, true>(c, job, part),
+    }
+}
+
+fn of_component<const D: usize, const KIND: u8, const EDDY: bool>(c: usize, job: Job<D>, part: Part<D>) {
+    match c {
+        0 => split::<D, 0, KIND, EDDY>(job, part),
+        1 => split::<D, 1, KIND, EDDY>(job, part),
+        _ => split::<D, 2, KIND, EDDY>(job, part),
     }
 }
 
@@ -117,25 +134,25 @@ impl<'a, const D: usize> Part<'a, D> {
     }
 }
 
-fn split<const D: usize, const C: usize, const CENTRAL: bool, const EDDY: bool>(job: Job<D>, part: Part<D>) {
+fn split<const D: usize, const C: usize, const KIND: u8, const EDDY: bool>(job: Job<D>, part: Part<D>) {
     let rows = part.sums.len();
     if rows <= ROWS {
-        return Arch::new().dispatch(Rows::<D, C, CENTRAL, EDDY> { job, part });
+        return Arch::new().dispatch(Rows::<D, C, KIND, EDDY> { job, part });
     }
     let (low, high) = part.split(rows / 2, job.grid.cells()[0]);
     rayon::join(
-        || split::<D, C, CENTRAL, EDDY>(job, low),
-        || split::<D, C, CENTRAL, EDDY>(job, high),
+        || split::<D, C, KIND, EDDY>(job, low),
+        || split::<D, C, KIND, EDDY>(job, high),
     );
 }
 
-struct Rows<'a, const D: usize, const C: usize, const CENTRAL: bool, const EDDY: bool> {
+struct Rows<'a, const D: usize, const C: usize, const KIND: u8, const EDDY: bool> {
     job: Job<'a, D>,
     part: Part<'a, D>,
 }
 
-impl<const D: usize, const C: usize, const CENTRAL: bool, const EDDY: bool> WithSimd
-    for Rows<'_, D, C, CENTRAL, EDDY>
+impl<const D: usize, const C: usize, const KIND: u8, const EDDY: bool> WithSimd
+    for Rows<'_, D, C, KIND, EDDY>
 {
     type Output = ();
     #[inline(always)]
@@ -150,7 +167,7 @@ impl<const D: usize, const C: usize, const CENTRAL: bool, const EDDY: bool> With
                 upper: part.upper.each_mut().map(|u| &mut u[here.clone()]),
                 rhs: &mut part.rhs[here.clone()],
             };
-            part.sums[k] = assemble_row::<D, C, CENTRAL, EDDY>(&job, part.first + k, row);
+            part.sums[k] = assemble_row::<D, C, KIND, EDDY>(&job, part.first + k, row);
         }
     }
 }
@@ -162,6 +179,16 @@ struct Row<'a, const D: usize> {
     rhs: &'a mut [f64],
 }
 
+// Unlike f64::max these are one instruction: no NaN gets here.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+#[inline(always)]
+fn positive(a: f64) -> f64 {
+    larger(a, 0.0)
+}
+
 /// A list of numbers along x, or the one number that holds for the whole row.
 macro_rules! along {
     ($b:expr, $i:expr, $list:expr, $value:expr) => {
@@ -170,7 +197,7 @@ macro_rules! along {
 }
 
 #[inline(always)]
-fn assemble_row<const D: usize, const C: usize, const CENTRAL: bool, const EDDY: bool>(
+fn assemble_row<const D: usize, const C: usize, const KIND: u8, const EDDY: bool>(
     job: &Job<D>,
     r: usize,
     row: Row<D>,
@@ -194,6 +221,9 @@ fn assemble_row<const D: usize, const C: usize, const CENTRAL: bool, const EDDY:
     let here = &terms.velocity[C].data()[o..][..n];
 
     centre.fill(0.0);
+    let extra = &mut rhs[..n];
+    extra.fill(0.0);
+    let kappa = terms.kappa;
     for b in 0..D {
         let (low, up) = (&mut lower[b][..n], &mut upper[b][..n]);
         let u = terms.velocity[b].data();
@@ -245,15 +275,18 @@ fn assemble_row<const D: usize, const C: usize, const CENTRAL: bool, const EDDY:
             };
             let (to_low, to_up) =
                 (nu_down * along!(b, i, down_0, down_b), nu_up * along!(b, i, up_0, up_b));
-            let (in_low, in_up) = if CENTRAL {
-                (0.5 * carry_down, -0.5 * carry_up)
-            } else {
-                (if carry_down > 0.0 { carry_down } else { 0.0 }, if carry_up < 0.0 { -carry_up } else { 0.0 })
+            let (l, u) = match KIND {
+                UPWIND => (to_low + positive(carry_down), to_up + positive(-carry_up)),
+                CENTRAL => (to_low + 0.5 * carry_down, to_up - 0.5 * carry_up),
+                _ => (
+                    larger(to_low + 0.5 * carry_down, positive(carry_down)),
+                    larger(to_up - 0.5 * carry_up, positive(-carry_up)),
+                ),
             };
-            let (l, u) = (to_low + in_low, to_up + in_up);
             low[i] = -l;
             up[i] = -u;
             centre[i] += l + u;
+            extra[i] += kappa * (to_low + to_up) + 0.5 * (carry_down.abs() + carry_up.abs());
         }
     }
 
@@ -269,8 +302,9 @@ fn assemble_row<const D: usize, const C: usize, const CENTRAL: bool, const EDDY:
     let mut sums = [[0.0; 4]; 2];
     for i in 0..n {
         let slope = terms.specific_volume * along!(C, i, gap, gap_c) * (p_up[i] - p_down[i]);
+        let extra = rhs[i];
         rhs[i] = h[i] - slope + force - (w0 * here[i] + w1 * u1[i] + w2 * u2[i]);
-        let diagonal = relaxation * (centre[i] + w0);
+        let diagonal = centre[i] + w0 + (relaxation - 1.0) * extra;
         centre[i] = diagonal;
         // Four sums side by side run faster.
         sums[0][i % 4] += volume[i] * (h[i].abs() + slope.abs() + size);

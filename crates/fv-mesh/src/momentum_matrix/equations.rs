@@ -1,5 +1,5 @@
 //! One momentum equation after the other.
-use super::{MomentumSolver, Terms, add_eddy_stress, assemble, fold_ends};
+use super::{Implicit, MomentumSolver, Terms, add_eddy_stress, assemble, fold_ends};
 use crate::boundary::Boundaries;
 use crate::kernels::{Advance, Momentum};
 use crate::linear::StencilMatrix;
@@ -12,8 +12,9 @@ pub(crate) struct MomentumEquations<const D: usize> {
     metrics: Metrics<D>,
     fluid: Fluid,
     convection: Momentum<D>,
-    /// Convection in the matrix is central.
-    central: bool,
+    implicit: Implicit,
+    /// For the central scheme.
+    central: Implicit,
     /// H, and memory for the sweep that makes it.
     tendency: Field<D>,
     scratch: Field<D>,
@@ -39,16 +40,19 @@ pub(crate) struct Equation<'a, const D: usize> {
 }
 
 impl<const D: usize> MomentumEquations<D> {
+    /// `central` is what the matrix has of the central scheme; of the others it has the upwind part.
     pub(crate) fn new(
         grid: &CartesianGrid<D>,
         metrics: &Metrics<D>,
         fluid: Fluid,
         solver: MomentumSolver,
+        central: Implicit,
     ) -> Self {
         let rows = grid.n_cells() / grid.cells()[0];
         Self {
             convection: Momentum::new(grid, metrics, Convection::Central),
-            central: true,
+            implicit: central,
+            central,
             tendency: Field::zeros(grid),
             scratch: Field::zeros(grid),
             sums: vec![[0.0; 2]; rows],
@@ -62,7 +66,7 @@ impl<const D: usize> MomentumEquations<D> {
 
     pub(crate) fn set_convection(&mut self, scheme: Convection) {
         self.convection = Momentum::new(&self.grid, &self.metrics, scheme);
-        self.central = scheme == Convection::Central;
+        self.implicit = if scheme == Convection::Central { self.central } else { Implicit::Upwind };
     }
 
     /// Makes the equation of component `c`; gives Σ (|H| + |∂p/∂x_c|/ρ + |f|) V and Σ A_PP |u| V.
@@ -94,9 +98,10 @@ impl<const D: usize> MomentumEquations<D> {
             specific_volume: 1.0 / self.fluid.density,
             force: e.force,
             relaxation: 1.0 / e.relaxation,
+            kappa: std::env::var("KAPPA").map(|t| t.parse().unwrap()).unwrap_or(0.1),
             viscosity: self.fluid.viscosity,
             eddy: e.eddy,
-            central: self.central,
+            implicit: self.implicit,
         };
         assemble(&self.grid, &self.metrics, c, terms, matrix, &mut self.rhs, &mut self.sums);
         fold_ends(&self.grid, boundaries, c, matrix);

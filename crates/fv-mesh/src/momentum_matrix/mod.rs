@@ -4,6 +4,7 @@ mod eddy;
 mod equations;
 mod solver;
 
+pub(crate) use assemble::Implicit;
 use assemble::{Terms, assemble};
 use eddy::add_eddy_stress;
 pub(crate) use equations::{Equation, MomentumEquations};
@@ -13,7 +14,7 @@ use crate::boundary::Boundaries;
 use crate::grid::GHOSTS;
 use crate::linear::StencilMatrix;
 use crate::metrics::Metrics;
-use crate::{CartesianGrid, Field, Velocity};
+use crate::{CartesianGrid, Field, FlowError, Velocity};
 
 /// Takes what stands beyond the ends of bounded axes out of the matrix of component `c`: a change δ of the node at an end
 /// comes with δ beyond it if the value there is free and with −δ if it is fixed half way; the nodes on the sides
@@ -49,11 +50,15 @@ pub(crate) fn fold_ends<const D: usize>(
     }
 }
 
-/// Makes the equation of an unknown δ = 0.
-pub(crate) fn pin<const D: usize>(matrix: &mut StencilMatrix<D>, cell: usize, rhs: &mut [f64]) {
+/// Makes the equation of an unknown δ = `change`; its diagonal stays.
+pub(crate) fn pin<const D: usize>(
+    matrix: &mut StencilMatrix<D>,
+    cell: usize,
+    change: f64,
+    rhs: &mut [f64],
+) {
     let (centre, lower, upper) = matrix.parts_mut();
-    centre[cell] = 1.0;
-    rhs[cell] = 0.0;
+    rhs[cell] = centre[cell] * change;
     for list in lower.into_iter().chain(upper) {
         list[cell] = 0.0;
     }
@@ -138,14 +143,31 @@ pub(crate) fn set_velocity<const D: usize>(
     }
 }
 
-/// Number of the dense cell with this storage index; `None` for a ghost.
-pub(crate) fn dense<const D: usize>(grid: &CartesianGrid<D>, index: usize) -> Option<usize> {
+/// Number of the dense cell of a node of component `c` at which the velocity is to be `value`.
+///
+/// # Errors
+/// [`FlowError::Parameter`].
+pub(crate) fn check_node<const D: usize>(
+    grid: &CartesianGrid<D>,
+    c: usize,
+    index: usize,
+    value: f64,
+) -> Result<usize, FlowError> {
+    let fail = |name, value, range| Err(FlowError::Parameter { name, value, range });
+    if c >= D {
+        return fail("the component of a node", c as f64, "below the number of dimensions");
+    }
+    if !value.is_finite() {
+        return fail("the velocity of a node", value, "finite");
+    }
     let (n, s) = (grid.cells(), grid.stride());
-    let mut rest = index;
-    let mut cell = [0; D];
+    let (mut rest, mut cell) = (index, [0; D]);
     for a in (0..D).rev() {
-        cell[a] = (rest / s[a]).checked_sub(GHOSTS).filter(|&i| i < n[a])?;
+        let Some(i) = (rest / s[a]).checked_sub(GHOSTS).filter(|&i| i < n[a]) else {
+            return fail("the index of a node", index as f64, "that of a node, not of a ghost");
+        };
+        cell[a] = i;
         rest %= s[a];
     }
-    Some(grid.index(cell))
+    Ok(grid.index(cell))
 }

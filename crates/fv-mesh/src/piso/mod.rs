@@ -9,7 +9,7 @@ use crate::boundary::Boundaries;
 use crate::kernels;
 use crate::linear::StencilMatrix;
 use crate::metrics::Metrics;
-use crate::momentum_matrix::{self as momentum, Equation, MomentumEquations, MomentumSolver};
+use crate::momentum_matrix::{self as momentum, Equation, Implicit, MomentumEquations, MomentumSolver};
 use crate::poisson::PoissonError;
 use crate::projection::check_fluid;
 use crate::simple::PressureCorrection;
@@ -17,8 +17,10 @@ use crate::statistics::{self, Measure};
 use crate::{CartesianGrid, Convection, Field, FlowError, FlowStatistics, Fluid, Side, Sides, Velocity};
 use interfaces::{Checkpoint, RestartError};
 
-/// A step may be at most so many times longer than the last for BDF2 to look back (it is stable up to 1 + √2).
-const LONGEST_GROWTH: f64 = 2.0;
+/// A step may be at most so many times longer than the last for BDF2 to look back: it is stable up to 1 + √2.
+const LONGEST_RATIO: f64 = 2.4;
+/// By how much steps may grow.
+const GROWTH: f64 = 2.0;
 /// Iterations of a linear solver.
 const ITERATIONS: usize = 100;
 
@@ -69,6 +71,10 @@ pub struct Piso<const D: usize> {
     delta: [Vec<f64>; D],
     zeros: Vec<f64>,
     eddy: Option<Field<D>>,
+    /// Velocity through faces of given pressure over that one cell inside.
+    excess: Vec<f64>,
+    /// Dense number, storage index and velocity of the nodes where it is imposed.
+    imposed: [Vec<(usize, usize, f64)>; D],
     /// Corrections made in this step.
     corrections: usize,
     time: f64,
@@ -94,7 +100,7 @@ impl<const D: usize> Piso<D> {
         let fields = || std::array::from_fn(|_| Field::zeros(&grid));
         let solver = MomentumSolver::new(n, params.momentum_tolerance, ITERATIONS);
         let mut flow = Self {
-            equations: MomentumEquations::new(&grid, &metrics, fluid, solver),
+            equations: MomentumEquations::new(&grid, &metrics, fluid, solver, Implicit::Central),
             matrices: std::array::from_fn(|_| matrix.clone()),
             correction: PressureCorrection::new(
                 &grid,
@@ -112,6 +118,8 @@ impl<const D: usize> Piso<D> {
             delta: std::array::from_fn(|_| vec![0.0; n]),
             zeros: vec![0.0; n],
             eddy: None,
+            excess: Vec::new(),
+            imposed: std::array::from_fn(|_| Vec::new()),
             corrections: 0,
             time: 0.0,
             step: 0,
@@ -167,6 +175,22 @@ impl<const D: usize> Piso<D> {
         }
     }
 
+    /// Imposes the velocity at some nodes in the predictors to come, inside bodies for instance: component, storage index in
+    /// [`Field::data`] and value \[m/s\]. The force that this takes acts within the implicit momentum equations, so the
+    /// fluid around feels it whatever the step; pressure corrections act on these nodes as on others. What was
+    /// imposed before is free again.
+    ///
+    /// # Errors
+    /// [`FlowError::Parameter`] for a component, index or value that makes no sense.
+    pub fn impose(&mut self, nodes: impl IntoIterator<Item = (usize, usize, f64)>) -> Result<(), FlowError> {
+        self.imposed.iter_mut().for_each(Vec::clear);
+        for (c, index, value) in nodes {
+            let cell = momentum::check_node(&self.grid, c, index, value)?;
+            self.imposed[c].push((cell, index, value));
+        }
+        Ok(())
+    }
+
     /// First part of a step: the velocity becomes u*, under the body force `force` per mass \[m/s²\].
     ///
     /// # Errors
@@ -177,10 +201,11 @@ impl<const D: usize> Piso<D> {
             return Err(FlowError::TimeStep { dt, time: self.time });
         }
         let mut r = if self.step > 0 { dt / self.last_dt } else { 0.0 };
-        if r > LONGEST_GROWTH || self.params.time_scheme == TimeScheme::Euler {
+        if r > LONGEST_RATIO || self.params.time_scheme == TimeScheme::Euler {
             r = 0.0;
         }
         let weights = [(1.0 + 2.0 * r) / (1.0 + r), -(1.0 + r), r * r / (1.0 + r)].map(|w| w / dt);
+        self.boundaries.outlet_excess(&self.velocity.components, &mut self.excess);
         std::mem::swap(&mut self.old, &mut self.older);
         for c in 0..D {
             let u = self.velocity.components[c].data_mut();
@@ -207,14 +232,19 @@ impl<const D: usize> Piso<D> {
             if !terms.is_finite() {
                 return Err(self.diverged(dt));
             }
+            for &(cell, index, value) in &self.imposed[c] {
+                let change = value - self.velocity.components[c].data()[index];
+                momentum::pin(matrix, cell, change, &mut self.equations.rhs);
+            }
             self.equations.solver.solve(matrix, &self.equations.rhs, &mut self.delta[c])?;
-            self.correction.set(c, matrix, false, 1.0 / weights[0]);
+            self.correction.set(c, matrix, None, 1.0 / weights[0]);
         }
         for (u, delta) in self.velocity.components.iter_mut().zip(&self.delta) {
             kernels::add_dense(&self.grid, delta, u);
         }
         self.correction.update()?;
         self.boundaries.advance_outlets(&self.metrics, &self.velocity.components, dt)?;
+        self.boundaries.add_outlet_excess(&self.excess);
         self.fill_velocity();
         self.corrections = 0;
         self.last_dt = dt;
@@ -243,7 +273,7 @@ impl<const D: usize> Piso<D> {
         }
         self.fill_velocity();
         self.correction.measure(&self.velocity.components);
-        match self.correction.solve(true) {
+        match self.correction.solve(&mut self.boundaries, &self.pressure, self.fluid.density, true) {
             Err(PoissonError::NonFinite { .. }) => return Err(self.diverged(dt)),
             other => other?,
         };
@@ -309,7 +339,7 @@ impl<const D: usize> Piso<D> {
     /// The longest step \[s\] with Courant number ≤ `courant`, which may be above 1, at most twice the last step. Infinite
     /// for the first step of a fluid at rest.
     pub fn stable_dt(&self, courant: f64) -> f64 {
-        let growth = if self.step > 0 { LONGEST_GROWTH * self.last_dt } else { f64::INFINITY };
+        let growth = if self.step > 0 { GROWTH * self.last_dt } else { f64::INFINITY };
         (courant / self.courant(1.0)).min(growth)
     }
 

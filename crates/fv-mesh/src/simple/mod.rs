@@ -11,7 +11,7 @@ use crate::boundary::Boundaries;
 use crate::kernels;
 use crate::linear::StencilMatrix;
 use crate::metrics::Metrics;
-use crate::momentum_matrix::{self as momentum, Equation, MomentumEquations};
+use crate::momentum_matrix::{self as momentum, Equation, Implicit, MomentumEquations};
 use crate::projection::check_fluid;
 use crate::statistics::Measure;
 use crate::{CartesianGrid, Convection, Field, FlowError, FlowStatistics, Fluid, Side, Sides, Velocity};
@@ -27,11 +27,12 @@ const FLOOR: f64 = 1e-5;
 ///
 /// ```text
 /// A δ = −∇·(u⊗u) + ∇·(2(ν + ν_t)S) − ∇p/ρ + f,   u* = u + δ
-/// ∇·(β ∇φ) = ∇·u*,   u ← u* − β ∇φ,   p ← p + α_p ρ φ
+/// ∇·(β ∇φ) = ∇·u*,   u ← u* − β ∇φ,   p ← p + α_p ρ (φ − (ν + ν_t) ∇·u*)
 /// ```
 ///
-/// A is the implicit momentum operator (viscous terms, upwind or central convection) with its diagonal over the
-/// relaxation factor α_u; β = 1/(A_PP + Σ_N A_PN) (SIMPLEC) or 1/A_PP (SIMPLE). The right-hand side has the full
+/// A is the implicit momentum operator (viscous terms, upwind or hybrid convection) with its diagonal over the
+/// relaxation factor α_u; β = 1/(A_PP + Σ_N A_PN) (SIMPLEC) or 1/A_PP (SIMPLE, whose pressure goes without the last term: Cahouet & Chabat 1988;
+/// with it α_u may be near 1 however viscous the fluid is). The right-hand side has the full
 /// [`Convection`] scheme (deferred correction), so the steady flow has its order, whatever α_u is. An iteration allocates
 /// nothing when it runs inside a rayon pool.
 ///
@@ -64,6 +65,8 @@ pub struct Simple<const D: usize> {
     eddy: Option<Field<D>>,
     /// Dense numbers of the nodes whose velocity is given.
     pinned: [Vec<usize>; D],
+    /// Velocity through faces of given pressure over that one cell inside.
+    excess: Vec<f64>,
     iterations: usize,
 }
 
@@ -82,7 +85,7 @@ impl<const D: usize> Simple<D> {
         let params = SimpleParams::default();
         let n = grid.n_cells();
         let mut flow = Self {
-            equations: MomentumEquations::new(&grid, &metrics, fluid, params.momentum_solver(n)),
+            equations: MomentumEquations::new(&grid, &metrics, fluid, params.momentum_solver(n), Implicit::Hybrid),
             matrix: StencilMatrix::new(grid.cells(), metrics.periodic)?,
             correction: params.pressure_solver(&grid, &metrics, &boundaries)?,
             measure: Measure::new(&grid, &metrics),
@@ -92,6 +95,7 @@ impl<const D: usize> Simple<D> {
             force: [0.0; D],
             eddy: None,
             pinned: std::array::from_fn(|_| Vec::new()),
+            excess: Vec::new(),
             iterations: 0,
             params,
             grid,
@@ -152,16 +156,7 @@ impl<const D: usize> Simple<D> {
     pub fn pin(&mut self, nodes: impl IntoIterator<Item = (usize, usize, f64)>) -> Result<(), FlowError> {
         self.pinned.iter_mut().for_each(Vec::clear);
         for (c, index, value) in nodes {
-            let fail = |name, value, range| Err(FlowError::Parameter { name, value, range });
-            if c >= D {
-                return fail("the component of a pinned node", c as f64, "below the number of dimensions");
-            }
-            let Some(cell) = momentum::dense(&self.grid, index) else {
-                return fail("the index of a pinned node", index as f64, "that of a node, not of a ghost");
-            };
-            if !value.is_finite() {
-                return fail("the velocity of a pinned node", value, "finite");
-            }
+            let cell = momentum::check_node(&self.grid, c, index, value)?;
             self.velocity.components[c].data_mut()[index] = value;
             self.pinned[c].push(cell);
         }
@@ -190,7 +185,7 @@ impl<const D: usize> Simple<D> {
             };
             let [terms, inertia] = self.equations.make(c, equation, &self.boundaries, &mut self.matrix);
             for &cell in &self.pinned[c] {
-                momentum::pin(&mut self.matrix, cell, &mut self.equations.rhs);
+                momentum::pin(&mut self.matrix, cell, 0.0, &mut self.equations.rhs);
             }
             scale = scale.max(terms).max(FLOOR * inertia);
             let rhs = &self.equations.rhs;
@@ -199,7 +194,9 @@ impl<const D: usize> Simple<D> {
                 return Err(self.diverged());
             }
             info.sweeps += self.equations.solver.solve(&self.matrix, rhs, &mut self.delta[c])?;
-            self.correction.set(c, &self.matrix, self.params.consistent, self.single());
+            // Without the convection of what is not yet free of divergence the sum of a row is not below this.
+            let consistent = self.params.consistent.then_some(0.05 * (1.0 - self.params.velocity_relaxation));
+            self.correction.set(c, &self.matrix, consistent, self.single());
             for &cell in &self.pinned[c] {
                 self.correction.freeze(c, cell);
             }
@@ -207,10 +204,12 @@ impl<const D: usize> Simple<D> {
         if scale > 0.0 {
             info.momentum.iter_mut().for_each(|r| *r /= scale);
         }
+        self.boundaries.outlet_excess(&self.velocity.components, &mut self.excess);
         for (u, delta) in self.velocity.components.iter_mut().zip(&self.delta) {
             kernels::add_dense(&self.grid, delta, u);
         }
         self.boundaries.advance_outlets(&self.metrics, &self.velocity.components, LONG)?;
+        self.boundaries.add_outlet_excess(&self.excess);
         self.fill();
         self.correction.update()?;
         let through = momentum::throughput(&self.grid, &self.metrics, &self.velocity.components);
@@ -222,10 +221,13 @@ impl<const D: usize> Simple<D> {
         if self.pinned.iter().any(|p| !p.is_empty()) {
             self.correction.skip_frozen();
         }
-        info.pressure_iterations = self.correction.solve(false)?.iterations;
+        info.pressure_iterations = self.correction.solve(&mut self.boundaries, &self.pressure, self.fluid.density, false)?.iterations;
         self.correction.correct(&mut self.boundaries, &mut self.velocity.components);
         let gain = self.params.pressure_relaxation * self.fluid.density;
-        self.correction.phi.iter_mut().for_each(|phi| *phi *= gain);
+        // The viscous part of what the divergence takes (Cahouet & Chabat 1988); in SIMPLE proper β has it.
+        let viscosity = if self.params.consistent { self.fluid.viscosity } else { 0.0 };
+        let eddy = self.eddy.as_ref().filter(|_| self.params.consistent);
+        self.correction.scale(gain, viscosity, eddy);
         kernels::add_dense(&self.grid, &self.correction.phi, &mut self.pressure);
         self.fill();
         self.iterations += 1;

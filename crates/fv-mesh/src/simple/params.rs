@@ -8,26 +8,26 @@ use crate::{CartesianGrid, FlowError};
 /// Parameters of [`Simple`](super::Simple).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SimpleParams {
-    /// Relaxation factor α_u of the momentum equations, 0 < α_u < 1. Default 0.9; SIMPLE proper wants about 0.7.
+    /// Relaxation factor α_u of the momentum equations, 0 < α_u < 1. Default 0.96; SIMPLE proper wants about 0.7.
     pub velocity_relaxation: f64,
     /// Relaxation factor α_p of the pressure, 0 < α_p ≤ 1. Default 1; SIMPLE proper wants about 0.3.
     pub pressure_relaxation: f64,
     /// SIMPLEC rather than SIMPLE. Default yes.
     pub consistent: bool,
-    /// Residual to which momentum equations are solved in one iteration, relative to that before. Default 0.05.
+    /// Residual to which momentum equations are solved in one iteration, relative to that before. Default 0.1.
     pub momentum_tolerance: f64,
-    /// Residual to which the pressure equation is solved in one iteration, relative to its right-hand side. Default 0.02.
+    /// Residual to which the pressure equation is solved in one iteration, relative to its right-hand side. Default 0.1.
     pub pressure_tolerance: f64,
 }
 
 impl Default for SimpleParams {
     fn default() -> Self {
         Self {
-            velocity_relaxation: 0.9,
+            velocity_relaxation: 0.96,
             pressure_relaxation: 1.0,
             consistent: true,
-            momentum_tolerance: 0.05,
-            pressure_tolerance: 0.02,
+            momentum_tolerance: 0.1,
+            pressure_tolerance: 0.1,
         }
     }
 }

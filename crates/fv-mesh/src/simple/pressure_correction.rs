@@ -1,5 +1,5 @@
 //! The pressure equation of segregated algorithms.
-use crate::boundary::{Boundaries, FaceKind};
+use crate::boundary::{Boundaries, FaceKind, PressureFace};
 use crate::grid::GHOSTS;
 use crate::kernels::{self, layers_per_task, row_place};
 use crate::linear::StencilMatrix;
@@ -23,6 +23,18 @@ pub(crate) struct PressureCorrection<const D: usize> {
     divergence: Vec<f64>,
     /// β of faces of a box one cell wide.
     single: f64,
+    /// At the faces of given pressure, in the order of the sides.
+    given: Vec<Given>,
+}
+
+/// A face on which φ is given.
+struct Given {
+    /// Dense number of the cell before it.
+    cell: usize,
+    phi: f64,
+    /// 2β/width of the cell.
+    conductance: f64,
+    width: f64,
 }
 
 impl<const D: usize> PressureCorrection<D> {
@@ -59,12 +71,12 @@ impl<const D: usize> PressureCorrection<D> {
         let cells = grid.cells();
         let beta = std::array::from_fn(|a| vec![0.0; grid.n_cells() / cells[a] * (cells[a] + 1)]);
         let (phi, divergence) = (vec![0.0; grid.n_cells()], vec![0.0; grid.n_cells()]);
-        Ok(Self { grid: grid.clone(), metrics: metrics.clone(), solver, beta, phi, divergence, single: 0.0 })
+        Ok(Self { grid: grid.clone(), metrics: metrics.clone(), solver, beta, phi, divergence, single: 0.0, given: Vec::new() })
     }
 
-    /// Takes β of component `c` from its matrix: 1/(A_PP + Σ_N A_PN) if `consistent` (Van Doormaal & Raithby 1984), else
-    /// 1/A_PP. `single` is that of a box one cell wide.
-    pub(crate) fn set(&mut self, c: usize, matrix: &StencilMatrix<D>, consistent: bool, single: f64) {
+    /// Takes β of component `c` from its matrix: 1/A_PP, or 1/(A_PP + Σ_N A_PN) (Van Doormaal & Raithby 1984) if
+    /// `consistent`, at most 1/(`consistent` A_PP). `single` is β in a box one cell wide.
+    pub(crate) fn set(&mut self, c: usize, matrix: &StencilMatrix<D>, consistent: Option<f64>, single: f64) {
         let (n, rows) = (self.grid.cells(), self.grid.rows_per_layer());
         let per_task = layers_per_task(n[D - 1]);
         let layer = face_layer(&self.grid, c);
@@ -77,13 +89,14 @@ impl<const D: usize> PressureCorrection<D> {
                 let out = &mut out[face_row(grid, c, r) - first * layer..][..n[0]];
                 let centre = &matrix.centre()[o..][..n[0]];
                 out.copy_from_slice(centre);
-                if consistent {
+                if let Some(part) = consistent {
                     for b in 0..D {
                         let (l, u) = (&matrix.lower(b)[o..][..n[0]], &matrix.upper(b)[o..][..n[0]]);
                         for i in 0..n[0] {
                             out[i] += l[i] + u[i];
                         }
                     }
+                    out.iter_mut().zip(centre).for_each(|(x, centre)| *x = x.max(part * centre));
                 }
                 out.iter_mut().for_each(|x| *x = 1.0 / *x);
             }
@@ -127,7 +140,7 @@ impl<const D: usize> PressureCorrection<D> {
     /// Divergence of the velocity, left inside; gives Σ |∇·u| V.
     pub(crate) fn measure(&mut self, velocity: &[Field<D>; D]) -> f64 {
         let (grid, metrics, n) = (&self.grid, &self.metrics, self.grid.cells()[0]);
-        let rows = kernels_rows(grid.n_cells() / n);
+        let rows = rows_per_task(grid.n_cells() / n);
         self.divergence.par_chunks_mut(n * rows).enumerate().for_each(|(task, out)| {
             for (k, row) in out.chunks_exact_mut(n).enumerate() {
                 kernels::divergence_row(grid, metrics, task * rows + k, velocity, 1.0, row);
@@ -156,8 +169,45 @@ impl<const D: usize> PressureCorrection<D> {
         }
     }
 
-    /// Solves for φ with the divergence measured, from zero. Running out of iterations is an error only if `strict`.
-    pub(crate) fn solve(&mut self, strict: bool) -> Result<PoissonInfo, PoissonError> {
+    /// Solves for φ with the divergence measured, from zero. On faces of given pressure φ is what brings the pressure
+    /// there, extrapolated from two cells, to the one given. Running out of iterations is an error only if `strict`.
+    pub(crate) fn solve(
+        &mut self,
+        boundaries: &mut Boundaries<D>,
+        pressure: &Field<D>,
+        density: f64,
+        strict: bool,
+    ) -> Result<PoissonInfo, PoissonError> {
+        self.given.clear();
+        let (given, p, stride, n) = (&mut self.given, pressure.data(), self.grid.stride(), self.grid.cells());
+        let (metrics, beta, grid) = (&self.metrics, &self.beta, &self.grid);
+        boundaries.each_pressure_face(|face, _| {
+            let PressureFace { axis, upper, cell, index, pressure } = face;
+            let (at, gap) = if upper { (n[axis] - 1, n[axis] - 1) } else { (0, 1) };
+            let nodes = &metrics.axes[axis];
+            let width = nodes.width[GHOSTS + at];
+            let rise = if n[axis] > 1 {
+                let next = if upper { index - stride[axis] } else { index + stride[axis] };
+                0.5 * width * nodes.faces.inv_volume[GHOSTS + gap] * (p[index] - p[next])
+            } else {
+                0.0
+            };
+            let face = face_row(grid, axis, cell / n[0]) + cell % n[0];
+            let beta = beta[axis][face + if upper { n[..axis].iter().product() } else { 0 }];
+            given.push(Given { cell, phi: (pressure - p[index] - rise) / density, conductance: 2.0 * beta / width, width });
+        });
+        for g in &self.given {
+            self.divergence[g.cell] -= g.conductance / g.width * g.phi;
+        }
+        if std::env::var("DBG").is_ok() { for b in &self.beta { println!("beta {:e} {:e}", b.iter().fold(f64::INFINITY, |a, b| a.min(*b)), b.iter().fold(0.0_f64, |a, b| a.max(*b))); } println!("f {:e}", self.divergence.iter().fold(0.0_f64, |a, b| a.max(b.abs()))); }
+        let solved = self.solve_dirichlet(strict);
+        for g in &self.given {
+            self.divergence[g.cell] += g.conductance / g.width * g.phi;
+        }
+        solved
+    }
+
+    fn solve_dirichlet(&mut self, strict: bool) -> Result<PoissonInfo, PoissonError> {
         let (n, f) = (self.grid.cells()[0], &self.divergence);
         let fill = |r: usize, row: &mut [f64]| row.copy_from_slice(&f[r * n..][..n]);
         match self.solver.solve_rows(fill, &mut self.phi, false) {
@@ -168,15 +218,31 @@ impl<const D: usize> PressureCorrection<D> {
         }
     }
 
+    /// φ ← `gain` (φ − (`viscosity` + `eddy`) ∇·u), with the divergence measured last.
+    pub(crate) fn scale(&mut self, gain: f64, viscosity: f64, eddy: Option<&Field<D>>) {
+        let n = self.grid.cells()[0];
+        let rows = self.phi.chunks_exact_mut(n).zip(self.divergence.chunks_exact(n));
+        for (r, (phi, divergence)) in rows.enumerate() {
+            for (phi, divergence) in phi.iter_mut().zip(divergence) {
+                *phi = gain * (*phi - viscosity * divergence);
+            }
+            let Some(eddy) = eddy else { continue };
+            for ((phi, divergence), eddy) in phi.iter_mut().zip(divergence).zip(eddy.row(r)) {
+                *phi -= gain * eddy * divergence;
+            }
+        }
+    }
+
     /// u ← u − β ∇φ, sides included.
     pub(crate) fn correct(&self, boundaries: &mut Boundaries<D>, velocity: &mut [Field<D>; D]) {
         for (c, component) in velocity.iter_mut().enumerate() {
             self.correct_component(c, component);
         }
-        let (grid, n) = (&self.grid, self.grid.cells());
-        boundaries.correct_each(&self.phi, |a, cell, upper| {
-            let low = face_row(grid, a, cell / n[0]) + cell % n[0];
-            self.beta[a][low + if upper { n[..a].iter().product() } else { 0 }]
+        let mut given = self.given.iter();
+        boundaries.each_pressure_face(|face, normal| {
+            let Some(g) = given.next() else { return };
+            let sign = if face.upper { 1.0 } else { -1.0 };
+            *normal += sign * g.conductance * (self.phi[g.cell] - g.phi);
         });
     }
 
@@ -218,7 +284,7 @@ impl<const D: usize> PressureCorrection<D> {
 }
 
 /// Rows that one task works on.
-fn kernels_rows(rows: usize) -> usize {
+fn rows_per_task(rows: usize) -> usize {
     rows.div_ceil(16).max(4)
 }
 

@@ -1,22 +1,56 @@
 //! What segregated algorithms need of the sides.
 use super::{Boundaries, FaceKind};
+use crate::Field;
+
+/// A face through which the velocity follows from a given pressure.
+pub(crate) struct PressureFace {
+    pub(crate) axis: usize,
+    pub(crate) upper: bool,
+    /// Dense number and storage index of the cell before it.
+    pub(crate) cell: usize,
+    pub(crate) index: usize,
+    /// Pressure on it \[Pa\].
+    pub(crate) pressure: f64,
+}
 
 impl<const D: usize> Boundaries<D> {
-    /// The velocity through faces of given pressure follows the correction, u −= β ∂φ/∂n with φ = 0 on the side; `phi` is
-    /// dense, `beta(axis, dense cell, upper)` is that of the face beside a cell.
-    pub(crate) fn correct_each(&mut self, phi: &[f64], beta: impl Fn(usize, usize, bool) -> f64) {
-        for (a, (lines, pair)) in self.lines.iter().zip(&mut self.states).enumerate() {
+    /// Calls `f` with all faces of given pressure, in a fixed order, and the velocity through them, to change.
+    pub(crate) fn each_pressure_face(&mut self, mut f: impl FnMut(PressureFace, &mut f64)) {
+        for (axis, (lines, pair)) in self.lines.iter().zip(&mut self.states).enumerate() {
             let Some(pair) = pair else { continue };
             for (upper, state) in pair.iter_mut().enumerate().filter(|(_, s)| s.has_pressure()) {
-                let sign = [-1.0, 1.0][upper];
-                let width = self.grid.axis(a).width(if upper == 1 { lines.cells - 1 } else { 0 });
-                for l in (0..lines.len()).filter(|&l| lines.inside(l)) {
+                let upper = upper == 1;
+                for (l, o) in lines.starts().enumerate().filter(|&(l, _)| lines.inside(l)) {
                     if state.kind[l] == FaceKind::Pressure {
-                        let cell = lines.end_cell(&self.grid, l, upper == 1);
-                        state.normal[l] += sign * beta(a, cell, upper == 1) * 2.0 * phi[cell] / width;
+                        let cell = lines.end_cell(&self.grid, l, upper);
+                        let index = if upper { o + (lines.cells - 1) * lines.step } else { o };
+                        let pressure = state.pressure[l];
+                        f(PressureFace { axis, upper, cell, index, pressure }, &mut state.normal[l]);
                     }
                 }
             }
         }
+    }
+
+    /// Velocity through each face of given pressure over that one cell inside.
+    pub(crate) fn outlet_excess(&mut self, velocity: &[Field<D>; D], excess: &mut Vec<f64>) {
+        let stride = self.grid.stride();
+        excess.clear();
+        self.each_pressure_face(|face, normal| {
+            excess.push(*normal - velocity[face.axis].data()[face.inside(stride)]);
+        });
+    }
+
+    /// Adds what [`outlet_excess`](Self::outlet_excess) gave to the velocity through these faces.
+    pub(crate) fn add_outlet_excess(&mut self, excess: &[f64]) {
+        let mut excess = excess.iter();
+        self.each_pressure_face(|_, normal| *normal += excess.next().copied().unwrap_or_default());
+    }
+}
+
+impl PressureFace {
+    /// Storage index of the face one cell inside, where the velocity along the axis is an unknown.
+    fn inside<const D: usize>(&self, stride: [usize; D]) -> usize {
+        if self.upper { self.index } else { self.index + stride[self.axis] }
     }
 }

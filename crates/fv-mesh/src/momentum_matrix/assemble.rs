@@ -31,7 +31,8 @@ const HYBRID: u8 = 2;
 /// A δ = H(u) − ∂p/∂x_c /ρ + f − (w₀ u + w₁ u₁ + w₂ u₂)
 /// ```
 ///
-/// for the change δ of the component. A holds w₀, viscosity and convection as `implicit` says. Whatever A leaves out is in
+/// for the change δ of the component. The diagonal of A gains (1/α − 1)(Σ |u_n| A/2 + s ν Σ A/d)/V over the faces of the control
+/// volume, α the relaxation factor and s the viscous share. A holds w₀, viscosity and convection as `implicit` says. Whatever A leaves out is in
 /// H, so that the flow for which δ vanishes has the order of H.
 #[derive(Clone, Copy)]
 pub(crate) struct Terms<'a, const D: usize> {
@@ -49,7 +50,8 @@ pub(crate) struct Terms<'a, const D: usize> {
     pub(crate) force: f64,
     /// 1/(relaxation factor).
     pub(crate) relaxation: f64,
-    pub(crate) kappa: f64,
+    /// Part of the viscous terms that relaxation counts.
+    pub(crate) viscous_share: f64,
     /// Kinematic viscosity \[m²/s\].
     pub(crate) viscosity: f64,
     /// Kinematic eddy viscosity at the cell centres \[m²/s\].
@@ -140,10 +142,7 @@ fn split<const D: usize, const C: usize, const KIND: u8, const EDDY: bool>(job: 
         return Arch::new().dispatch(Rows::<D, C, KIND, EDDY> { job, part });
     }
     let (low, high) = part.split(rows / 2, job.grid.cells()[0]);
-    rayon::join(
-        || split::<D, C, KIND, EDDY>(job, low),
-        || split::<D, C, KIND, EDDY>(job, high),
-    );
+    rayon::join(|| split::<D, C, KIND, EDDY>(job, low), || split::<D, C, KIND, EDDY>(job, high));
 }
 
 struct Rows<'a, const D: usize, const C: usize, const KIND: u8, const EDDY: bool> {
@@ -221,9 +220,10 @@ fn assemble_row<const D: usize, const C: usize, const KIND: u8, const EDDY: bool
     let here = &terms.velocity[C].data()[o..][..n];
 
     centre.fill(0.0);
-    let extra = &mut rhs[..n];
-    extra.fill(0.0);
-    let kappa = terms.kappa;
+    // Rates at which the flow passes by; the right-hand side comes later.
+    let rates = &mut rhs[..n];
+    rates.fill(0.0);
+    let viscous_share = terms.viscous_share;
     for b in 0..D {
         let (low, up) = (&mut lower[b][..n], &mut upper[b][..n]);
         let u = terms.velocity[b].data();
@@ -261,10 +261,8 @@ fn assemble_row<const D: usize, const C: usize, const KIND: u8, const EDDY: bool
                 (along!(C, i, share_0, share_c[0]), along!(C, i, share_1, share_c[1]))
             };
             let inv = along!(b, i, inv_0, inv_b);
-            let (carry_up, carry_down) = (
-                inv * (w0 * above[0][i] + w1 * above[1][i]),
-                inv * (w0 * below[0][i] + w1 * below[1][i]),
-            );
+            let (carry_up, carry_down) =
+                (inv * (w0 * above[0][i] + w1 * above[1][i]), inv * (w0 * below[0][i] + w1 * below[1][i]));
             let (nu_up, nu_down) = if !EDDY {
                 (nu, nu)
             } else if b == C {
@@ -273,8 +271,7 @@ fn assemble_row<const D: usize, const C: usize, const KIND: u8, const EDDY: bool
                 let mid = eddy[0][i] + eddy[1][i];
                 (nu + 0.25 * (mid + eddy[2][i] + eddy[3][i]), nu + 0.25 * (mid + eddy[4][i] + eddy[5][i]))
             };
-            let (to_low, to_up) =
-                (nu_down * along!(b, i, down_0, down_b), nu_up * along!(b, i, up_0, up_b));
+            let (to_low, to_up) = (nu_down * along!(b, i, down_0, down_b), nu_up * along!(b, i, up_0, up_b));
             let (l, u) = match KIND {
                 UPWIND => (to_low + positive(carry_down), to_up + positive(-carry_up)),
                 CENTRAL => (to_low + 0.5 * carry_down, to_up - 0.5 * carry_up),
@@ -286,7 +283,7 @@ fn assemble_row<const D: usize, const C: usize, const KIND: u8, const EDDY: bool
             low[i] = -l;
             up[i] = -u;
             centre[i] += l + u;
-            extra[i] += kappa * (to_low + to_up) + 0.5 * (carry_down.abs() + carry_up.abs());
+            rates[i] += viscous_share * (to_low + to_up) + 0.5 * (carry_down.abs() + carry_up.abs());
         }
     }
 
@@ -302,9 +299,9 @@ fn assemble_row<const D: usize, const C: usize, const KIND: u8, const EDDY: bool
     let mut sums = [[0.0; 4]; 2];
     for i in 0..n {
         let slope = terms.specific_volume * along!(C, i, gap, gap_c) * (p_up[i] - p_down[i]);
-        let extra = rhs[i];
+        let rate = rhs[i];
         rhs[i] = h[i] - slope + force - (w0 * here[i] + w1 * u1[i] + w2 * u2[i]);
-        let diagonal = centre[i] + w0 + (relaxation - 1.0) * extra;
+        let diagonal = centre[i] + w0 + (relaxation - 1.0) * rate;
         centre[i] = diagonal;
         // Four sums side by side run faster.
         sums[0][i % 4] += volume[i] * (h[i].abs() + slope.abs() + size);

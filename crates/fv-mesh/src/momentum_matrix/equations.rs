@@ -36,6 +36,8 @@ pub(crate) struct Equation<'a, const D: usize> {
     pub(crate) force: f64,
     /// Relaxation factor.
     pub(crate) relaxation: f64,
+    /// Part of the viscous terms that relaxation counts.
+    pub(crate) viscous_share: f64,
     pub(crate) eddy: Option<&'a Field<D>>,
 }
 
@@ -98,7 +100,7 @@ impl<const D: usize> MomentumEquations<D> {
             specific_volume: 1.0 / self.fluid.density,
             force: e.force,
             relaxation: 1.0 / e.relaxation,
-            kappa: std::env::var("KAPPA").map(|t| t.parse().unwrap()).unwrap_or(0.1),
+            viscous_share: e.viscous_share,
             viscosity: self.fluid.viscosity,
             eddy: e.eddy,
             implicit: self.implicit,

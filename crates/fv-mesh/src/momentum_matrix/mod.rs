@@ -51,12 +51,7 @@ pub(crate) fn fold_ends<const D: usize>(
 }
 
 /// Makes the equation of an unknown δ = `change`; its diagonal stays.
-pub(crate) fn pin<const D: usize>(
-    matrix: &mut StencilMatrix<D>,
-    cell: usize,
-    change: f64,
-    rhs: &mut [f64],
-) {
+pub(crate) fn pin<const D: usize>(matrix: &mut StencilMatrix<D>, cell: usize, change: f64, rhs: &mut [f64]) {
     let (centre, lower, upper) = matrix.parts_mut();
     rhs[cell] = centre[cell] * change;
     for list in lower.into_iter().chain(upper) {

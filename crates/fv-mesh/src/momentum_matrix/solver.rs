@@ -1,8 +1,6 @@
 //! The linear solver of the momentum equations.
 use crate::FlowError;
-use crate::linear::{
-    BiCgStabParams, BiCgStabScratch, Dilu, LinearError, StencilMatrix, bicgstab,
-};
+use crate::linear::{BiCgStabParams, BiCgStabScratch, Dilu, LinearError, StencilMatrix, bicgstab};
 
 /// BiCGSTAB preconditioned by incomplete factors; its memory serves all components.
 pub(crate) struct MomentumSolver {

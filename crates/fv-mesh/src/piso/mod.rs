@@ -71,8 +71,6 @@ pub struct Piso<const D: usize> {
     delta: [Vec<f64>; D],
     zeros: Vec<f64>,
     eddy: Option<Field<D>>,
-    /// Velocity through faces of given pressure over that one cell inside.
-    excess: Vec<f64>,
     /// Dense number, storage index and velocity of the nodes where it is imposed.
     imposed: [Vec<(usize, usize, f64)>; D],
     /// Corrections made in this step.
@@ -118,7 +116,6 @@ impl<const D: usize> Piso<D> {
             delta: std::array::from_fn(|_| vec![0.0; n]),
             zeros: vec![0.0; n],
             eddy: None,
-            excess: Vec::new(),
             imposed: std::array::from_fn(|_| Vec::new()),
             corrections: 0,
             time: 0.0,
@@ -205,7 +202,6 @@ impl<const D: usize> Piso<D> {
             r = 0.0;
         }
         let weights = [(1.0 + 2.0 * r) / (1.0 + r), -(1.0 + r), r * r / (1.0 + r)].map(|w| w / dt);
-        self.boundaries.outlet_excess(&self.velocity.components, &mut self.excess);
         std::mem::swap(&mut self.old, &mut self.older);
         for c in 0..D {
             let u = self.velocity.components[c].data_mut();
@@ -225,6 +221,7 @@ impl<const D: usize> Piso<D> {
                 weights,
                 force: force[c],
                 relaxation: 1.0,
+                viscous_share: 0.0,
                 eddy: self.eddy.as_ref(),
             };
             let matrix = &mut self.matrices[c];
@@ -242,9 +239,8 @@ impl<const D: usize> Piso<D> {
         for (u, delta) in self.velocity.components.iter_mut().zip(&self.delta) {
             kernels::add_dense(&self.grid, delta, u);
         }
-        self.correction.update()?;
         self.boundaries.advance_outlets(&self.metrics, &self.velocity.components, dt)?;
-        self.boundaries.add_outlet_excess(&self.excess);
+        self.correction.update(&mut self.boundaries, self.fluid.viscosity)?;
         self.fill_velocity();
         self.corrections = 0;
         self.last_dt = dt;
@@ -271,6 +267,7 @@ impl<const D: usize> Piso<D> {
                 kernels::add_dense(&self.grid, h, u);
             }
         }
+        self.boundaries.reset_outlets(&self.velocity.components);
         self.fill_velocity();
         self.correction.measure(&self.velocity.components);
         match self.correction.solve(&mut self.boundaries, &self.pressure, self.fluid.density, true) {

@@ -30,8 +30,9 @@ const FLOOR: f64 = 1e-5;
 /// ∇·(β ∇φ) = ∇·u*,   u ← u* − β ∇φ,   p ← p + α_p ρ (φ − (ν + ν_t) ∇·u*)
 /// ```
 ///
-/// A is the implicit momentum operator (viscous terms, upwind or hybrid convection) with its diagonal over the
-/// relaxation factor α_u; β = 1/(A_PP + Σ_N A_PN) (SIMPLEC) or 1/A_PP (SIMPLE, whose pressure goes without the last term: Cahouet & Chabat 1988;
+/// A is the implicit momentum operator (viscous terms, upwind or hybrid convection). Its diagonal gains
+/// (1/α_u − 1)(Σ |u_n| A/2 + s ν Σ A/d)/V over the faces of a control volume: relaxation by local time steps, on fine grids
+/// as on coarse ones. β = 1/(A_PP + Σ_N A_PN) (SIMPLEC) or 1/A_PP (SIMPLE, whose pressure goes without the last term: Cahouet & Chabat 1988;
 /// with it α_u may be near 1 however viscous the fluid is). The right-hand side has the full
 /// [`Convection`] scheme (deferred correction), so the steady flow has its order, whatever α_u is. An iteration allocates
 /// nothing when it runs inside a rayon pool.
@@ -65,8 +66,6 @@ pub struct Simple<const D: usize> {
     eddy: Option<Field<D>>,
     /// Dense numbers of the nodes whose velocity is given.
     pinned: [Vec<usize>; D],
-    /// Velocity through faces of given pressure over that one cell inside.
-    excess: Vec<f64>,
     iterations: usize,
 }
 
@@ -85,7 +84,13 @@ impl<const D: usize> Simple<D> {
         let params = SimpleParams::default();
         let n = grid.n_cells();
         let mut flow = Self {
-            equations: MomentumEquations::new(&grid, &metrics, fluid, params.momentum_solver(n), Implicit::Hybrid),
+            equations: MomentumEquations::new(
+                &grid,
+                &metrics,
+                fluid,
+                params.momentum_solver(n),
+                Implicit::Hybrid,
+            ),
             matrix: StencilMatrix::new(grid.cells(), metrics.periodic)?,
             correction: params.pressure_solver(&grid, &metrics, &boundaries)?,
             measure: Measure::new(&grid, &metrics),
@@ -95,7 +100,6 @@ impl<const D: usize> Simple<D> {
             force: [0.0; D],
             eddy: None,
             pinned: std::array::from_fn(|_| Vec::new()),
-            excess: Vec::new(),
             iterations: 0,
             params,
             grid,
@@ -181,6 +185,7 @@ impl<const D: usize> Simple<D> {
                 weights: [0.0; 3],
                 force: self.force[c],
                 relaxation: self.params.velocity_relaxation,
+                viscous_share: self.params.viscous_share,
                 eddy: self.eddy.as_ref(),
             };
             let [terms, inertia] = self.equations.make(c, equation, &self.boundaries, &mut self.matrix);
@@ -194,8 +199,9 @@ impl<const D: usize> Simple<D> {
                 return Err(self.diverged());
             }
             info.sweeps += self.equations.solver.solve(&self.matrix, rhs, &mut self.delta[c])?;
-            // Without the convection of what is not yet free of divergence the sum of a row is not below this.
-            let consistent = self.params.consistent.then_some(0.05 * (1.0 - self.params.velocity_relaxation));
+            // Sums of rows do not fall below this but where the velocity is not yet free of divergence.
+            let least = 0.05 * (1.0 - self.params.velocity_relaxation);
+            let consistent = self.params.consistent.then_some(least);
             self.correction.set(c, &self.matrix, consistent, self.single());
             for &cell in &self.pinned[c] {
                 self.correction.freeze(c, cell);
@@ -204,14 +210,12 @@ impl<const D: usize> Simple<D> {
         if scale > 0.0 {
             info.momentum.iter_mut().for_each(|r| *r /= scale);
         }
-        self.boundaries.outlet_excess(&self.velocity.components, &mut self.excess);
         for (u, delta) in self.velocity.components.iter_mut().zip(&self.delta) {
             kernels::add_dense(&self.grid, delta, u);
         }
         self.boundaries.advance_outlets(&self.metrics, &self.velocity.components, LONG)?;
-        self.boundaries.add_outlet_excess(&self.excess);
         self.fill();
-        self.correction.update()?;
+        self.correction.update(&mut self.boundaries, self.fluid.viscosity)?;
         let through = momentum::throughput(&self.grid, &self.metrics, &self.velocity.components);
         let divergence = self.correction.measure(&self.velocity.components);
         if !divergence.is_finite() {
@@ -221,7 +225,10 @@ impl<const D: usize> Simple<D> {
         if self.pinned.iter().any(|p| !p.is_empty()) {
             self.correction.skip_frozen();
         }
-        info.pressure_iterations = self.correction.solve(&mut self.boundaries, &self.pressure, self.fluid.density, false)?.iterations;
+        info.pressure_iterations = self
+            .correction
+            .solve(&mut self.boundaries, &self.pressure, self.fluid.density, false)?
+            .iterations;
         self.correction.correct(&mut self.boundaries, &mut self.velocity.components);
         let gain = self.params.pressure_relaxation * self.fluid.density;
         // The viscous part of what the divergence takes (Cahouet & Chabat 1988); in SIMPLE proper β has it.

@@ -8,34 +8,44 @@ use crate::{CartesianGrid, FlowError};
 /// Parameters of [`Simple`](super::Simple).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SimpleParams {
-    /// Relaxation factor α_u of the momentum equations, 0 < α_u < 1. Default 0.96; SIMPLE proper wants about 0.7.
+    /// Relaxation factor α_u of the momentum equations, 0 < α_u < 1. Default 0.93; SIMPLE proper wants about 0.7.
     pub velocity_relaxation: f64,
+    /// Part s of the viscous terms that relaxation counts, 0 < s ≤ 1. Default 0.1; 1 is Patankar's relaxation, which slows
+    /// down on fine grids.
+    pub viscous_share: f64,
     /// Relaxation factor α_p of the pressure, 0 < α_p ≤ 1. Default 1; SIMPLE proper wants about 0.3.
     pub pressure_relaxation: f64,
     /// SIMPLEC rather than SIMPLE. Default yes.
     pub consistent: bool,
-    /// Residual to which momentum equations are solved in one iteration, relative to that before. Default 0.1.
+    /// Residual to which momentum equations are solved in one iteration, relative to that before. Default 0.3.
     pub momentum_tolerance: f64,
-    /// Residual to which the pressure equation is solved in one iteration, relative to its right-hand side. Default 0.1.
+    /// Residual to which the pressure equation is solved in one iteration, relative to its right-hand side. Default 0.3.
     pub pressure_tolerance: f64,
 }
 
 impl Default for SimpleParams {
     fn default() -> Self {
         Self {
-            velocity_relaxation: 0.96,
+            velocity_relaxation: 0.93,
+            viscous_share: 0.1,
             pressure_relaxation: 1.0,
             consistent: true,
-            momentum_tolerance: 0.1,
-            pressure_tolerance: 0.1,
+            momentum_tolerance: 0.3,
+            pressure_tolerance: 0.3,
         }
     }
 }
 
 impl SimpleParams {
-    /// The parameters of SIMPLE proper: not consistent, α_u = 0.7, α_p = 0.3.
+    /// The parameters of SIMPLE proper: not consistent, α_u = 0.7, s = 1, α_p = 0.3.
     pub fn simple() -> Self {
-        Self { velocity_relaxation: 0.7, pressure_relaxation: 0.3, consistent: false, ..Self::default() }
+        Self {
+            velocity_relaxation: 0.7,
+            viscous_share: 1.0,
+            pressure_relaxation: 0.3,
+            consistent: false,
+            ..Self::default()
+        }
     }
 
     pub(super) fn check(&self) -> Result<(), FlowError> {
@@ -48,6 +58,9 @@ impl SimpleParams {
         if !(self.pressure_relaxation > 0.0 && self.pressure_relaxation <= 1.0) {
             let name = "the relaxation factor of the pressure";
             return fail(name, self.pressure_relaxation, "above 0 and at most 1");
+        }
+        if !(self.viscous_share > 0.0 && self.viscous_share <= 1.0) {
+            return fail("the viscous share", self.viscous_share, "above 0 and at most 1");
         }
         for (name, value) in [
             ("the tolerance of the momentum equations", self.momentum_tolerance),

@@ -9,6 +9,9 @@ use crate::poisson::{AxisBounds, PoissonError, PoissonInfo};
 use crate::{CartesianGrid, Field, FlowError};
 use rayon::prelude::*;
 
+/// Least rate at which outlets answer, relative to that of the velocity inside.
+const SLOWEST: f64 = 1e-3;
+
 /// Solves ∇·(β ∇φ) = ∇·u for the correction u ← u − β ∇φ, with β \[s\] on the faces: what a component answers to a
 /// kinematic pressure gradient.
 pub(crate) struct PressureCorrection<const D: usize> {
@@ -71,7 +74,16 @@ impl<const D: usize> PressureCorrection<D> {
         let cells = grid.cells();
         let beta = std::array::from_fn(|a| vec![0.0; grid.n_cells() / cells[a] * (cells[a] + 1)]);
         let (phi, divergence) = (vec![0.0; grid.n_cells()], vec![0.0; grid.n_cells()]);
-        Ok(Self { grid: grid.clone(), metrics: metrics.clone(), solver, beta, phi, divergence, single: 0.0, given: Vec::new() })
+        Ok(Self {
+            grid: grid.clone(),
+            metrics: metrics.clone(),
+            solver,
+            beta,
+            phi,
+            divergence,
+            single: 0.0,
+            given: Vec::new(),
+        })
     }
 
     /// Takes β of component `c` from its matrix: 1/A_PP, or 1/(A_PP + Σ_N A_PN) (Van Doormaal & Raithby 1984) if
@@ -126,13 +138,23 @@ impl<const D: usize> PressureCorrection<D> {
         self.beta[c][face] = 0.0;
     }
 
-    /// Hands β to the solver.
-    pub(crate) fn update(&mut self) -> Result<(), FlowError> {
+    /// Hands β to the solver. On faces of given pressure it is w/(|u| + 2ν/w), w the width of the cell before them: so the
+    /// pressure p there, extrapolated from inside, and the velocity u through them settle where
+    /// p − p_given = ½ρ(|u| + 2ν/w)(u − u_inside), whatever the relaxation or step.
+    pub(crate) fn update(&mut self, boundaries: &mut Boundaries<D>, viscosity: f64) -> Result<(), FlowError> {
         for c in 0..D {
             if !self.metrics.periodic[c] {
                 self.close(c);
             }
         }
+        let (grid, metrics, beta, n) = (&self.grid, &self.metrics, &mut self.beta, self.grid.cells());
+        boundaries.each_pressure_face(|face, normal| {
+            let PressureFace { axis, upper, cell, .. } = face;
+            let width = metrics.axes[axis].width[GHOSTS + if upper { n[axis] - 1 } else { 0 }];
+            let beta = &mut beta[axis][end_face(grid, axis, cell, upper)];
+            // The last term only matters to an inviscid fluid at rest.
+            *beta = width / (normal.abs() + 2.0 * viscosity / width + SLOWEST * width / *beta);
+        });
         let beta = self.beta.each_ref().map(|b| Some(b.as_slice()));
         Ok(self.solver.multigrid().set_coefficients(beta)?)
     }
@@ -192,14 +214,17 @@ impl<const D: usize> PressureCorrection<D> {
             } else {
                 0.0
             };
-            let face = face_row(grid, axis, cell / n[0]) + cell % n[0];
-            let beta = beta[axis][face + if upper { n[..axis].iter().product() } else { 0 }];
-            given.push(Given { cell, phi: (pressure - p[index] - rise) / density, conductance: 2.0 * beta / width, width });
+            let beta = beta[axis][end_face(grid, axis, cell, upper)];
+            given.push(Given {
+                cell,
+                phi: (pressure - p[index] - rise) / density,
+                conductance: 2.0 * beta / width,
+                width,
+            });
         });
         for g in &self.given {
             self.divergence[g.cell] -= g.conductance / g.width * g.phi;
         }
-        if std::env::var("DBG").is_ok() { for b in &self.beta { println!("beta {:e} {:e}", b.iter().fold(f64::INFINITY, |a, b| a.min(*b)), b.iter().fold(0.0_f64, |a, b| a.max(*b))); } println!("f {:e}", self.divergence.iter().fold(0.0_f64, |a, b| a.max(b.abs()))); }
         let solved = self.solve_dirichlet(strict);
         for g in &self.given {
             self.divergence[g.cell] += g.conductance / g.width * g.phi;
@@ -281,6 +306,13 @@ impl<const D: usize> PressureCorrection<D> {
             }
         });
     }
+}
+
+/// Place of the face below or above a dense cell among the faces of component `c`.
+fn end_face<const D: usize>(grid: &CartesianGrid<D>, c: usize, cell: usize, upper: bool) -> usize {
+    let n = grid.cells();
+    let low = face_row(grid, c, cell / n[0]) + cell % n[0];
+    if upper { low + n[..c].iter().product::<usize>() } else { low }
 }
 
 /// Rows that one task works on.

@@ -32,19 +32,12 @@ impl<const D: usize> Boundaries<D> {
         }
     }
 
-    /// Velocity through each face of given pressure over that one cell inside.
-    pub(crate) fn outlet_excess(&mut self, velocity: &[Field<D>; D], excess: &mut Vec<f64>) {
+    /// Velocity through the faces of given pressure as one cell inside.
+    pub(crate) fn reset_outlets(&mut self, velocity: &[Field<D>; D]) {
         let stride = self.grid.stride();
-        excess.clear();
         self.each_pressure_face(|face, normal| {
-            excess.push(*normal - velocity[face.axis].data()[face.inside(stride)]);
+            *normal = velocity[face.axis].data()[face.inside(stride)];
         });
-    }
-
-    /// Adds what [`outlet_excess`](Self::outlet_excess) gave to the velocity through these faces.
-    pub(crate) fn add_outlet_excess(&mut self, excess: &[f64]) {
-        let mut excess = excess.iter();
-        self.each_pressure_face(|_, normal| *normal += excess.next().copied().unwrap_or_default());
     }
 }
 

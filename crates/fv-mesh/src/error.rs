@@ -103,6 +103,35 @@ pub enum FlowError {
         /// Why.
         source: interfaces::SolveError,
     },
+    /// A parameter of an algorithm makes no sense.
+    #[error("{name} is {value}; it must be {range}")]
+    Parameter {
+        /// Which parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        range: &'static str,
+    },
+    /// A steady solution was not reached.
+    #[error(
+        "after {iterations} iterations the residuals are {momentum:.3e} (momentum) and {continuity:.3e} (continuity), above \
+         the tolerance {tolerance:.3e}; allow more iterations, relax more (a smaller factor), or compute the flow in time if \
+         it is not steady"
+    )]
+    NotSteady {
+        /// Iterations made.
+        iterations: usize,
+        /// Largest residual of the momentum equations.
+        momentum: f64,
+        /// Residual of the continuity equation.
+        continuity: f64,
+        /// What was asked for.
+        tolerance: f64,
+    },
+    /// A linear solver could not work.
+    #[error(transparent)]
+    Linear(#[from] crate::linear::LinearError),
     /// The pressure solver could not work.
     #[error(transparent)]
     Poisson(PoissonError),

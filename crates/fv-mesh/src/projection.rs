@@ -19,6 +19,18 @@ pub struct Fluid {
     pub viscosity: f64,
 }
 
+/// An inviscid fluid is allowed; one without mass is not.
+pub(crate) fn check_fluid(fluid: Fluid) -> Result<(), FlowError> {
+    for (name, value, unit) in
+        [("density", fluid.density, "kg/m³"), ("kinematic viscosity", fluid.viscosity, "m²/s")]
+    {
+        if !(value.is_finite() && (value > 0.0 || value == 0.0 && unit == "m²/s")) {
+            return Err(FlowError::Fluid { name, value, unit });
+        }
+    }
+    Ok(())
+}
+
 /// How viscous terms are advanced in time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Diffusion {
@@ -100,14 +112,7 @@ impl<const D: usize> Projection<D> {
     /// [`FlowError`] for sides or fluid properties that make no sense.
     pub fn new(grid: CartesianGrid<D>, sides: [[Side; 2]; D], fluid: Fluid) -> Result<Self, FlowError> {
         let sides = Sides::new(sides)?;
-        for (name, value, unit) in
-            [("density", fluid.density, "kg/m³"), ("kinematic viscosity", fluid.viscosity, "m²/s")]
-        {
-            // An inviscid fluid is allowed; one without mass is not.
-            if !(value.is_finite() && (value > 0.0 || value == 0.0 && unit == "m²/s")) {
-                return Err(FlowError::Fluid { name, value, unit });
-            }
-        }
+        check_fluid(fluid)?;
         let metrics = Metrics::new(&grid, std::array::from_fn(|a| sides.periodic(a)));
         let velocity = Velocity::zeros(&grid, &sides);
         let boundaries = Boundaries::new(&grid, sides, &metrics)?;
@@ -465,17 +470,7 @@ impl<const D: usize> Projection<D> {
     }
 
     fn diverged(&self, dt: f64) -> FlowError {
-        let (mut cell, mut top) = ([0; 3], -1.0);
-        for c in 0..D {
-            for (i, u) in self.velocity.components[c].values().enumerate() {
-                let size = if u.is_finite() { u.abs() } else { f64::INFINITY };
-                if size > top {
-                    top = size;
-                    let at = self.grid.cell(i);
-                    cell = std::array::from_fn(|a| if a < D { at[a] } else { 0 });
-                }
-            }
-        }
+        let cell = statistics::worst_cell(&self.velocity.components);
         FlowError::Diverged { step: self.step, time: self.time, dt, courant: self.courant(dt), cell }
     }
 

@@ -37,6 +37,21 @@ fn lanes(n: usize, mut term: impl FnMut(usize) -> f64) -> f64 {
     ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]))
 }
 
+/// The cell (i, j, k) where a component is not finite, or else largest.
+pub(crate) fn worst_cell<const D: usize>(velocity: &[Field<D>; D]) -> [usize; 3] {
+    let (mut cell, mut top) = ([0; 3], -1.0);
+    for u in velocity {
+        for (i, u) in u.values().enumerate() {
+            let size = if u.is_finite() { u.abs() } else { f64::INFINITY };
+            if size > top {
+                top = size;
+                cell[..D].copy_from_slice(&velocity[0].grid().cell(i));
+            }
+        }
+    }
+    cell
+}
+
 /// Are all cells' values finite?
 pub(crate) fn is_finite<const D: usize>(u: &Field<D>) -> bool {
     // 0·x is 0 for every finite x and NaN for the others.

@@ -5,4 +5,4 @@ mod state;
 
 pub(crate) use lines::Lines;
 pub use side::{Patch, Profile, Side, Sides};
-pub(crate) use state::{Boundaries, FaceKind, extrapolation, face_centre, wrap};
+pub(crate) use state::{Boundaries, FaceKind, PressureFace, extrapolation, face_centre, wrap};

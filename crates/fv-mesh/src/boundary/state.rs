@@ -1,4 +1,8 @@
 //! The boundary conditions as the flow algorithms use them: values on every face of the bounded sides.
+mod segregated;
+
+pub(crate) use segregated::PressureFace;
+
 use super::{Lines, Patch, Profile, Side, Sides};
 use crate::grid::GHOSTS;
 use crate::metrics::Metrics;

@@ -128,7 +128,7 @@ fn solution_error<const D: usize>(family: Family, kind: Kind, n: usize) -> [f64;
     conjugate_gradient(&a, &mut jacobi, &b, &mut x, &mut CgScratch::new(cells), &params).unwrap();
     let mut values = x.iter();
     let mut found = Field::zeros(&grid);
-        found.set(|_| *values.next().unwrap());
+    found.set(|_| *values.next().unwrap());
     norms(&found, &Field::from_fn(&grid, |x| value(place(x), D)), |_| 1.0)
 }
 

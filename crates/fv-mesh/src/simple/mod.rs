@@ -1,0 +1,317 @@
+//! The steady flow algorithm.
+mod params;
+mod pressure_correction;
+#[cfg(test)]
+mod tests;
+
+pub use params::{SimpleInfo, SimpleParams};
+pub(crate) use pressure_correction::PressureCorrection;
+
+use crate::boundary::Boundaries;
+use crate::kernels;
+use crate::linear::StencilMatrix;
+use crate::metrics::Metrics;
+use crate::momentum_matrix::{self as momentum, Equation, Implicit, MomentumEquations};
+use crate::projection::check_fluid;
+use crate::statistics;
+use crate::statistics::Measure;
+use crate::{CartesianGrid, Convection, Field, FlowError, FlowStatistics, Fluid, Side, Sides, Velocity};
+
+/// Step \[s\] that outlets are moved on by in one iteration: they follow the flow inside at once.
+const LONG: f64 = 1e30;
+/// Residuals are relative to the sum of the terms of an equation, or to this part of Σ A_PP |u| V if that is more (where
+/// all terms vanish, as in a uniform shear flow).
+const FLOOR: f64 = 1e-5;
+
+/// Steady incompressible flow by SIMPLEC (Van Doormaal & Raithby 1984) or SIMPLE (Patankar & Spalding 1972) on a
+/// staggered grid:
+///
+/// ```text
+/// A δ = −∇·(u⊗u) + ∇·(2(ν + ν_t)S) − ∇p/ρ + f,   u* = u + δ
+/// ∇·(β ∇φ) = ∇·u*,   u ← u* − β ∇φ,   p ← p + α_p ρ (φ − (ν + ν_t) ∇·u*)
+/// ```
+///
+/// A is the implicit momentum operator (viscous terms, upwind or hybrid convection). Its diagonal gains
+/// (1/α_u − 1)(Σ |u_n| A/2 + s ν Σ A/d)/V over the faces of a control volume: relaxation by local time steps, on fine grids
+/// as on coarse ones. β = 1/(A_PP + Σ_N A_PN) (SIMPLEC) or 1/A_PP (SIMPLE, whose pressure goes without the last term: Cahouet & Chabat 1988;
+/// with it α_u may be near 1 however viscous the fluid is). The right-hand side has the full
+/// [`Convection`] scheme (deferred correction), so the steady flow has its order, whatever α_u is. An iteration allocates
+/// nothing when it runs inside a rayon pool.
+///
+/// ```
+/// use fv_mesh::{CartesianGrid, Fluid, Side, Simple};
+/// // Plane Poiseuille flow: mean velocity f h²/(12 ν).
+/// let grid = CartesianGrid::new([4, 16], [0.25, 1.0])?;
+/// let sides = [Side::Periodic.both(), Side::WALL.both()];
+/// let mut flow = Simple::new(grid, sides, Fluid { density: 1.0, viscosity: 0.1 })?;
+/// flow.set_force([1.2, 0.0]);
+/// flow.solve(200, 1e-9)?;
+/// let mean = flow.statistics().volume_flow.x / 0.25;
+/// assert!((mean - 1.0).abs() < 0.01);
+/// # Ok::<(), fv_mesh::FlowError>(())
+/// ```
+pub struct Simple<const D: usize> {
+    grid: CartesianGrid<D>,
+    metrics: Metrics<D>,
+    boundaries: Boundaries<D>,
+    fluid: Fluid,
+    params: SimpleParams,
+    equations: MomentumEquations<D>,
+    matrix: StencilMatrix<D>,
+    correction: PressureCorrection<D>,
+    measure: Measure<D>,
+    velocity: Velocity<D>,
+    pressure: Field<D>,
+    delta: [Vec<f64>; D],
+    force: [f64; D],
+    eddy: Option<Field<D>>,
+    /// Dense numbers of the nodes whose velocity is given.
+    pinned: [Vec<usize>; D],
+    iterations: usize,
+}
+
+impl<const D: usize> Simple<D> {
+    /// Fluid at rest in a box; `sides[axis]` are its lower and upper side. Inlets that change in time stay as they are at
+    /// time 0.
+    ///
+    /// # Errors
+    /// [`FlowError`] for sides or fluid properties that make no sense.
+    pub fn new(grid: CartesianGrid<D>, sides: [[Side; 2]; D], fluid: Fluid) -> Result<Self, FlowError> {
+        let sides = Sides::new(sides)?;
+        check_fluid(fluid)?;
+        let metrics = Metrics::new(&grid, std::array::from_fn(|a| sides.periodic(a)));
+        let velocity = Velocity::zeros(&grid, &sides);
+        let boundaries = Boundaries::new(&grid, sides, &metrics)?;
+        let params = SimpleParams::default();
+        let n = grid.n_cells();
+        let mut flow = Self {
+            equations: MomentumEquations::new(
+                &grid,
+                &metrics,
+                fluid,
+                params.momentum_solver(n),
+                Implicit::Hybrid,
+            ),
+            matrix: StencilMatrix::new(grid.cells(), metrics.periodic)?,
+            correction: params.pressure_solver(&grid, &metrics, &boundaries)?,
+            measure: Measure::new(&grid, &metrics),
+            velocity,
+            pressure: Field::zeros(&grid),
+            delta: std::array::from_fn(|_| vec![0.0; n]),
+            force: [0.0; D],
+            eddy: None,
+            pinned: std::array::from_fn(|_| Vec::new()),
+            iterations: 0,
+            params,
+            grid,
+            metrics,
+            boundaries,
+            fluid,
+        };
+        flow.fill();
+        Ok(flow)
+    }
+
+    /// The same with another convection scheme than [`Convection::Central`].
+    #[must_use]
+    pub fn with_convection(mut self, scheme: Convection) -> Self {
+        self.equations.set_convection(scheme);
+        self
+    }
+
+    /// The same with these parameters.
+    ///
+    /// # Errors
+    /// [`FlowError::Parameter`].
+    pub fn with_params(mut self, params: SimpleParams) -> Result<Self, FlowError> {
+        params.check()?;
+        self.params = params;
+        self.equations.solver = params.momentum_solver(self.grid.n_cells());
+        self.correction = params.pressure_solver(&self.grid, &self.metrics, &self.boundaries)?;
+        Ok(self)
+    }
+
+    /// Sets the first guess of the velocity to `u(x)` \[m/s\], outlets included; walls and inlets keep theirs.
+    pub fn set_velocity(&mut self, u: impl Fn([f64; D]) -> [f64; D]) {
+        momentum::set_velocity(&self.grid, &self.metrics, &mut self.velocity, &u);
+        self.boundaries.start(&self.metrics, u);
+        self.fill();
+    }
+
+    /// Sets the body force per mass \[m/s²\].
+    pub fn set_force(&mut self, force: [f64; D]) {
+        self.force = force;
+    }
+
+    /// Sets the kinematic eddy viscosity ν_t \[m²/s\] at the cell centres; `None` takes it away. Ghost values are used as
+    /// they are: half the sum of a ghost and the cell inside is ν_t on the side.
+    pub fn set_eddy_viscosity(&mut self, eddy: Option<&Field<D>>) {
+        match (&mut self.eddy, eddy) {
+            (Some(own), Some(eddy)) => own.data_mut().copy_from_slice(eddy.data()),
+            (own, eddy) => *own = eddy.cloned(),
+        }
+    }
+
+    /// Gives the velocity at some nodes, inside bodies at rest for instance: component, storage index in
+    /// [`Field::data`] and value \[m/s\]. What was pinned before is free again. Neither the momentum equation nor the
+    /// pressure changes these velocities.
+    ///
+    /// # Errors
+    /// [`FlowError::Parameter`] for a component, index or value that makes no sense.
+    pub fn pin(&mut self, nodes: impl IntoIterator<Item = (usize, usize, f64)>) -> Result<(), FlowError> {
+        self.pinned.iter_mut().for_each(Vec::clear);
+        for (c, index, value) in nodes {
+            let cell = momentum::check_node(&self.grid, c, index, value)?;
+            self.velocity.components[c].data_mut()[index] = value;
+            self.pinned[c].push(cell);
+        }
+        self.fill();
+        Ok(())
+    }
+
+    /// One iteration. The residuals told are those of the flow before it (momentum) and of its predicted velocity
+    /// (continuity).
+    ///
+    /// # Errors
+    /// [`FlowError::Diverged`] when the velocity is not finite; [`FlowError::MassBalance`] if what enters cannot leave.
+    pub fn iterate(&mut self) -> Result<SimpleInfo, FlowError> {
+        let mut info = SimpleInfo::default();
+        let mut scale = 0.0_f64;
+        for c in 0..D {
+            let u = &self.velocity.components;
+            let equation = Equation {
+                velocity: u,
+                pressure: &self.pressure,
+                history: [&u[c], &u[c]],
+                weights: [0.0; 3],
+                force: self.force[c],
+                relaxation: self.params.velocity_relaxation,
+                viscous_share: self.params.viscous_share,
+                eddy: self.eddy.as_ref(),
+            };
+            let [terms, inertia] = self.equations.make(c, equation, &self.boundaries, &mut self.matrix);
+            for &cell in &self.pinned[c] {
+                momentum::pin(&mut self.matrix, cell, 0.0, &mut self.equations.rhs);
+            }
+            scale = scale.max(terms).max(FLOOR * inertia);
+            let rhs = &self.equations.rhs;
+            info.momentum[c] = momentum::absolute_sum(&self.grid, &self.metrics, Some(c), rhs);
+            if !info.momentum[c].is_finite() {
+                return Err(self.diverged());
+            }
+            info.sweeps += self.equations.solver.solve(&self.matrix, rhs, &mut self.delta[c])?;
+            // Sums of rows do not fall below this but where the velocity is not yet free of divergence.
+            let least = 0.05 * (1.0 - self.params.velocity_relaxation);
+            let consistent = self.params.consistent.then_some(least);
+            self.correction.set(c, &self.matrix, consistent, self.single());
+            for &cell in &self.pinned[c] {
+                self.correction.freeze(c, cell);
+            }
+        }
+        if scale > 0.0 {
+            info.momentum.iter_mut().for_each(|r| *r /= scale);
+        }
+        for (u, delta) in self.velocity.components.iter_mut().zip(&self.delta) {
+            kernels::add_dense(&self.grid, delta, u);
+        }
+        self.boundaries.advance_outlets(
+            &self.metrics,
+            &self.velocity.components,
+            LONG,
+            self.fluid.viscosity,
+        )?;
+        self.fill();
+        self.correction.update(&mut self.boundaries, self.fluid.viscosity)?;
+        let through = momentum::throughput(&self.grid, &self.metrics, &self.velocity.components);
+        let divergence = self.correction.measure(&self.velocity.components);
+        if !divergence.is_finite() {
+            return Err(self.diverged());
+        }
+        info.continuity = if through > 0.0 { divergence / through } else { 0.0 };
+        if self.pinned.iter().any(|p| !p.is_empty()) {
+            self.correction.skip_frozen();
+        }
+        info.pressure_iterations = self
+            .correction
+            .solve(&mut self.boundaries, &self.pressure, self.fluid.density, false)?
+            .iterations;
+        self.correction.correct(&mut self.boundaries, &mut self.velocity.components);
+        let gain = self.params.pressure_relaxation * self.fluid.density;
+        // The viscous part of what the divergence takes (Cahouet & Chabat 1988); in SIMPLE proper β has it.
+        let viscosity = if self.params.consistent { self.fluid.viscosity } else { 0.0 };
+        let eddy = self.eddy.as_ref().filter(|_| self.params.consistent);
+        self.correction.scale(gain, viscosity, eddy);
+        kernels::add_dense(&self.grid, &self.correction.phi, &mut self.pressure);
+        self.fill();
+        self.iterations += 1;
+        info.iterations = self.iterations;
+        Ok(info)
+    }
+
+    /// Iterates until all residuals are at most `tolerance`.
+    ///
+    /// # Errors
+    /// [`FlowError::NotSteady`] with the residuals after `max_iterations`; else those of [`iterate`](Self::iterate).
+    pub fn solve(&mut self, max_iterations: usize, tolerance: f64) -> Result<SimpleInfo, FlowError> {
+        let mut info = SimpleInfo { continuity: f64::INFINITY, ..SimpleInfo::default() };
+        for _ in 0..max_iterations {
+            info = self.iterate()?;
+            if info.largest() <= tolerance {
+                return Ok(info);
+            }
+        }
+        let momentum = info.momentum.into_iter().fold(0.0, f64::max);
+        let SimpleInfo { iterations, continuity, .. } = info;
+        Err(FlowError::NotSteady { iterations, momentum, continuity, tolerance })
+    }
+
+    /// β where a box is one cell wide between two openings.
+    fn single(&self) -> f64 {
+        let stiffness: f64 = (0..D).map(|a| self.grid.axis(a).narrowest().powi(-2)).sum();
+        let rate = 4.0 * self.fluid.viscosity * stiffness;
+        if rate > 0.0 { 1.0 / rate } else { 0.0 }
+    }
+
+    fn fill(&mut self) {
+        for c in 0..D {
+            self.boundaries.fill_velocity(c, &mut self.velocity.components[c]);
+        }
+        self.boundaries.fill_pressure(&mut self.pressure);
+    }
+
+    fn diverged(&self) -> FlowError {
+        let cell = statistics::worst_cell(&self.velocity.components);
+        FlowError::Diverged { step: self.iterations as u64, time: 0.0, dt: 0.0, courant: 0.0, cell }
+    }
+
+    /// Sums and extremes of the velocity, as it is now.
+    pub fn statistics(&mut self) -> FlowStatistics {
+        let fluid = [self.fluid.density, self.fluid.viscosity];
+        let scratch = &mut self.equations.rhs;
+        self.measure.of(&self.grid, &self.metrics, &self.velocity.components, fluid, scratch)
+    }
+    /// The grid.
+    pub fn grid(&self) -> &CartesianGrid<D> {
+        &self.grid
+    }
+    /// The sides of the box.
+    pub fn sides(&self) -> &Sides<D> {
+        &self.boundaries.sides
+    }
+    /// The fluid.
+    pub fn fluid(&self) -> Fluid {
+        self.fluid
+    }
+    /// The velocity \[m/s\].
+    pub fn velocity(&self) -> &Velocity<D> {
+        &self.velocity
+    }
+    /// The pressure at the cell centres \[Pa\], without the hydrostatic part.
+    pub fn pressure(&self) -> &Field<D> {
+        &self.pressure
+    }
+    /// Iterations made.
+    pub fn iterations(&self) -> usize {
+        self.iterations
+    }
+}

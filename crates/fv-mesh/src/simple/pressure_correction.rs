@@ -1,0 +1,342 @@
+//! The pressure equation of segregated algorithms.
+use crate::boundary::{Boundaries, FaceKind, PressureFace};
+use crate::grid::GHOSTS;
+use crate::kernels::{self, layers_per_task, row_place};
+use crate::linear::StencilMatrix;
+use crate::metrics::Metrics;
+use crate::poisson::PoissonAxis;
+use crate::poisson::multigrid::{MultigridCg, MultigridParams};
+use crate::poisson::{AxisBounds, PoissonError, PoissonInfo};
+use crate::{CartesianGrid, Field, FlowError};
+use rayon::prelude::*;
+
+/// Least rate at which outlets answer, relative to that of the velocity inside.
+const SLOWEST: f64 = 1e-3;
+
+/// Solves ∇·(β ∇φ) = ∇·u for the correction u ← u − β ∇φ, with β \[s\] on the faces: what a component answers to a
+/// kinematic pressure gradient.
+pub(crate) struct PressureCorrection<const D: usize> {
+    grid: CartesianGrid<D>,
+    metrics: Metrics<D>,
+    solver: MultigridCg<D>,
+    /// On the n + 1 faces along the component's axis, x fastest.
+    beta: [Vec<f64>; D],
+    /// φ \[m²/s²\], dense.
+    pub(crate) phi: Vec<f64>,
+    /// ∇·u, dense.
+    divergence: Vec<f64>,
+    /// β of faces of a box one cell wide.
+    single: f64,
+    /// At the faces of given pressure, in the order of the sides.
+    given: Vec<Given>,
+}
+
+/// A face on which φ is given.
+struct Given {
+    /// Dense number of the cell before it.
+    cell: usize,
+    phi: f64,
+    /// 2β/width of the cell.
+    conductance: f64,
+    width: f64,
+}
+
+impl<const D: usize> PressureCorrection<D> {
+    pub(crate) fn new(
+        grid: &CartesianGrid<D>,
+        metrics: &Metrics<D>,
+        boundaries: &Boundaries<D>,
+        tolerance: f64,
+        max_iterations: usize,
+    ) -> Result<Self, FlowError> {
+        let kinds: [Option<[Vec<FaceKind>; 2]>; D] = std::array::from_fn(|a| boundaries.kinds(a));
+        let given = |kinds: &[FaceKind]| kinds.iter().all(|&k| k == FaceKind::Pressure);
+        let axes = std::array::from_fn(|a| {
+            let axis = grid.axis(a);
+            let ends = match kinds[a].as_ref().map(|k| [given(&k[0]), given(&k[1])]) {
+                None => AxisBounds::Periodic,
+                Some([false, false]) => AxisBounds::Neumann,
+                Some([true, true]) => AxisBounds::Dirichlet,
+                Some([false, true]) => AxisBounds::NeumannDirichlet,
+                Some([true, false]) => AxisBounds::DirichletNeumann,
+            };
+            PoissonAxis::from_axis(axis, ends)
+        });
+        let params = MultigridParams { tolerance, max_iterations, variable: true, ..Default::default() };
+        let mut solver = MultigridCg::new(axes, 0.0, params)?;
+        for (a, kinds) in kinds.iter().enumerate() {
+            for (high, kinds) in kinds.iter().flatten().enumerate() {
+                let zero: Vec<bool> = kinds.iter().map(|&k| k == FaceKind::Pressure).collect();
+                if zero.contains(&true) && zero.contains(&false) {
+                    solver.multigrid().set_ends(a, high == 1, &zero)?;
+                }
+            }
+        }
+        let cells = grid.cells();
+        let beta = std::array::from_fn(|a| vec![0.0; grid.n_cells() / cells[a] * (cells[a] + 1)]);
+        let (phi, divergence) = (vec![0.0; grid.n_cells()], vec![0.0; grid.n_cells()]);
+        Ok(Self {
+            grid: grid.clone(),
+            metrics: metrics.clone(),
+            solver,
+            beta,
+            phi,
+            divergence,
+            single: 0.0,
+            given: Vec::new(),
+        })
+    }
+
+    /// Takes β of component `c` from its matrix: 1/A_PP, or 1/(A_PP + Σ_N A_PN) (Van Doormaal & Raithby 1984) if
+    /// `consistent`, at most 1/(`consistent` A_PP). `single` is β in a box one cell wide.
+    pub(crate) fn set(&mut self, c: usize, matrix: &StencilMatrix<D>, consistent: Option<f64>, single: f64) {
+        let (n, rows) = (self.grid.cells(), self.grid.rows_per_layer());
+        let per_task = layers_per_task(n[D - 1]);
+        let layer = face_layer(&self.grid, c);
+        let grid = &self.grid;
+        self.single = single;
+        self.beta[c].par_chunks_mut(layer * per_task).enumerate().for_each(|(task, out)| {
+            let first = task * per_task;
+            for r in first * rows..(first + per_task).min(n[D - 1]) * rows {
+                let o = r * n[0];
+                let out = &mut out[face_row(grid, c, r) - first * layer..][..n[0]];
+                let centre = &matrix.centre()[o..][..n[0]];
+                out.copy_from_slice(centre);
+                if let Some(part) = consistent {
+                    for b in 0..D {
+                        let (l, u) = (&matrix.lower(b)[o..][..n[0]], &matrix.upper(b)[o..][..n[0]]);
+                        for i in 0..n[0] {
+                            out[i] += l[i] + u[i];
+                        }
+                    }
+                    out.iter_mut().zip(centre).for_each(|(x, centre)| *x = x.max(part * centre));
+                }
+                out.iter_mut().for_each(|x| *x = 1.0 / *x);
+            }
+        });
+    }
+
+    /// Faces on bounded sides take β of the next ones.
+    fn close(&mut self, c: usize) {
+        let (n, single) = (self.grid.cells(), self.single);
+        let inner: usize = n[..c].iter().product();
+        for block in self.beta[c].chunks_exact_mut(inner * (n[c] + 1)) {
+            for k in 0..inner {
+                let (first, last) = (k, n[c] * inner + k);
+                if n[c] == 1 {
+                    (block[first], block[last]) = (single, single);
+                } else {
+                    (block[first], block[last]) = (block[first + inner], block[last - inner]);
+                }
+            }
+        }
+    }
+
+    /// Lets the velocity on one face be: β = 0; `cell` is the dense one above it along `c`.
+    pub(crate) fn freeze(&mut self, c: usize, cell: usize) {
+        let n = self.grid.cells()[0];
+        let face = face_row(&self.grid, c, cell / n) + cell % n;
+        self.beta[c][face] = 0.0;
+    }
+
+    /// Hands β to the solver. On faces of given pressure it is w/(|u| + 2ν/w), w the width of the cell before them: so the
+    /// pressure p there, extrapolated from inside, and the velocity u through them settle where
+    /// p − p_given = ½ρ(|u| + 2ν/w)(u − u_inside), whatever the relaxation or step.
+    pub(crate) fn update(&mut self, boundaries: &mut Boundaries<D>, viscosity: f64) -> Result<(), FlowError> {
+        for c in 0..D {
+            if !self.metrics.periodic[c] {
+                self.close(c);
+            }
+        }
+        let (grid, metrics, beta, n) = (&self.grid, &self.metrics, &mut self.beta, self.grid.cells());
+        boundaries.each_pressure_face(|face, normal| {
+            let PressureFace { axis, upper, cell, .. } = face;
+            let width = metrics.axes[axis].width[GHOSTS + if upper { n[axis] - 1 } else { 0 }];
+            let beta = &mut beta[axis][end_face(grid, axis, cell, upper)];
+            // The last term only matters to an inviscid fluid at rest.
+            *beta = width / (normal.abs() + 2.0 * viscosity / width + SLOWEST * width / *beta);
+        });
+        let beta = self.beta.each_ref().map(|b| Some(b.as_slice()));
+        Ok(self.solver.multigrid().set_coefficients(beta)?)
+    }
+
+    /// Divergence of the velocity, left inside; gives Σ |∇·u| V.
+    pub(crate) fn measure(&mut self, velocity: &[Field<D>; D]) -> f64 {
+        let (grid, metrics, n) = (&self.grid, &self.metrics, self.grid.cells()[0]);
+        let rows = rows_per_task(grid.n_cells() / n);
+        self.divergence.par_chunks_mut(n * rows).enumerate().for_each(|(task, out)| {
+            for (k, row) in out.chunks_exact_mut(n).enumerate() {
+                kernels::divergence_row(grid, metrics, task * rows + k, velocity, 1.0, row);
+            }
+        });
+        crate::momentum_matrix::absolute_sum(grid, metrics, None, &self.divergence)
+    }
+
+    /// Drops the divergence of cells none of whose faces answers.
+    pub(crate) fn skip_frozen(&mut self) {
+        let (n, inner) = (self.grid.cells(), |c: usize| -> usize { self.grid.cells()[..c].iter().product() });
+        for (cell, divergence) in self.divergence.iter_mut().enumerate() {
+            let frozen = (0..D).all(|c| {
+                let low = face_row(&self.grid, c, cell / n[0]) + cell % n[0];
+                let i = cell / inner(c) % n[c];
+                let high = if self.metrics.periodic[c] && i + 1 == n[c] {
+                    low - (n[c] - 1) * inner(c)
+                } else {
+                    low + inner(c)
+                };
+                self.beta[c][low] == 0.0 && self.beta[c][high] == 0.0
+            });
+            if frozen {
+                *divergence = 0.0;
+            }
+        }
+    }
+
+    /// Solves for φ with the divergence measured, from zero. On faces of given pressure φ is what brings the pressure
+    /// there, extrapolated from two cells, to the one given. Running out of iterations is an error only if `strict`.
+    pub(crate) fn solve(
+        &mut self,
+        boundaries: &mut Boundaries<D>,
+        pressure: &Field<D>,
+        density: f64,
+        strict: bool,
+    ) -> Result<PoissonInfo, PoissonError> {
+        self.given.clear();
+        let (given, p, stride, n) = (&mut self.given, pressure.data(), self.grid.stride(), self.grid.cells());
+        let (metrics, beta, grid) = (&self.metrics, &self.beta, &self.grid);
+        boundaries.each_pressure_face(|face, _| {
+            let PressureFace { axis, upper, cell, index, pressure } = face;
+            let (at, gap) = if upper { (n[axis] - 1, n[axis] - 1) } else { (0, 1) };
+            let nodes = &metrics.axes[axis];
+            let width = nodes.width[GHOSTS + at];
+            let rise = if n[axis] > 1 {
+                let next = if upper { index - stride[axis] } else { index + stride[axis] };
+                0.5 * width * nodes.faces.inv_volume[GHOSTS + gap] * (p[index] - p[next])
+            } else {
+                0.0
+            };
+            let beta = beta[axis][end_face(grid, axis, cell, upper)];
+            given.push(Given {
+                cell,
+                phi: (pressure - p[index] - rise) / density,
+                conductance: 2.0 * beta / width,
+                width,
+            });
+        });
+        for g in &self.given {
+            self.divergence[g.cell] -= g.conductance / g.width * g.phi;
+        }
+        let solved = self.solve_dirichlet(strict);
+        for g in &self.given {
+            self.divergence[g.cell] += g.conductance / g.width * g.phi;
+        }
+        solved
+    }
+
+    fn solve_dirichlet(&mut self, strict: bool) -> Result<PoissonInfo, PoissonError> {
+        let (n, f) = (self.grid.cells()[0], &self.divergence);
+        let fill = |r: usize, row: &mut [f64]| row.copy_from_slice(&f[r * n..][..n]);
+        match self.solver.solve_rows(fill, &mut self.phi, false) {
+            Err(PoissonError::NotConverged { iterations, residual, .. }) if !strict && residual < 1.0 => {
+                Ok(PoissonInfo { iterations, residual, ..Default::default() })
+            }
+            other => other,
+        }
+    }
+
+    /// φ ← `gain` (φ − (`viscosity` + `eddy`) ∇·u), with the divergence measured last.
+    pub(crate) fn scale(&mut self, gain: f64, viscosity: f64, eddy: Option<&Field<D>>) {
+        let n = self.grid.cells()[0];
+        let rows = self.phi.chunks_exact_mut(n).zip(self.divergence.chunks_exact(n));
+        for (r, (phi, divergence)) in rows.enumerate() {
+            for (phi, divergence) in phi.iter_mut().zip(divergence) {
+                *phi = gain * (*phi - viscosity * divergence);
+            }
+            let Some(eddy) = eddy else { continue };
+            for ((phi, divergence), eddy) in phi.iter_mut().zip(divergence).zip(eddy.row(r)) {
+                *phi -= gain * eddy * divergence;
+            }
+        }
+    }
+
+    /// u ← u − β ∇φ, sides included.
+    pub(crate) fn correct(&self, boundaries: &mut Boundaries<D>, velocity: &mut [Field<D>; D]) {
+        for (c, component) in velocity.iter_mut().enumerate() {
+            self.correct_component(c, component);
+        }
+        let mut given = self.given.iter();
+        boundaries.each_pressure_face(|face, normal| {
+            let Some(g) = given.next() else { return };
+            let sign = if face.upper { 1.0 } else { -1.0 };
+            *normal += sign * g.conductance * (self.phi[g.cell] - g.phi);
+        });
+    }
+
+    fn correct_component(&self, c: usize, component: &mut Field<D>) {
+        let (grid, n, rows) = (&self.grid, self.grid.cells(), self.grid.rows_per_layer());
+        let (beta, phi, periodic) = (&self.beta[c], &self.phi, self.metrics.periodic[c]);
+        let inv = &self.metrics.axes[c].faces.inv_volume[GHOSTS..];
+        let layer = grid.stride()[D - 1];
+        let per_task = layers_per_task(n[D - 1]);
+        let step = if c == 2 { n[1] } else { 1 };
+        component.layers_mut().par_chunks_mut(layer * per_task).enumerate().for_each(|(task, out)| {
+            let first = task * per_task;
+            for r in first * rows..(first + per_task).min(n[D - 1]) * rows {
+                let local = crate::field::row_start(grid, r) - (GHOSTS + first) * layer;
+                let out = &mut out[local..][..n[0]];
+                let here = &phi[r * n[0]..][..n[0]];
+                let beta = &beta[face_row(grid, c, r)..][..n[0]];
+                if c == 0 {
+                    out[0] -= beta[0] * inv[0] * (here[0] - here[if periodic { n[0] - 1 } else { 0 }]);
+                    let (beta, inv, after) = (&beta[1..], &inv[1..n[0]], &here[1..]);
+                    for (i, out) in out[1..].iter_mut().enumerate() {
+                        *out -= beta[i] * inv[i] * (after[i] - here[i]);
+                    }
+                    continue;
+                }
+                let at = row_place(grid, r)[c];
+                let below = match (at, periodic) {
+                    (0, true) => r + (n[c] - 1) * step,
+                    (0, false) => continue,
+                    _ => r - step,
+                };
+                let below = &phi[below * n[0]..][..n[0]];
+                for i in 0..n[0] {
+                    out[i] -= beta[i] * inv[at] * (here[i] - below[i]);
+                }
+            }
+        });
+    }
+}
+
+/// Place of the face below or above a dense cell among the faces of component `c`.
+fn end_face<const D: usize>(grid: &CartesianGrid<D>, c: usize, cell: usize, upper: bool) -> usize {
+    let n = grid.cells();
+    let low = face_row(grid, c, cell / n[0]) + cell % n[0];
+    if upper { low + n[..c].iter().product::<usize>() } else { low }
+}
+
+/// Rows that one task works on.
+fn rows_per_task(rows: usize) -> usize {
+    rows.div_ceil(16).max(4)
+}
+
+/// Faces of component `c` in one layer of the last axis.
+fn face_layer<const D: usize>(grid: &CartesianGrid<D>, c: usize) -> usize {
+    let n = grid.cells();
+    let mut faces = n;
+    faces[c] += 1;
+    faces[..D - 1].iter().product()
+}
+
+/// Place of the face below the first cell of row `r` among the faces of component `c`.
+fn face_row<const D: usize>(grid: &CartesianGrid<D>, c: usize, r: usize) -> usize {
+    let n = grid.cells();
+    if c == 0 {
+        return r * (n[0] + 1);
+    }
+    if D == 3 && c == 1 {
+        return (r / n[1] * (n[1] + 1) + r % n[1]) * n[0];
+    }
+    r * n[0]
+}

@@ -269,8 +269,13 @@ impl<const D: usize> Piso<D> {
         }
         self.boundaries.reset_outlets(&self.velocity.components);
         self.fill_velocity();
-        self.correction.measure(&self.velocity.components);
-        match self.correction.solve(&mut self.boundaries, &self.pressure, self.fluid.density, true) {
+        self.correction.measure(
+            &mut self.boundaries,
+            &self.velocity.components,
+            &self.pressure,
+            self.fluid.density,
+        );
+        match self.correction.solve(true) {
             Err(PoissonError::NonFinite { .. }) => return Err(self.diverged(dt)),
             other => other?,
         };

@@ -217,7 +217,12 @@ impl<const D: usize> Simple<D> {
         self.fill();
         self.correction.update(&mut self.boundaries, self.fluid.viscosity)?;
         let through = momentum::throughput(&self.grid, &self.metrics, &self.velocity.components);
-        let divergence = self.correction.measure(&self.velocity.components);
+        let divergence = self.correction.measure(
+            &mut self.boundaries,
+            &self.velocity.components,
+            &self.pressure,
+            self.fluid.density,
+        );
         if !divergence.is_finite() {
             return Err(self.diverged());
         }
@@ -225,10 +230,7 @@ impl<const D: usize> Simple<D> {
         if self.pinned.iter().any(|p| !p.is_empty()) {
             self.correction.skip_frozen();
         }
-        info.pressure_iterations = self
-            .correction
-            .solve(&mut self.boundaries, &self.pressure, self.fluid.density, false)?
-            .iterations;
+        info.pressure_iterations = self.correction.solve(false)?.iterations;
         self.correction.correct(&mut self.boundaries, &mut self.velocity.components);
         let gain = self.params.pressure_relaxation * self.fluid.density;
         // The viscous part of what the divergence takes (Cahouet & Chabat 1988); in SIMPLE proper β has it.

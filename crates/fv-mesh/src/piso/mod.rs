@@ -1,4 +1,5 @@
 //! The unsteady segregated algorithm.
+mod checkpoint;
 mod params;
 #[cfg(test)]
 mod tests;
@@ -15,7 +16,6 @@ use crate::projection::check_fluid;
 use crate::simple::PressureCorrection;
 use crate::statistics::{self, Measure};
 use crate::{CartesianGrid, Convection, Field, FlowError, FlowStatistics, Fluid, Side, Sides, Velocity};
-use interfaces::{Checkpoint, RestartError};
 
 /// A step may be at most so many times longer than the last for BDF2 to look back: it is stable up to 1 + √2.
 const LONGEST_RATIO: f64 = 2.4;
@@ -36,8 +36,8 @@ const ITERATIONS: usize = 100;
 /// of the [`Convection`] scheme in the right-hand side), carried by û = uⁿ (Euler) or by its extrapolation to the
 /// end of the step (BDF2). The pressure is that of the end of the step.
 /// The parts of a step are public: [`predict`](Self::predict), [`correct`](Self::correct) (several
-/// times) and [`finish`](Self::finish); [`advance`](Self::advance) is all of them, with a [`Forcing`] between. A step
-/// allocates nothing when it runs inside a rayon pool.
+/// times) and [`finish`](Self::finish); [`advance`](Self::advance) is all of them, with a [`Forcing`] between. Outlets
+/// of given pressure are those of [`Simple`](crate::Simple).
 ///
 /// ```
 /// use fv_mesh::{CartesianGrid, Fluid, Piso, Side};
@@ -275,8 +275,13 @@ impl<const D: usize> Piso<D> {
         }
         self.boundaries.reset_outlets(&self.velocity.components);
         self.fill_velocity();
-        self.correction.measure(&self.velocity.components);
-        match self.correction.solve(&mut self.boundaries, &self.pressure, self.fluid.density, true) {
+        self.correction.measure(
+            &mut self.boundaries,
+            &self.velocity.components,
+            &self.pressure,
+            self.fluid.density,
+        );
+        match self.correction.solve(true) {
             Err(PoissonError::NonFinite { .. }) => return Err(self.diverged(dt)),
             other => other?,
         };
@@ -397,34 +402,5 @@ impl<const D: usize> Piso<D> {
     /// Sets the clock exactly (to the end of an interval that was cut into equal steps).
     pub fn set_time(&mut self, time: f64) {
         self.time = time;
-    }
-}
-
-impl<const D: usize> Checkpoint for Piso<D> {
-    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
-        for c in 0..D {
-            sink(&format!("velocity{c}"), self.velocity.components[c].data());
-            sink(&format!("old{c}"), self.old[c].data());
-        }
-        sink("pressure", self.pressure.data());
-        sink("clock", &[self.time, self.step as f64, self.last_dt]);
-        sink("rates", &self.rates);
-        sink("sides", &self.boundaries.memory());
-    }
-    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
-        let n = self.grid.storage();
-        for c in 0..D {
-            let u = RestartError::take(source, &format!("velocity{c}"), n)?;
-            self.velocity.components[c].data_mut().copy_from_slice(u);
-            let old = RestartError::take(source, &format!("old{c}"), n)?;
-            self.old[c].data_mut().copy_from_slice(old);
-        }
-        self.pressure.data_mut().copy_from_slice(RestartError::take(source, "pressure", n)?);
-        let clock = RestartError::take(source, "clock", 3)?;
-        (self.time, self.step, self.last_dt) = (clock[0], clock[1] as u64, clock[2]);
-        self.rates.copy_from_slice(RestartError::take(source, "rates", D)?);
-        let sides = RestartError::take(source, "sides", self.boundaries.memory().len())?;
-        self.boundaries.recall(&self.metrics, self.time, sides);
-        Ok(())
     }
 }

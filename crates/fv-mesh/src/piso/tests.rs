@@ -1,7 +1,7 @@
 //! The unsteady algorithm against exact solutions, conservation laws and the projection.
 use super::*;
 use crate::{Patch, Profile, Projection};
-use interfaces::VelocityField;
+use interfaces::{Checkpoint, VelocityField};
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 

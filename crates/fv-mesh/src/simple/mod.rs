@@ -33,10 +33,13 @@ const FLOOR: f64 = 1e-5;
 ///
 /// A is the implicit momentum operator (viscous terms, upwind or hybrid convection). Its diagonal gains
 /// (1/α_u − 1)(Σ |u_n| A/2 + s ν Σ A/d)/V over the faces of a control volume: relaxation by local time steps, on fine grids
-/// as on coarse ones. β = 1/(A_PP + Σ_N A_PN) (SIMPLEC) or 1/A_PP (SIMPLE, whose pressure goes without the last term: Cahouet & Chabat 1988;
-/// with it α_u may be near 1 however viscous the fluid is). The right-hand side has the full
-/// [`Convection`] scheme (deferred correction), so the steady flow has its order, whatever α_u is. An iteration allocates
-/// nothing when it runs inside a rayon pool.
+/// as on coarse ones. β = 1/(A_PP + Σ_N A_PN) (SIMPLEC) or 1/A_PP (SIMPLE, whose pressure goes without the last term:
+/// Cahouet & Chabat 1988; with it α_u may be near 1 however viscous the fluid is). The right-hand side has the full
+/// [`Convection`] scheme (deferred correction), so the steady flow has its order, whatever α_u is.
+///
+/// At a [`Side::PressureOutlet`] the pressure extrapolated from two cells is the given one plus
+/// ½ρ(|u| + 2ν/w)(u − u_inside), w the width of the cell and u the velocity through the side: the momentum balance of half
+/// a cell.
 ///
 /// ```
 /// use fv_mesh::{CartesianGrid, Fluid, Side, Simple};
@@ -223,7 +226,12 @@ impl<const D: usize> Simple<D> {
         self.fill();
         self.correction.update(&mut self.boundaries, self.fluid.viscosity)?;
         let through = momentum::throughput(&self.grid, &self.metrics, &self.velocity.components);
-        let divergence = self.correction.measure(&self.velocity.components);
+        let divergence = self.correction.measure(
+            &mut self.boundaries,
+            &self.velocity.components,
+            &self.pressure,
+            self.fluid.density,
+        );
         if !divergence.is_finite() {
             return Err(self.diverged());
         }
@@ -231,10 +239,7 @@ impl<const D: usize> Simple<D> {
         if self.pinned.iter().any(|p| !p.is_empty()) {
             self.correction.skip_frozen();
         }
-        info.pressure_iterations = self
-            .correction
-            .solve(&mut self.boundaries, &self.pressure, self.fluid.density, false)?
-            .iterations;
+        info.pressure_iterations = self.correction.solve(false)?.iterations;
         self.correction.correct(&mut self.boundaries, &mut self.velocity.components);
         let gain = self.params.pressure_relaxation * self.fluid.density;
         // The viscous part of what the divergence takes (Cahouet & Chabat 1988); in SIMPLE proper β has it.

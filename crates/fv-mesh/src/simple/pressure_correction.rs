@@ -11,7 +11,7 @@ use crate::{CartesianGrid, Field, FlowError};
 use rayon::prelude::*;
 
 /// Least rate at which outlets answer, relative to that of the velocity inside.
-const SLOWEST: f64 = 1e-3;
+const SLOWEST: f64 = 1e-6;
 
 /// Solves ∇·(β ∇φ) = ∇·u for the correction u ← u − β ∇φ, with β \[s\] on the faces: what a component answers to a
 /// kinematic pressure gradient.
@@ -160,8 +160,7 @@ impl<const D: usize> PressureCorrection<D> {
         Ok(self.solver.multigrid().set_coefficients(beta)?)
     }
 
-    /// Divergence of the velocity, left inside; gives Σ |∇·u| V.
-    pub(crate) fn measure(&mut self, velocity: &[Field<D>; D]) -> f64 {
+    fn write_divergence(&mut self, velocity: &[Field<D>; D]) {
         let (grid, metrics, n) = (&self.grid, &self.metrics, self.grid.cells()[0]);
         let rows = rows_per_task(grid.n_cells() / n);
         self.divergence.par_chunks_mut(n * rows).enumerate().for_each(|(task, out)| {
@@ -169,7 +168,6 @@ impl<const D: usize> PressureCorrection<D> {
                 kernels::divergence_row(grid, metrics, task * rows + k, velocity, 1.0, row);
             }
         });
-        crate::momentum_matrix::absolute_sum(grid, metrics, None, &self.divergence)
     }
 
     /// Drops the divergence of cells none of whose faces answers.
@@ -192,15 +190,16 @@ impl<const D: usize> PressureCorrection<D> {
         }
     }
 
-    /// Solves for φ with the divergence measured, from zero. On faces of given pressure φ is what brings the pressure
-    /// there, extrapolated from two cells, to the one given. Running out of iterations is an error only if `strict`.
-    pub(crate) fn solve(
+    /// Measures the divergence of the velocity. On faces of given pressure φ will be what brings the pressure there,
+    /// extrapolated from two cells, to the one given; the velocity that this takes counts. Gives Σ |∇·u| V.
+    pub(crate) fn measure(
         &mut self,
         boundaries: &mut Boundaries<D>,
+        velocity: &[Field<D>; D],
         pressure: &Field<D>,
         density: f64,
-        strict: bool,
-    ) -> Result<PoissonInfo, PoissonError> {
+    ) -> f64 {
+        self.write_divergence(velocity);
         self.given.clear();
         let (given, p, stride, n) = (&mut self.given, pressure.data(), self.grid.stride(), self.grid.cells());
         let (metrics, beta, grid) = (&self.metrics, &self.beta, &self.grid);
@@ -226,14 +225,11 @@ impl<const D: usize> PressureCorrection<D> {
         for g in &self.given {
             self.divergence[g.cell] -= g.conductance / g.width * g.phi;
         }
-        let solved = self.solve_dirichlet(strict);
-        for g in &self.given {
-            self.divergence[g.cell] += g.conductance / g.width * g.phi;
-        }
-        solved
+        crate::momentum_matrix::absolute_sum(grid, metrics, None, &self.divergence)
     }
 
-    fn solve_dirichlet(&mut self, strict: bool) -> Result<PoissonInfo, PoissonError> {
+    /// Solves for φ with the divergence measured, from zero. Running out of iterations is an error only if `strict`.
+    pub(crate) fn solve(&mut self, strict: bool) -> Result<PoissonInfo, PoissonError> {
         let (n, f) = (self.grid.cells()[0], &self.divergence);
         let fill = |r: usize, row: &mut [f64]| row.copy_from_slice(&f[r * n..][..n]);
         match self.solver.solve_rows(fill, &mut self.phi, false) {
@@ -244,9 +240,13 @@ impl<const D: usize> PressureCorrection<D> {
         }
     }
 
-    /// φ ← `gain` (φ − (`viscosity` + `eddy`) ∇·u), with the divergence measured last.
+    /// φ ← `gain` (φ − (`viscosity` + `eddy`) ∇·u), with the divergence measured last; before faces of given pressure φ
+    /// alone.
     pub(crate) fn scale(&mut self, gain: f64, viscosity: f64, eddy: Option<&Field<D>>) {
         let n = self.grid.cells()[0];
+        for g in &self.given {
+            self.divergence[g.cell] = 0.0;
+        }
         let rows = self.phi.chunks_exact_mut(n).zip(self.divergence.chunks_exact(n));
         for (r, (phi, divergence)) in rows.enumerate() {
             for (phi, divergence) in phi.iter_mut().zip(divergence) {

@@ -46,7 +46,7 @@ impl PisoParams {
             ("the tolerance of the momentum equations", self.momentum_tolerance),
             ("the tolerance of the pressure equation", self.pressure_tolerance),
         ] {
-            if !(value >= 1e-13 && value < 1.0) {
+            if !(1e-13..1.0).contains(&value) {
                 return fail(name, value, "at least 1e-13 and below 1");
             }
         }

@@ -15,7 +15,7 @@ count() { # mode steps
 }
 
 printf '%-8s %16s %10s\n' mode instructions/step "of plain"
-for mode in plain nobody fixed moving apart; do
+for mode in plain hooks nobody fixed moving apart; do
     few=$(count "$mode" 10)
     many=$(count "$mode" 20)
     per=$(((many - few) / 10))

@@ -3,13 +3,15 @@
 //! Sample run: `cargo run --release --example skipping -- plain 20`; `docs/skipping.sh` counts.
 //!
 //! 1. `plain`: the flow loop by hand, `Projection::advance`.
-//! 2. `nobody`: `Simulation<2, ()>`, the coupled loop with nothing immersed.
-//! 3. `fixed`: one disc at rest. 4. `moving`: one free disc. 5. `apart`: two free discs far apart.
+//! 2. `hooks`: the same through `Projection::advance_with` and empty `Hooks`: no body force, forcing, closure, scalar.
+//! 3. `nobody`: `Simulation<2, ()>`, the coupled loop with nothing immersed.
+//! 4. `fixed`: one disc at rest. 5. `moving`: one free disc. 6. `apart`: two free discs far apart.
 #[path = "../falling_discs/scene.rs"]
 mod scene;
 
 use scene::Scene;
 use siltflow::coupling::{Simulation, WeightBalance};
+use siltflow::flow::Hooks;
 use siltflow::ibm::SmoothForcing;
 use siltflow::interfaces::Freedom;
 
@@ -28,6 +30,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             flow.set_velocity(swirl);
             for _ in 0..steps {
                 flow.advance(DT, [0.0; 2])?;
+            }
+        }
+        "hooks" => {
+            let mut flow = scene.flow()?;
+            flow.set_velocity(swirl);
+            for _ in 0..steps {
+                flow.advance_with(DT, &mut Hooks::none())?;
             }
         }
         "nobody" => {
@@ -52,7 +61,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 particles.bodies.overlap_calls()
             );
         }
-        other => return Err(format!("no mode `{other}`; use plain, nobody, fixed, moving or apart").into()),
+        other => {
+            return Err(format!("no mode `{other}`; use plain, hooks, nobody, fixed, moving or apart").into());
+        }
     }
     Ok(())
 }

@@ -38,6 +38,19 @@ fn a_developed_flow_passes_both_outlets() {
 }
 
 #[test]
+fn two_given_pressures_drive_a_channel() {
+    let grid = CartesianGrid::new([24, 16], [3.0, 1.0]).unwrap();
+    let sides = [[Side::PressureOutlet(5.0), Side::PressureOutlet(2.0)], Side::WALL.both()];
+    let mut flow = Projection::new(grid, sides, Fluid { density: 2.0, viscosity: 0.5 }).unwrap();
+    while flow.time() < 4.0 {
+        flow.advance(flow.stable_dt(0.4).min(5e-3), [0.0; 2]).unwrap();
+    }
+    // u = (Δp/L) y(1 − y)/2ρν, to round-off.
+    let off = norms::velocity(&flow, |x| [0.5 * x[1] * (1.0 - x[1]), 0.0]).max;
+    assert!(off < 1e-6, "{off}");
+}
+
+#[test]
 fn a_vortex_leaves_through_a_convective_outlet() {
     let grid = CartesianGrid::new([64, 32], [4.0, 2.0]).unwrap();
     let inlet = Side::Inlet(Profile::Uniform([1.0, 0.0, 0.0]));

@@ -61,7 +61,7 @@ impl<B, F, C, S> Hooks<B, F, C, S> {
 /// A force per mass \[m/s²\]. `()` is none; `[f64; D]` is the same everywhere and always; a [`ForceField`] is a function
 /// of place and time; [`Boussinesq`] is buoyancy by a scalar.
 pub trait BodyForce<const D: usize, S = ()> {
-    /// Does it differ from place to place?
+    /// Does it differ from place to place? If not, [`add`](Self::add) is not called.
     const VARIES: bool = false;
     /// The part that is the same everywhere.
     fn uniform(&self, _time: f64) -> [f64; D] {
@@ -207,6 +207,8 @@ impl<const D: usize> Projection<D> {
     /// One whole step of length `dt` with everything in `hooks`: scalars and body force from the flow as it is, predictor,
     /// forcing, projection, and the closure from the flow that results.
     ///
+    /// Hooks have no part in the flow's checkpoint: save scalars and the closure's state beside it.
+    ///
     /// # Errors
     /// See [`predict`](Self::predict) and [`project`](Self::project), and what the hooks answer.
     pub fn advance_with<B, F, C, S>(
@@ -221,7 +223,10 @@ impl<const D: usize> Projection<D> {
         S: ScalarTransport<D>,
     {
         let Hooks { body_force, forcing, closure, scalars } = hooks;
-        let uniform = body_force.uniform(self.time());
+        self.choose_implicit(dt)?;
+        self.forget_sources();
+        // Of the middle of the step, as what is explicit is extrapolated to it.
+        let uniform = body_force.uniform(self.time() + 0.5 * dt);
         if B::VARIES {
             self.with_sources(|flow, sources| body_force.add(flow, scalars, sources));
         }

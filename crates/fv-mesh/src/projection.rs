@@ -57,7 +57,8 @@ pub enum Diffusion {
 /// middle of the step. The two halves of a step are public, so that an
 /// immersed boundary can act between them: [`predict`](Self::predict) and
 /// [`project`](Self::project); [`advance`](Self::advance) is both. A step allocates nothing when it
-/// runs inside a rayon pool.
+/// runs inside a rayon pool, unless implicit diffusion meets a new step length. After an error in the middle of a step the
+/// state is that of half a step: restore a saved one.
 pub struct Projection<const D: usize> {
     grid: CartesianGrid<D>,
     metrics: Metrics<D>,
@@ -79,6 +80,8 @@ pub struct Projection<const D: usize> {
     /// Accelerations that vary in space, for the next predictor step; made when first needed.
     sources: Option<Box<[Field<D>; D]>>,
     sources_given: bool,
+    /// The largest ν_t of the last step with a closure \[m²/s\].
+    eddy_most: f64,
     /// ν_t with ghosts; made when first needed.
     eddy: Option<Box<Field<D>>>,
     /// Scratch of one row.
@@ -131,6 +134,7 @@ impl<const D: usize> Projection<D> {
             rest_pressure: Vec::new(),
             sources: None,
             sources_given: false,
+            eddy_most: 0.0,
             eddy: None,
             row: vec![0.0; grid.cells()[0]],
             pressure_solver,
@@ -193,6 +197,8 @@ impl<const D: usize> Projection<D> {
         self.boundaries.start(&self.metrics, u);
         self.fill_velocity();
         self.rates = self.measure_rates();
+        // The last tendency and pressure belong to another flow.
+        self.last_dt = 0.0;
     }
 
     fn measure_rates(&self) -> [f64; D] {
@@ -213,10 +219,9 @@ impl<const D: usize> Projection<D> {
     /// for one beyond the [`viscous_limit`](Self::viscous_limit) of [`Diffusion::Explicit`], [`FlowError::MassBalance`] if
     /// what enters cannot leave.
     pub fn predict(&mut self, dt: f64, force: [f64; D]) -> Result<(), FlowError> {
-        if !(dt.is_finite() && dt > 0.0) {
-            return Err(FlowError::TimeStep { dt, time: self.time });
-        }
         let implicit = self.choose_implicit(dt)?;
+        // The fields hold the old values in their ghosts.
+        self.boundaries.advance(&self.metrics, self.time + dt)?;
         // The last step's tendency and pressure are no guide at the start, and after a much shorter step:
         // what changes at once (a wall set moving, an immersed body's slip) is a pressure ∝ 1/dt.
         let mut r = dt / self.last_dt;
@@ -264,7 +269,6 @@ impl<const D: usize> Projection<D> {
             }
         }
         self.sources_given = false;
-        self.boundaries.advance(&self.metrics, self.time + dt);
         if any_implicit {
             self.implicit.set(&self.metrics, viscosity[1].map(|nu| 0.5 * dt * nu));
             for c in 0..D {
@@ -309,13 +313,21 @@ impl<const D: usize> Projection<D> {
         self.sources_given = true;
     }
 
+    /// Takes back accelerations that no predictor step used.
+    pub(crate) fn forget_sources(&mut self) {
+        (self.sources_given, self.eddy_most) = (false, 0.0);
+    }
+
     /// Adds ∇·[ν_t(∇u + ∇uᵀ)] of the eddy viscosity ν_t \[m²/s\] (dense) to the next predictor step of `dt`.
     pub(crate) fn add_eddy_stress(&mut self, eddy: &[f64], dt: f64) -> Result<(), FlowError> {
-        let most = eddy.iter().copied().fold(0.0, f64::max);
-        let limit = 1.0 / (4.0 * most * self.stiffness.iter().sum::<f64>());
-        if dt > limit {
-            return Err(FlowError::Unstable { dt, limit });
+        let n = self.grid.n_cells();
+        if eddy.len() != n {
+            let source =
+                interfaces::SolveError::Length { what: "the eddy viscosity", expected: n, found: eddy.len() };
+            return Err(FlowError::Closure { time: self.time, source });
         }
+        self.eddy_most = eddy.iter().copied().fold(0.0, f64::max);
+        self.choose_implicit(dt)?;
         let mut field = self.eddy.take().unwrap_or_else(|| Box::new(Field::zeros(&self.grid)));
         kernels::copy_dense(&self.grid, eddy, &mut field);
         self.boundaries.fill_even(&mut field);
@@ -355,21 +367,24 @@ impl<const D: usize> Projection<D> {
     }
 
     /// The axes whose diffusion has to be implicit in a step of `dt`.
-    fn choose_implicit(&self, dt: f64) -> Result<[bool; D], FlowError> {
-        match self.diffusion {
-            Diffusion::Implicit => Ok([true; D]),
-            Diffusion::Explicit => {
-                let limit = self.viscous_limit();
-                if dt > limit { Err(FlowError::Unstable { dt, limit }) } else { Ok([false; D]) }
-            }
+    pub(crate) fn choose_implicit(&self, dt: f64) -> Result<[bool; D], FlowError> {
+        if !(dt.is_finite() && dt > 0.0) {
+            return Err(FlowError::TimeStep { dt, time: self.time });
+        }
+        let chosen = match self.diffusion {
+            Diffusion::Implicit => [true; D],
+            Diffusion::Explicit => [false; D],
             Diffusion::Auto => {
                 // Not to and fro with small changes of the step.
                 let (needed, soon) = (self.stiff_axes(dt), self.stiff_axes(2.0 * dt));
                 let last = self.implicit_axes;
                 let keep = (0..D).all(|a| (last[a] || !needed[a]) && (soon[a] || !last[a]));
-                Ok(if keep { last } else { needed })
+                if keep { last } else { needed }
             }
-        }
+        };
+        // An eddy viscosity is explicit in any case.
+        let limit = self.viscous_limit_along(&chosen);
+        if dt > limit { Err(FlowError::Unstable { dt, limit }) } else { Ok(chosen) }
     }
 
     /// The fewest axes that have to be implicit for the others to be stable with a step of `dt`.
@@ -386,8 +401,8 @@ impl<const D: usize> Projection<D> {
     }
 
     fn viscous_limit_along(&self, implicit: &[bool; D]) -> f64 {
-        let stiffness: f64 = (0..D).filter(|&a| !implicit[a]).map(|a| self.stiffness[a]).sum();
-        1.0 / (4.0 * self.fluid.viscosity * stiffness)
+        let viscosity = |a: usize| self.eddy_most + if implicit[a] { 0.0 } else { self.fluid.viscosity };
+        0.25 / (0..D).map(|a| viscosity(a) * self.stiffness[a]).sum::<f64>()
     }
 
     /// Makes the velocity free of divergence and adds what that took to the pressure. May be
@@ -480,7 +495,7 @@ impl<const D: usize> Projection<D> {
     }
 
     /// The longest step \[s\] for which Adams–Bashforth diffusion is stable along all axes: 1/(4ν Σ 1/h²) on a uniform periodic
-    /// grid, up to 13 % less where walls are.
+    /// grid, 13 % less between walls (a quarter less if fewer than ten cells are).
     pub fn viscous_limit(&self) -> f64 {
         self.viscous_limit_along(&[false; D])
     }
@@ -488,8 +503,11 @@ impl<const D: usize> Projection<D> {
     /// The longest step \[s\] with Courant number ≤ `courant`; a tenth inside the viscous limit where diffusion is
     /// explicit, at most ten times that limit where it may be implicit.
     pub fn stable_dt(&self, courant: f64) -> f64 {
-        let gain = if self.diffusion == Diffusion::Explicit { 0.9 } else { IMPLICIT_GAIN };
-        (courant / self.courant(1.0)).min(gain * self.viscous_limit())
+        let viscous = match self.diffusion {
+            Diffusion::Explicit => 0.9 * self.viscous_limit(),
+            _ => (IMPLICIT_GAIN * self.viscous_limit()).min(0.9 * self.viscous_limit_along(&[true; D])),
+        };
+        (courant / self.courant(1.0)).min(viscous)
     }
 
     /// Sums and extremes of the velocity, as it is now.
@@ -515,7 +533,8 @@ impl<const D: usize> Projection<D> {
     pub fn fluid(&self) -> Fluid {
         self.fluid
     }
-    /// The velocity \[m/s\]; between the halves of a step it is u*.
+    /// The velocity \[m/s\]; between the halves of a step it is u*. On stretched axes its lattices give the storage, not the
+    /// positions ([`CartesianGrid::lattice`]).
     pub fn velocity(&self) -> &Velocity<D> {
         &self.velocity
     }
@@ -581,7 +600,12 @@ fn stiffness<const D: usize>(metrics: &Metrics<D>, a: usize) -> f64 {
     };
     let inside = sums(&axis.centres).max(sums(&axis.faces));
     let r = 12.0_f64.sqrt() - 3.0;
-    if metrics.periodic[a] { inside } else { inside * 0.25 * (2.0 + r + 1.0 / r) }
+    match (metrics.periodic[a], n) {
+        (true, _) => inside,
+        // The two walls meet.
+        (false, ..10) => inside * 4.0 / 3.0,
+        (false, _) => inside * 0.25 * (2.0 + r + 1.0 / r),
+    }
 }
 
 impl<const D: usize> Checkpoint for Projection<D> {
@@ -618,7 +642,8 @@ impl<const D: usize> Checkpoint for Projection<D> {
             self.phi.copy_from_slice(RestartError::take(source, "correction", n)?);
         }
         let sides = RestartError::take(source, "sides", self.boundaries.memory().len())?;
-        self.boundaries.recall(&self.metrics, self.time, sides);
+        self.boundaries.recall(sides);
+        self.sources_given = false;
         let implicit = RestartError::take(source, "implicit", D)?;
         self.implicit_axes = std::array::from_fn(|a| implicit[a] != 0.0);
         Ok(())

@@ -2,7 +2,7 @@
 //!
 //! `+ − * /`, negation, [`abs`](Expr::abs), [`sqrt`](Expr::sqrt), [`square`](Expr::square), [`min`](Expr::min),
 //! [`max`](Expr::max) and [`map`](Expr::map) of fields, numbers and functions of place build an [`Expr`]: a tree that
-//! knows its operands and holds no values. [`Field::assign`] and its relatives evaluate the tree in one pass over
+//! knows its operands and holds no values. [`Field::assign`](crate::Field::assign) and its relatives evaluate the tree in one pass over
 //! the rows of the grid, in parallel over fixed runs of layers; [`Integrals`](crate::Integrals) sum over it.
 //! Values follow IEEE 754: 1/0 is infinite, √−1 is not a number, and `min` and `max` pass on what is not a number.
 //! Ghosts are neither read nor written.

@@ -101,7 +101,9 @@ struct SideState<const D: usize> {
     kind: Vec<FaceKind>,
     /// Velocity along the axis on the side's faces.
     normal: Vec<f64>,
-    /// By how much the given ones changed in this step.
+    /// What is given of it, before inlets are balanced.
+    given: Vec<f64>,
+    /// By how much it changed in this step through what is given.
     normal_change: Vec<f64>,
     /// Pressure on the side where it is given.
     pressure: Vec<f64>,
@@ -144,6 +146,10 @@ impl<const D: usize> Boundaries<D> {
         }
         let mut new = Self { grid: grid.clone(), sides, lines, states, imbalance: 0.0 };
         new.set(metrics, 0.0, true);
+        // Nothing has changed yet.
+        for state in new.states.iter_mut().flatten().flat_map(|p| p.iter_mut()) {
+            state.laws.iter_mut().for_each(|law| law.change.fill(0.0));
+        }
         new.balance(metrics)?;
         Ok(new)
     }
@@ -173,9 +179,37 @@ impl<const D: usize> Boundaries<D> {
         }
     }
 
-    /// Moves what is given on to `time`.
-    pub(crate) fn advance(&mut self, metrics: &Metrics<D>, time: f64) {
+    /// Moves what is given on to `time`, and remembers by how much it changed.
+    ///
+    /// # Errors
+    /// [`FlowError::MassBalance`] if what enters cannot leave.
+    pub(crate) fn advance(&mut self, metrics: &Metrics<D>, time: f64) -> Result<(), FlowError> {
+        for state in self.states.iter_mut().flatten().flat_map(|p| p.iter_mut()) {
+            for (change, normal) in state.normal_change.iter_mut().zip(&state.normal) {
+                *change = -normal;
+            }
+        }
         self.set(metrics, time, false);
+        let mut outlets = false;
+        for state in self.states.iter_mut().flatten().flat_map(|p| p.iter_mut()) {
+            for l in 0..state.kind.len() {
+                match state.kind[l] {
+                    // The shift of the last step is taken back.
+                    FaceKind::Inlet => state.normal[l] = state.given[l],
+                    FaceKind::Closed => {}
+                    FaceKind::Convective | FaceKind::Pressure => outlets = true,
+                }
+            }
+        }
+        if !outlets && !self.sides.closed() {
+            self.balance(metrics)?;
+        }
+        for state in self.states.iter_mut().flatten().flat_map(|p| p.iter_mut()) {
+            for (change, normal) in state.normal_change.iter_mut().zip(&state.normal) {
+                *change += normal;
+            }
+        }
+        Ok(())
     }
 
     /// Moves the outlets on by `dt`; `velocity` is the predicted one.
@@ -192,6 +226,7 @@ impl<const D: usize> Boundaries<D> {
         if self.sides.closed() {
             return Ok(());
         }
+        let mut outlets = false;
         for (a, (lines, pair)) in self.lines.iter().zip(&mut self.states).enumerate() {
             let u = velocity[a].data();
             let Some(pair) = pair else { continue };
@@ -199,6 +234,7 @@ impl<const D: usize> Boundaries<D> {
                 if state.kind.iter().all(|k| k.is_fixed()) {
                     continue;
                 }
+                outlets = true;
                 // The largest speed, and that of viscosity, so that what is left when the outflow stops leaves too.
                 let fastest = (0..lines.len())
                     .filter(|&l| lines.inside(l) && state.kind[l] == FaceKind::Convective)
@@ -218,7 +254,8 @@ impl<const D: usize> Boundaries<D> {
                 }
             }
         }
-        self.balance(metrics)
+        // Inlets alone have been balanced.
+        if outlets { self.balance(metrics) } else { Ok(()) }
     }
 
     /// Shifts what leaves through convective outlets so that it equals what enters. Without outlets the inlets are
@@ -226,9 +263,12 @@ impl<const D: usize> Boundaries<D> {
     fn balance(&mut self, metrics: &Metrics<D>) -> Result<(), FlowError> {
         let (mut net, mut inflow) = (0.0, 0.0);
         let (mut outlet, mut inlet, mut free) = (0.0, 0.0, false);
+        let mut fastest = 0.0_f64;
         for (lines, pair) in self.lines.iter().zip(&self.states) {
             for (upper, state) in pair.iter().flat_map(|p| p.iter()).enumerate() {
                 for l in (0..lines.len()).filter(|&l| lines.inside(l)) {
+                    let along = state.laws.iter().filter_map(|law| law.value.get(l));
+                    fastest = along.chain([&state.normal[l]]).fold(fastest, |top, u| top.max(u.abs()));
                     let face = face_area(metrics, lines, l, D);
                     let outward = [-1.0, 1.0][upper] * face * state.normal[l];
                     net += outward;
@@ -243,10 +283,16 @@ impl<const D: usize> Boundaries<D> {
             }
         }
         self.imbalance = 0.0;
+        if !net.is_finite() {
+            let what = "a velocity at an inlet that is not finite; give a function that is".into();
+            return Err(FlowError::Boundary { what });
+        }
         if free || net == 0.0 {
             return Ok(());
         }
-        if outlet == 0.0 && net.abs() > SUMMING_ERROR * inflow.max(inflow + net) {
+        // Round-off of a lid, say, given by a function.
+        let round_off = 1e-12 * inlet * fastest;
+        if outlet == 0.0 && net.abs() > round_off.max(SUMMING_ERROR * inflow.max(inflow + net)) {
             return Err(FlowError::MassBalance { net, inflow });
         }
         let (kind, area) =
@@ -414,18 +460,20 @@ impl<const D: usize> Boundaries<D> {
         rates
     }
 
-    /// The velocities on the boundary faces, which outlets remember; all sides one after the other.
+    /// The velocities on the sides, which outlets and implicit diffusion remember; all sides one after the other.
     pub(crate) fn memory(&self) -> Vec<f64> {
-        self.states.iter().flatten().flat_map(|p| p.iter()).flat_map(|s| s.normal.iter().copied()).collect()
+        let states = self.states.iter().flatten().flat_map(|p| p.iter());
+        states
+            .flat_map(|s| s.normal.iter().chain(s.laws.iter().flat_map(|law| &law.value)).copied())
+            .collect()
     }
-    /// Takes back what [`memory`](Self::memory) gave; `time` is that of the state.
-    pub(crate) fn recall(&mut self, metrics: &Metrics<D>, time: f64, memory: &[f64]) {
-        self.set(metrics, time, false);
+    /// Takes back what [`memory`](Self::memory) gave.
+    pub(crate) fn recall(&mut self, memory: &[f64]) {
         let mut memory = memory.iter();
-        for normal in self.states.iter_mut().flatten().flat_map(|p| p.iter_mut()).flat_map(|s| &mut s.normal)
-        {
-            if let Some(&value) = memory.next() {
-                *normal = value;
+        for state in self.states.iter_mut().flatten().flat_map(|p| p.iter_mut()) {
+            let laws = state.laws.iter_mut().flat_map(|law| &mut law.value);
+            for (value, &kept) in state.normal.iter_mut().chain(laws).zip(&mut memory) {
+                *value = kept;
             }
         }
     }
@@ -472,6 +520,7 @@ impl<const D: usize> SideState<D> {
             side,
             kind,
             normal: list(),
+            given: list(),
             normal_change: list(),
             pressure,
             laws,
@@ -499,8 +548,10 @@ impl<const D: usize> SideState<D> {
             for c in 0..D {
                 let x = place(metrics, lines, c, self.at, l);
                 let x = clamped(grid, x);
-                // Patches cover the side; ghost lines are moved to its edge.
-                let Some((side, extent)) = part(grid, &self.side, a, x) else { continue };
+                // A node between patches belongs to the one that holds the face beside it.
+                let part = part(grid, &self.side, a, x)
+                    .or_else(|| part(grid, &self.side, a, face_centre(grid, lines, self.at, l)));
+                let Some((side, extent)) = part else { continue };
                 let given = match side {
                     Side::Wall(u) => Some(u[c]),
                     Side::Inlet(profile) => Some(profile.at(sides, a, c, inward, extent, x, time)),
@@ -509,7 +560,7 @@ impl<const D: usize> SideState<D> {
                 };
                 if c == a {
                     if let Some(u) = given {
-                        self.normal_change[l] = u - self.normal[l];
+                        self.given[l] = u;
                         self.normal[l] = u;
                     }
                 } else {

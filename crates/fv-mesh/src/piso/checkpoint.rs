@@ -26,7 +26,7 @@ impl<const D: usize> Checkpoint for Piso<D> {
         (self.time, self.step, self.last_dt) = (clock[0], clock[1] as u64, clock[2]);
         self.rates.copy_from_slice(RestartError::take(source, "rates", D)?);
         let sides = RestartError::take(source, "sides", self.boundaries.memory().len())?;
-        self.boundaries.recall(&self.metrics, self.time, sides);
+        self.boundaries.recall(sides);
         Ok(())
     }
 }

@@ -212,7 +212,7 @@ impl<const D: usize> Piso<D> {
                 u.iter_mut().zip(older).for_each(|(u, older)| *u += r * (*u - older));
             }
         }
-        self.boundaries.advance(&self.metrics, self.time + dt);
+        self.boundaries.advance(&self.metrics, self.time + dt)?;
         self.fill_velocity();
         for c in 0..D {
             let equation = Equation {

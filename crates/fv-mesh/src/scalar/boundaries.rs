@@ -56,6 +56,8 @@ impl<const D: usize> ScalarBoundaries<D> {
         }
         let mut new = Self { grid: grid.clone(), lines, states, time: 0.0 };
         new.set(0.0, true);
+        // Nothing has changed yet.
+        new.states.iter_mut().flatten().flat_map(|p| p.iter_mut()).for_each(|s| s.change.fill(0.0));
         Ok(new)
     }
 

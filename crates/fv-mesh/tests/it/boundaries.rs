@@ -1,6 +1,6 @@
 //! Inlets, outlets, patches and their balance.
 use crate::norms;
-use fv_mesh::{Axis, CartesianGrid, FlowError, Fluid, Patch, Profile, Projection, Side};
+use fv_mesh::{Axis, CartesianGrid, Diffusion, FlowError, Fluid, Patch, Profile, Projection, Side};
 
 const OIL: Fluid = Fluid { density: 2.0, viscosity: 0.05 };
 
@@ -48,6 +48,55 @@ fn two_given_pressures_drive_a_channel() {
     // u = (Δp/L) y(1 − y)/2ρν, to round-off.
     let off = norms::velocity(&flow, |x| [0.5 * x[1] * (1.0 - x[1]), 0.0]).max;
     assert!(off < 1e-6, "{off}");
+}
+
+/// A steady side opposite one that changes in time is not taken to change.
+#[test]
+fn couette_flow_between_a_wall_and_a_function_of_time_is_linear() {
+    let grid = CartesianGrid::new([2, 16], [0.1, 1.0]).unwrap();
+    let upper = Side::Inlet(Profile::function(|_, t| [2.0 * t.min(1.0), 0.0, 0.0]));
+    let sides = [Side::Periodic.both(), [Side::Wall([1.0, 0.0, 0.0]), upper]];
+    let fluid = Fluid { density: 1.0, viscosity: 1.0 };
+    let mut flow = Projection::new(grid, sides, fluid).unwrap().with_diffusion(Diffusion::Implicit);
+    while flow.time() < 4.0 {
+        flow.advance(0.01, [0.0; 2]).unwrap();
+    }
+    let off = norms::velocity(&flow, |x| [1.0 + x[1], 0.0]).max;
+    assert!(off < 1e-8, "{off}");
+}
+
+#[test]
+fn inlets_that_cease_to_balance_are_told() {
+    let grid = CartesianGrid::new([8, 8], [1.0, 1.0]).unwrap();
+    let sides = |rate: f64| {
+        let right = Profile::function(move |_, t| [1.0 + rate * t, 0.0, 0.0]);
+        [[Side::Inlet(Profile::Uniform([1.0, 0.0, 0.0])), Side::Inlet(right)], Side::FreeSlip.both()]
+    };
+    let mut flow = Projection::new(grid.clone(), sides(0.1), OIL).unwrap();
+    let error = (0..100).find_map(|_| flow.advance(0.01, [0.0; 2]).err());
+    assert!(matches!(error, Some(FlowError::MassBalance { .. })), "{error:?}");
+    assert!((0.18..0.23).contains(&flow.time()), "{}", flow.time());
+    // A lid whose normal component is round-off.
+    let lid = Profile::function(|x, _| [1.0, 1e-16 * (1.0 + x[0]), 0.0]);
+    let sides = [Side::WALL.both(), [Side::WALL, Side::Inlet(lid)]];
+    assert!(Projection::new(grid, sides, OIL).is_ok());
+}
+
+#[test]
+fn explicit_diffusion_is_stable_between_close_walls() {
+    for n in 1..12 {
+        let grid = CartesianGrid::new([1, n], [50.0, 1.0]).unwrap();
+        let sides = [Side::Periodic.both(), Side::WALL.both()];
+        let flow = Projection::new(grid, sides, OIL).unwrap().with_diffusion(Diffusion::Explicit);
+        let mut flow = flow;
+        flow.set_velocity(|x| [(37.0 * x[1]).sin(), 0.0]);
+        let dt = 0.99 * flow.viscous_limit();
+        let start = flow.statistics().kinetic_energy;
+        for _ in 0..300 {
+            flow.advance(dt, [0.0; 2]).unwrap();
+        }
+        assert!(flow.statistics().kinetic_energy < start, "{n} cells");
+    }
 }
 
 #[test]

@@ -59,6 +59,25 @@ impl Closure for Uniform {
     }
 }
 
+/// A refused step leaves nothing behind.
+#[test]
+fn a_force_is_not_felt_twice_after_a_refused_step() {
+    let (mut tried, mut plain) = (vortices(0.01), vortices(0.01));
+    let field = || Hooks::none().with_body_force(ForceField(|x: [f64; 2], _t: f64| [x[1].sin(), 0.0]));
+    assert!(tried.advance_with(-1.0, &mut field()).is_err());
+    let n = tried.grid().n_cells();
+    let modelled = Modelled::new(Uniform(vec![1e3; n]), &tried, TransportParams::default()).unwrap();
+    assert!(tried.advance_with(0.02, &mut field().with_closure(modelled)).is_err());
+    for _ in 0..3 {
+        tried.advance_with(0.02, &mut field()).unwrap();
+        plain.advance_with(0.02, &mut field()).unwrap();
+    }
+    assert_eq!(difference(&tried, &plain), 0.0);
+    let short = Modelled::new(Uniform(vec![1e-3; n - 1]), &tried, TransportParams::default()).unwrap();
+    let error = tried.advance_with(0.02, &mut Hooks::none().with_closure(short)).unwrap_err().to_string();
+    assert!(error.contains("480 cells"), "{error}");
+}
+
 #[test]
 fn a_uniform_eddy_viscosity_is_a_viscosity() {
     // ∇·(∇u)ᵀ is a gradient times div u = 0: in a box without walls the discrete operators agree to round-off.

@@ -223,8 +223,8 @@ impl<const D: usize> Projection<D> {
         S: ScalarTransport<D>,
     {
         let Hooks { body_force, forcing, closure, scalars } = hooks;
-        self.choose_implicit(dt)?;
         self.forget_sources();
+        self.choose_implicit(dt)?;
         // Of the middle of the step, as what is explicit is extrapolated to it.
         let uniform = body_force.uniform(self.time() + 0.5 * dt);
         if B::VARIES {

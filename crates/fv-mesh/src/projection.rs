@@ -219,6 +219,9 @@ impl<const D: usize> Projection<D> {
     /// for one beyond the [`viscous_limit`](Self::viscous_limit) of [`Diffusion::Explicit`], [`FlowError::MassBalance`] if
     /// what enters cannot leave.
     pub fn predict(&mut self, dt: f64, force: [f64; D]) -> Result<(), FlowError> {
+        if !self.sources_given {
+            self.eddy_most = 0.0;
+        }
         let implicit = self.choose_implicit(dt)?;
         // The fields hold the old values in their ghosts.
         self.boundaries.advance(&self.metrics, self.time + dt)?;

@@ -284,7 +284,9 @@ impl<const D: usize> Projection<D> {
         for c in 0..D {
             std::mem::swap(&mut self.velocity.components[c], &mut self.next[c]);
         }
-        self.boundaries.advance_outlets(&self.metrics, &self.velocity.components, dt, nu)?;
+        let velocities = [&self.next, &self.velocity.components];
+        self.boundaries.advance_outlets(&self.metrics, velocities[1], dt, nu)?;
+        self.boundaries.advance_pressure_faces(&self.metrics, velocities, &self.pressure, self.fluid, dt);
         self.last_dt = dt;
         self.fill_velocity();
         if any_implicit {

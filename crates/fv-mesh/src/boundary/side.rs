@@ -64,7 +64,9 @@ pub enum Side {
     /// Fluid leaves: ∂u/∂t + U ∂u/∂n = 0 for the component through the side, U the largest speed there plus ν/h, and ∂u/∂n = 0 for
     /// the others. What leaves through all such faces is shifted by one velocity so that it equals what enters.
     ConvectiveOutlet,
-    /// Fluid leaves (or enters) through a side of given pressure \[Pa\], with ∂u/∂n = 0.
+    /// Fluid leaves (or enters) through a side of given pressure \[Pa\], with ∂u/∂n = 0 for the components along it; the
+    /// component through it follows the momentum of the face inside and the pressure gradient to the given value. Needs
+    /// two or more cells along the axis.
     PressureOutlet(f64),
     /// Different things on parts of the side: the first patch that holds a face's centre counts. Patches have to cover
     /// the whole side.

@@ -1,7 +1,7 @@
 //! The boundary conditions as the flow algorithms use them: values on every face of the bounded sides.
-mod segregated;
+mod pressure_faces;
 
-pub(crate) use segregated::PressureFace;
+pub(crate) use pressure_faces::PressureFace;
 
 use super::{Lines, Patch, Profile, Side, Sides};
 use crate::grid::GHOSTS;
@@ -212,7 +212,7 @@ impl<const D: usize> Boundaries<D> {
         Ok(())
     }
 
-    /// Moves the outlets on by `dt`; `velocity` is the predicted one.
+    /// Moves the convective outlets on by `dt`; `velocity` is the predicted one.
     ///
     /// # Errors
     /// [`FlowError::MassBalance`] if what enters cannot leave.
@@ -242,14 +242,10 @@ impl<const D: usize> Boundaries<D> {
                 let gap = self.grid.axis(a).width(if upper == 1 { lines.cells - 1 } else { 0 });
                 let courant = (fastest + viscosity / gap) * dt / gap;
                 for (l, o) in lines.starts().enumerate().filter(|&(l, _)| lines.inside(l)) {
-                    let inside =
-                        u[if upper == 1 { o + (lines.cells - 1) * lines.step } else { o + lines.step }];
-                    match state.kind[l] {
-                        FaceKind::Closed | FaceKind::Inlet => {}
-                        FaceKind::Convective => {
-                            state.normal[l] = (state.normal[l] + courant * inside) / (1.0 + courant);
-                        }
-                        FaceKind::Pressure => state.normal[l] = inside,
+                    if state.kind[l] == FaceKind::Convective {
+                        let inside =
+                            u[if upper == 1 { o + (lines.cells - 1) * lines.step } else { o + lines.step }];
+                        state.normal[l] = (state.normal[l] + courant * inside) / (1.0 + courant);
                     }
                 }
             }
@@ -508,6 +504,13 @@ impl<const D: usize> SideState<D> {
             kind[l] = match part {
                 Side::ConvectiveOutlet => FaceKind::Convective,
                 Side::PressureOutlet(p) => {
+                    if lines.cells < 2 {
+                        return Err(FlowError::Boundary {
+                            what: format!(
+                                "an outlet of given pressure on axis {a}, which has one cell; it needs two or more"
+                            ),
+                        });
+                    }
                     pressure[l] = *p;
                     FaceKind::Pressure
                 }

@@ -246,6 +246,7 @@ impl<const D: usize> Piso<D> {
             dt,
             self.fluid.viscosity,
         )?;
+        self.boundaries.reset_outlets(&self.velocity.components);
         self.correction.update(&mut self.boundaries, self.fluid.viscosity)?;
         self.fill_velocity();
         self.corrections = 0;

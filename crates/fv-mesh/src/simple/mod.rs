@@ -223,6 +223,7 @@ impl<const D: usize> Simple<D> {
             LONG,
             self.fluid.viscosity,
         )?;
+        self.boundaries.reset_outlets(&self.velocity.components);
         self.fill();
         self.correction.update(&mut self.boundaries, self.fluid.viscosity)?;
         let through = momentum::throughput(&self.grid, &self.metrics, &self.velocity.components);

@@ -1,6 +1,8 @@
 //! Inlets, outlets, patches and their balance.
 use crate::norms;
-use fv_mesh::{Axis, CartesianGrid, Diffusion, FlowError, Fluid, Patch, Profile, Projection, Side};
+use fv_mesh::{
+    Axis, CartesianGrid, Diffusion, Field, FlowError, Fluid, Patch, Profile, Projection, Side, Simple,
+};
 
 const OIL: Fluid = Fluid { density: 2.0, viscosity: 0.05 };
 
@@ -187,4 +189,31 @@ fn an_axis_of_one_cell_and_stretched_walls_work() {
         flow.advance(5e-3, [0.0; 2]).unwrap();
     }
     assert!(norms::velocity(&flow, |_| [1.0, 0.0]).max < 1e-10);
+}
+
+/// Only the gradient to the given pressure tells an outlet on a part of a side the level of the pressure inside.
+#[test]
+fn the_pressure_behind_a_part_of_a_side_settles_whatever_the_step() {
+    let patch =
+        |low: f64, high: f64, side: Side| Patch { lower: [0.0, low, 0.0], upper: [1.0, high, 0.0], side };
+    let inlet = Side::Inlet(Profile::Uniform([1.0, 0.0, 0.0]));
+    let left = Side::Patches(vec![patch(0.5, 1.0, inlet), patch(0.0, 1.0, Side::WALL)]);
+    let right = Side::Patches(vec![patch(0.0, 0.5, Side::PressureOutlet(1.0)), patch(0.0, 1.0, Side::WALL)]);
+    let sides = || [[left.clone(), right.clone()], [Side::WALL, Side::FreeSlip]];
+    let grid = CartesianGrid::new([24, 20], [1.0, 1.0]).unwrap();
+    let fluid = Fluid { density: 1.3, viscosity: 0.02 };
+    let mean = |p: &Field<2>| p.values().sum::<f64>() / 480.0;
+    let [(fine, fine_energy), (coarse, coarse_energy)] = [2e-3, 4e-3].map(|dt| {
+        let mut flow = Projection::new(grid.clone(), sides(), fluid).unwrap();
+        while flow.time() < 6.0 {
+            flow.advance(dt, [0.0; 2]).unwrap();
+        }
+        (mean(flow.pressure()), flow.statistics().kinetic_energy)
+    });
+    assert!((fine - coarse).abs() < 1e-3 && (fine_energy / coarse_energy - 1.0).abs() < 1e-4);
+    let mut steady = Simple::new(grid, sides(), fluid).unwrap();
+    steady.solve(500, 1e-6).unwrap();
+    let (level, energy) = (mean(steady.pressure()), steady.statistics().kinetic_energy);
+    assert!((fine - level).abs() < 0.1 * (level - 1.0), "{fine} {level}");
+    assert!((fine_energy / energy - 1.0).abs() < 0.02, "{fine_energy} {energy}");
 }

@@ -1,0 +1,86 @@
+//! Faces through which the velocity follows from a given pressure.
+use super::{Boundaries, FaceKind};
+use crate::grid::GHOSTS;
+use crate::metrics::Metrics;
+use crate::{Field, Fluid};
+
+/// A face through which the velocity follows from a given pressure.
+pub(crate) struct PressureFace {
+    pub(crate) axis: usize,
+    pub(crate) upper: bool,
+    /// Dense number and storage index of the cell before it.
+    pub(crate) cell: usize,
+    pub(crate) index: usize,
+    /// Pressure on it \[Pa\].
+    pub(crate) pressure: f64,
+}
+
+impl<const D: usize> Boundaries<D> {
+    /// Calls `f` with all faces of given pressure, in a fixed order, and the velocity through them, to change.
+    pub(crate) fn each_pressure_face(&mut self, mut f: impl FnMut(PressureFace, &mut f64)) {
+        for (axis, (lines, pair)) in self.lines.iter().zip(&mut self.states).enumerate() {
+            let Some(pair) = pair else { continue };
+            for (upper, state) in pair.iter_mut().enumerate().filter(|(_, s)| s.has_pressure()) {
+                let upper = upper == 1;
+                for (l, o) in lines.starts().enumerate().filter(|&(l, _)| lines.inside(l)) {
+                    if state.kind[l] == FaceKind::Pressure {
+                        let cell = lines.end_cell(&self.grid, l, upper);
+                        let index = if upper { o + (lines.cells - 1) * lines.step } else { o };
+                        let pressure = state.pressure[l];
+                        f(PressureFace { axis, upper, cell, index, pressure }, &mut state.normal[l]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Moves the velocity u_b through faces of given pressure on by `dt`, from `old` to the predicted one, by the momentum
+    /// equation there with what acts one face inside, at i,
+    ///
+    /// ```text
+    /// ∂u_b/∂t = [∂u/∂t + ∂p/∂n /ρ + u ∂u/∂n]_i − (∂p/∂n /ρ)_b − (|u| + 2ν/w)(u_b − u_i)/w
+    /// ```
+    ///
+    /// w the width of the cell between them, the last term implicit. `pressure`, ghosts filled, is that of the predictor:
+    /// its gradient at b, to the given value, is what keeps the level of the pressure inside.
+    pub(crate) fn advance_pressure_faces(
+        &mut self,
+        metrics: &Metrics<D>,
+        [old, new]: [&[Field<D>; D]; 2],
+        pressure: &Field<D>,
+        fluid: Fluid,
+        dt: f64,
+    ) {
+        let (stride, cells, p) = (self.grid.stride(), self.grid.cells(), pressure.data());
+        self.each_pressure_face(|face, normal| {
+            let (a, s) = (face.axis, stride[face.axis]);
+            let (axis, i) = (&metrics.axes[a], face.inside(stride));
+            let at = GHOSTS + if face.upper { cells[a] - 1 } else { 1 };
+            let (before, after) = (old[a].data(), new[a].data()[i]);
+            let rise = |k: usize, at: usize| axis.faces.inv_gap[at] * (before[k] - before[k - s]);
+            let slope = 0.5 * (rise(i, at) + rise(i + s, at + 1));
+            let gradient = axis.faces.inv_gap[at] * (p[i] - p[i - s]);
+            let width = axis.width[if face.upper { at } else { at - 1 }];
+            let above = if face.upper { face.index + s } else { face.index };
+            let outer = (p[above] - p[above - s]) / width;
+            let rate = (gradient - outer) / fluid.density + before[i] * slope;
+            let relax = dt / width * (normal.abs() + 2.0 * fluid.viscosity / width);
+            *normal = (*normal + after - before[i] + dt * rate + relax * after) / (1.0 + relax);
+        });
+    }
+
+    /// Velocity through the faces of given pressure as one cell inside.
+    pub(crate) fn reset_outlets(&mut self, velocity: &[Field<D>; D]) {
+        let stride = self.grid.stride();
+        self.each_pressure_face(|face, normal| {
+            *normal = velocity[face.axis].data()[face.inside(stride)];
+        });
+    }
+}
+
+impl PressureFace {
+    /// Storage index of the face one cell inside, where the velocity along the axis is an unknown.
+    fn inside<const D: usize>(&self, stride: [usize; D]) -> usize {
+        if self.upper { self.index } else { self.index + stride[self.axis] }
+    }
+}

@@ -1,5 +1,5 @@
 //! Implicit diffusion by factors along the axes.
-use crate::boundary::{Boundaries, Lines, extrapolation};
+use crate::boundary::{Boundaries, Extrapolation, Lines};
 use crate::grid::GHOSTS;
 use crate::kernels::layers_per_task;
 use crate::metrics::Metrics;
@@ -158,7 +158,7 @@ impl<const D: usize> ImplicitDiffusion<D> {
             let (low, high) = (scaled(&nodes.down), scaled(&nodes.up));
             // A value given on the next node (normal component), or half way to it.
             let fixed = |upper: bool| {
-                let e = extrapolation(&self.grid, a, upper);
+                let e = Extrapolation::beyond(&self.grid, a, upper);
                 if a == c { [0.0; 2] } else { [e.first, e.second] }
             };
             for kind in 0..4 {

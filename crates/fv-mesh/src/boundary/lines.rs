@@ -1,6 +1,7 @@
 //! The lines of nodes along one axis, which start and end at its two sides.
 use crate::CartesianGrid;
 use crate::grid::GHOSTS;
+use crate::metrics::Metrics;
 
 /// The lines along axis `a`, ghost lines of the other axes included: so corners are filled, one axis after another.
 #[derive(Clone, Debug)]
@@ -64,5 +65,39 @@ impl Lines {
         }
         cell[self.axis] = if upper { self.cells - 1 } else { 0 };
         grid.index(cell)
+    }
+
+    /// Centre of the face at which line `l` ends, on a side at `at`; ghost lines are moved to the edge of the side.
+    pub(crate) fn face_centre<const D: usize>(&self, grid: &CartesianGrid<D>, at: f64, l: usize) -> [f64; 3] {
+        let index = self.place(l);
+        let mut x = [0.0; 3];
+        x[self.axis] = at;
+        for b in 0..D - 1 {
+            let axis = grid.axis(self.across[b]);
+            let i = index[b].saturating_sub(GHOSTS).min(axis.cells() - 1);
+            x[self.across[b]] = axis.centre(i);
+        }
+        x
+    }
+    /// Area of the face at which line `l` ends \[m²\]; length in a plane grid.
+    pub(crate) fn face_area<const D: usize>(&self, metrics: &Metrics<D>, l: usize) -> f64 {
+        let index = self.place(l);
+        (0..D - 1).map(|b| metrics.axes[self.across[b]].width[index[b]]).product()
+    }
+    /// Storage index of the cell before a side and of the ghost behind it, on the line that starts at `o`.
+    pub(crate) fn ends(&self, o: usize, upper: usize) -> (usize, usize) {
+        let last = o + (self.cells - 1) * self.step;
+        if upper == 1 { (last, last + self.step) } else { (o, o - self.step) }
+    }
+    /// Fills the ghosts of a periodic axis.
+    pub(crate) fn wrap(&self, u: &mut [f64]) {
+        let (n, s) = (self.cells, self.step);
+        let (before, after) = ((2 * n - 2) % n, 1 % n);
+        for o in self.starts() {
+            u[o - s] = u[o + (n - 1) * s];
+            u[o - 2 * s] = u[o + before * s];
+            u[o + n * s] = u[o];
+            u[o + (n + 1) * s] = u[o + after * s];
+        }
     }
 }

@@ -1,8 +1,18 @@
 //! What happens at the sides of the box.
+mod boundaries;
+mod ends;
+mod extrapolation;
+mod ghosts;
 mod lines;
+mod outlets;
+mod pressure_faces;
 mod side;
-mod state;
+mod side_state;
 
+pub(crate) use boundaries::Boundaries;
+pub(crate) use extrapolation::Extrapolation;
 pub(crate) use lines::Lines;
+pub(crate) use pressure_faces::PressureFace;
 pub use side::{Patch, Profile, Side, Sides};
-pub(crate) use state::{Boundaries, FaceKind, PressureFace, extrapolation, face_centre, wrap};
+pub(crate) use side_state::FaceKind;
+use side_state::{Law, SideState};

@@ -10,7 +10,7 @@ use eddy::add_eddy_stress;
 pub(crate) use equations::{Equation, MomentumEquations};
 pub(crate) use solver::MomentumSolver;
 
-use crate::boundary::{Boundaries, extrapolation};
+use crate::boundary::{Boundaries, Extrapolation};
 use crate::grid::GHOSTS;
 use crate::linear::StencilMatrix;
 use crate::metrics::Metrics;
@@ -34,7 +34,7 @@ pub(crate) fn fold_ends<const D: usize>(
             continue;
         }
         let beyond = [false, true].map(|upper| {
-            let e = extrapolation(grid, a, upper);
+            let e = Extrapolation::beyond(grid, a, upper);
             [e.first, e.second]
         });
         for l in (0..lines.len()).filter(|&l| lines.inside(l)) {

@@ -1,6 +1,6 @@
 //! Boundary conditions of a scalar as the algorithms use them: ghost values.
 use super::{Given, ScalarSide};
-use crate::boundary::{Lines, face_centre, wrap};
+use crate::boundary::Lines;
 use crate::{CartesianGrid, Field, FlowError};
 
 /// The boundary conditions of a cell-centred scalar on every face of the sides of a box, at one time.
@@ -106,7 +106,7 @@ impl<const D: usize> ScalarBoundaries<D> {
         }
         // Last, so that periodic ghosts repeat the bounded ones.
         for (lines, _) in self.lines.iter().zip(&self.states).filter(|(_, s)| s.is_none()) {
-            wrap(lines, phi);
+            lines.wrap(phi);
         }
     }
 
@@ -175,7 +175,7 @@ impl SideState {
     fn set<const D: usize>(&mut self, grid: &CartesianGrid<D>, lines: &Lines, time: f64) {
         for l in 0..lines.len() {
             let Some((.., given)) = self.condition(l) else { continue };
-            let c = given.at(face_centre(grid, lines, self.at, l), time);
+            let c = given.at(lines.face_centre(grid, self.at, l), time);
             let value = self.scale[0][l] * c;
             self.change[l] = value - self.value[0][l];
             self.value[0][l] = value;
@@ -214,7 +214,7 @@ fn find<const D: usize>(
     upper: bool,
 ) -> Result<usize, FlowError> {
     let ScalarSide::Patches(patches) = side else { return Ok(0) };
-    let (a, x) = (lines.axis, face_centre(grid, lines, at, l));
+    let (a, x) = (lines.axis, lines.face_centre(grid, at, l));
     let across = || (0..D).filter(|&b| b != a);
     patches.iter().position(|p| across().all(|b| p.lower[b] <= x[b] && x[b] <= p.upper[b])).ok_or_else(|| {
         FlowError::Boundary {

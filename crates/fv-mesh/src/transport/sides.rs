@@ -1,5 +1,5 @@
 //! The sides of a flow as a transported quantity sees them.
-use crate::boundary::{Lines, face_centre, wrap};
+use crate::boundary::Lines;
 use crate::grid::GHOSTS;
 use crate::metrics::Metrics;
 use crate::{Axis, CartesianGrid, Field, FlowError, Patch, Side, Sides};
@@ -43,7 +43,7 @@ impl<const D: usize> CellSides<D> {
             let of = |upper: usize| -> Result<Vec<Kind>, FlowError> {
                 let at = [grid.axis(a).lower(), grid.axis(a).upper()][upper];
                 (0..lines[a].len())
-                    .map(|l| kind::<D>(&sides.of(a)[upper], a, face_centre(grid, &lines[a], at, l)))
+                    .map(|l| kind::<D>(&sides.of(a)[upper], a, lines[a].face_centre(grid, at, l)))
                     .collect()
             };
             kinds[a] = Some([of(0)?, of(1)?]);
@@ -86,7 +86,7 @@ impl<const D: usize> CellSides<D> {
             }
         }
         for (lines, _) in self.lines.iter().zip(&self.kinds).filter(|(_, k)| k.is_none()) {
-            wrap(lines, data);
+            lines.wrap(data);
         }
     }
 

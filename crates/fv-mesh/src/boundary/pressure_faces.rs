@@ -69,6 +69,48 @@ impl<const D: usize> Boundaries<D> {
         });
     }
 
+    /// The velocity through faces of given pressure follows the correction: u −= `scale` ∂φ/∂n with φ = 0 on the side;
+    /// `phi` is dense.
+    pub(crate) fn correct(&mut self, scale: f64, phi: &[f64]) {
+        for (a, (lines, pair)) in self.lines.iter().zip(&mut self.states).enumerate() {
+            let Some(pair) = pair else { continue };
+            for (upper, state) in pair.iter_mut().enumerate().filter(|(_, s)| s.has_pressure()) {
+                let sign = [-1.0, 1.0][upper];
+                let width = self.grid.axis(a).width(if upper == 1 { lines.cells - 1 } else { 0 });
+                for l in (0..lines.len()).filter(|&l| lines.inside(l)) {
+                    if state.kind[l] == FaceKind::Pressure {
+                        let inside = phi[lines.end_cell(&self.grid, l, upper == 1)];
+                        state.normal[l] += sign * scale * 2.0 * inside / width;
+                    }
+                }
+            }
+        }
+    }
+
+    /// −2 p/w² in the cells before faces of given pressure p, zero elsewhere (dense): the right-hand side of the harmonic
+    /// pressure that takes those values. `None` without such faces.
+    pub(crate) fn given_pressures(&self) -> Option<Vec<f64>> {
+        let sides = || {
+            self.lines.iter().zip(&self.states).flat_map(|(lines, pair)| {
+                pair.iter()
+                    .flat_map(|p| p.iter())
+                    .enumerate()
+                    .map(move |(upper, state)| (lines, upper, state))
+            })
+        };
+        if !sides().any(|(_, _, state)| state.has_pressure()) {
+            return None;
+        }
+        let mut rhs = vec![0.0; self.grid.n_cells()];
+        for (lines, upper, state) in sides() {
+            let width = self.grid.axis(lines.axis).width(if upper == 1 { lines.cells - 1 } else { 0 });
+            for l in (0..lines.len()).filter(|&l| lines.inside(l) && state.kind[l] == FaceKind::Pressure) {
+                rhs[lines.end_cell(&self.grid, l, upper == 1)] -= 2.0 * state.pressure[l] / (width * width);
+            }
+        }
+        Some(rhs)
+    }
+
     /// Velocity through the faces of given pressure as one cell inside.
     pub(crate) fn reset_outlets(&mut self, velocity: &[Field<D>; D]) {
         let stride = self.grid.stride();

@@ -1,9 +1,9 @@
 //! Files of a run: fields and bodies for ParaView, trajectories for everyone.
 use crate::{CouplingError, Observer, Particles, Simulation, StepInfo};
 use dem::RigidBodies;
-use fv_mesh::CellWriter;
+use fv_mesh::{CellWriter, TimeSeries};
 use ibm::{Forcing, SolidFraction};
-use interfaces::{BodyId, Kinematics, Point, vtk};
+use interfaces::{BodyId, Kinematics, Point};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 pub struct FileOutput {
     folder: PathBuf,
     csv: BufWriter<File>,
-    series: [Series; 2],
+    series: [TimeSeries; 2],
     fraction: SolidFraction,
     lambda: Vec<f64>,
     seconds: f64,
@@ -27,8 +27,7 @@ pub struct FileOutput {
 /// Series are written again at most this often, and when the output is dropped.
 const LIST_EVERY: Duration = Duration::from_secs(1);
 
-/// Time, part and file of the entries of a `.pvd`.
-type Series = Vec<(f64, usize, String)>;
+/// The series of the fields and of the bodies.
 const SERIES: [&str; 2] = ["fields.pvd", "bodies.pvd"];
 
 const CSV_HEADER: &str = "\
@@ -56,7 +55,7 @@ impl FileOutput {
             File::create(folder.join("trajectories.csv")).map_err(at("making trajectories.csv"))?,
         );
         writeln!(csv, "{CSV_HEADER}").map_err(at("writing trajectories.csv"))?;
-        Ok(Self::with(folder, csv, [Vec::new(), Vec::new()]))
+        Ok(Self::with(folder, csv, SERIES.map(|name| TimeSeries::new(folder.join(name)))))
     }
 
     /// Goes on in a folder that an earlier run wrote up to `time` \[s\] at least; what it wrote
@@ -75,17 +74,8 @@ impl FileOutput {
                 writeln!(csv, "{line}")?;
             }
             csv.flush()?;
-            let mut series = [Vec::new(), Vec::new()];
-            for (series, name) in series.iter_mut().zip(SERIES) {
-                for line in std::fs::read_to_string(folder.join(name))?.lines() {
-                    let field = |key: &str| line.split_once(key)?.1.split('"').nth(1);
-                    if let (Some(t), Some(file)) = (field("timestep="), field("file="))
-                        && !past(t)
-                    {
-                        series.push((t.parse().unwrap_or(0.0), 0, file.to_owned()));
-                    }
-                }
-            }
+            let [fields, bodies] = SERIES.map(|name| TimeSeries::resume(folder.join(name), time));
+            let series = [fields?, bodies?];
             Ok(Self::with(folder, csv, series))
         };
         go_on().map_err(|source| CouplingError::Output {
@@ -94,7 +84,7 @@ impl FileOutput {
         })
     }
 
-    fn with(folder: &Path, csv: BufWriter<File>, series: [Series; 2]) -> Self {
+    fn with(folder: &Path, csv: BufWriter<File>, series: [TimeSeries; 2]) -> Self {
         let folder = folder.into();
         Self {
             folder,
@@ -116,16 +106,9 @@ impl FileOutput {
         self.seconds
     }
 
-    /// Writes the series that list all snapshots so far, each beside its old version and then in its place, so
-    /// that what is there can always be opened.
+    /// Writes the series that list all snapshots so far.
     fn list(&mut self) -> io::Result<()> {
-        for (series, name) in self.series.iter().zip(SERIES) {
-            let (path, part) = (self.folder.join(name), self.folder.join(name).with_extension("part"));
-            let mut file = BufWriter::new(File::create(&part)?);
-            vtk::write_series(&mut file, series)?;
-            file.flush()?;
-            std::fs::rename(&part, &path)?;
-        }
+        self.series.iter().try_for_each(TimeSeries::save)?;
         self.listed = Some(Instant::now());
         Ok(())
     }
@@ -166,7 +149,7 @@ impl FileOutput {
         file.flush()?;
 
         for (series, name) in self.series.iter_mut().zip(names) {
-            series.push((info.time, 0, name));
+            series.add(info.time, name)?;
         }
         if self.listed.is_none_or(|t| t.elapsed() > LIST_EVERY) {
             self.list()?;

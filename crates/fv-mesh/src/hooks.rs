@@ -1,6 +1,8 @@
 //! What acts on a flow beside pressure and viscosity, each slot a type: `()` is nothing and costs nothing.
+use crate::flow_state::{each_cell, each_node};
+use crate::grid::GHOSTS;
 use crate::transport::CellTransport;
-use crate::{Field, FlowError, Projection, Scalar, ScalarTransport, TransportParams};
+use crate::{Field, FlowError, Projection, Scalar, ScalarTransport, TransportParams, Velocity};
 use interfaces::{Closure, Vector};
 
 /// The slots of [`Projection::advance_with`].
@@ -91,7 +93,7 @@ impl<const D: usize, S, F: Fn([f64; D], f64) -> [f64; D]> BodyForce<D, S> for Fo
     fn add(&self, flow: &Projection<D>, _scalars: &S, source: &mut [Field<D>; D]) {
         let time = flow.time();
         for (c, source) in source.iter_mut().enumerate() {
-            flow.each_node(c, |o, x| source.data_mut()[o] += self.0(x, time)[c]);
+            each_node(flow.grid(), &flow.state.metrics, c, |o, x| source.data_mut()[o] += self.0(x, time)[c]);
         }
     }
 }
@@ -113,9 +115,9 @@ impl<const D: usize> BodyForce<D, Scalar<D>> for Boussinesq {
         let phi = scalar.field().data();
         for (c, source) in source.iter_mut().enumerate().filter(|(c, _)| self.gravity[*c] != 0.0) {
             let (factor, s) = (-self.expansion * self.gravity[c], flow.grid().stride()[c]);
-            let shares = flow.shares(c);
-            flow.each_cell(|o, cell| {
-                let [below, above] = [shares[0][cell[c]], shares[1][cell[c]]];
+            let share = &flow.state.metrics.axes[c].share;
+            each_cell(flow.grid(), |o, cell| {
+                let [below, above] = [0, 1].map(|part: usize| share[part][GHOSTS + cell[c]]);
                 // Linear between the centres beside the face.
                 let mean = above * phi[o - s] + below * phi[o];
                 source.data_mut()[o] += factor * (mean - self.reference);
@@ -133,19 +135,30 @@ impl<const D: usize> BodyForce<D, Vec<Scalar<D>>> for Boussinesq {
     }
 }
 
-/// Forces the velocity between predictor and projection.
+/// Forces the velocity between predictor and projection, as immersed bodies do; `()` does not. So may a closure
+/// `|velocity, time, dt|`.
 pub trait ImmersedForcing<const D: usize> {
-    /// Changes `flow.velocity_mut()`, which is u*; the projection follows.
+    /// Changes the predicted velocity u* \[m/s\] of time `time` \[s\], the end of a step of `dt` \[s\]; the projection
+    /// follows.
     ///
     /// # Errors
     /// Whatever stops the run.
-    fn force(&mut self, flow: &mut Projection<D>, dt: f64) -> Result<(), FlowError>;
+    fn force(&mut self, velocity: &mut Velocity<D>, time: f64, dt: f64) -> Result<(), FlowError>;
 }
 
 impl<const D: usize> ImmersedForcing<D> for () {
     #[inline(always)]
-    fn force(&mut self, _flow: &mut Projection<D>, _dt: f64) -> Result<(), FlowError> {
+    fn force(&mut self, _: &mut Velocity<D>, _: f64, _: f64) -> Result<(), FlowError> {
         Ok(())
+    }
+}
+
+impl<const D: usize, F> ImmersedForcing<D> for F
+where
+    F: FnMut(&mut Velocity<D>, f64, f64) -> Result<(), FlowError>,
+{
+    fn force(&mut self, velocity: &mut Velocity<D>, time: f64, dt: f64) -> Result<(), FlowError> {
+        self(velocity, time, dt)
     }
 }
 
@@ -235,7 +248,8 @@ impl<const D: usize> Projection<D> {
         }
         scalars.advance(self.velocity(), self.time(), dt)?;
         self.predict(dt, uniform)?;
-        forcing.force(self, dt)?;
+        let end = self.time() + dt;
+        forcing.force(self.velocity_mut(), end, dt)?;
         self.project(dt)?;
         self.finish(dt)?;
         closure.correct(self, dt)

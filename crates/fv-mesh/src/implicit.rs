@@ -47,53 +47,61 @@ pub(crate) struct Tridiagonal {
 }
 
 impl Tridiagonal {
-    /// `low` and `high` are κ times what couples to the node below and above. `ends` say which parts of the two nodes at
-    /// each end stand beyond it; `None` for a periodic line.
-    pub(crate) fn new(
+    /// Takes 1 − κL: `low` and `high` are what couples to the node below and above. `ends` say which parts of the two
+    /// nodes at each end stand beyond it; `None` for a periodic line. Memory is made the first time only.
+    pub(crate) fn set(
+        &mut self,
+        kappa: f64,
         first: usize,
-        mut low: Vec<f64>,
-        mut high: Vec<f64>,
+        low: &[f64],
+        high: &[f64],
         ends: Option<[[f64; 2]; 2]>,
-    ) -> Self {
+    ) {
         let n = low.len();
-        let mut diagonal: Vec<f64> = (0..n).map(|i| 1.0 + low[i] + high[i]).collect();
+        self.first = first;
+        // Until the sweep below, `inv` holds the diagonal and `above` the upper one.
+        let fill = |list: &mut Vec<f64>, value: &dyn Fn(usize) -> f64| {
+            list.clear();
+            list.extend((0..n).map(value));
+        };
+        fill(&mut self.below, &|i| kappa * low[i]);
+        fill(&mut self.above, &|i| kappa * high[i]);
+        fill(&mut self.inv, &|i| 1.0 + kappa * low[i] + kappa * high[i]);
+        let Self { below, inv, above, cyclic, .. } = self;
+        let mut corners = None;
         match ends {
-            _ if n == 0 => Self::default(),
+            _ if n == 0 => return,
             Some([lower, upper]) => {
-                diagonal[0] -= low[0] * lower[0];
-                diagonal[n - 1] -= high[n - 1] * upper[0];
-                high[0] += low[0] * lower[1];
-                low[n - 1] += high[n - 1] * upper[1];
-                Self::factored(first, &low, &high, &diagonal)
+                let (low, high) = (below[0], above[n - 1]);
+                inv[0] -= low * lower[0];
+                inv[n - 1] -= high * upper[0];
+                above[0] += low * lower[1];
+                below[n - 1] += high * upper[1];
             }
-            None if n == 1 => Self::factored(first, &low, &high, &[1.0]),
+            None if n == 1 => inv[0] = 1.0,
             None => {
                 // Sherman & Morrison: the corners −low₀ and −high_{n−1} are a change of rank one.
-                let (alpha, beta, gamma) = (-low[0], -high[n - 1], -diagonal[0]);
-                diagonal[0] -= gamma;
-                diagonal[n - 1] -= alpha * beta / gamma;
-                let mut new = Self::factored(first, &low, &high, &diagonal);
-                let mut z = vec![0.0; n];
-                (z[0], z[n - 1]) = (gamma, beta);
-                new.solve_side_by_side(&mut z, |i| i, &mut [0.0]);
-                let ratio = alpha / gamma;
-                let scale = 1.0 / (1.0 + z[0] + ratio * z[n - 1]);
-                z.iter_mut().for_each(|z| *z *= scale);
-                new.cyclic = Some((ratio, z));
-                new
+                let (alpha, beta, gamma) = (-below[0], -above[n - 1], -inv[0]);
+                inv[0] -= gamma;
+                inv[n - 1] -= alpha * beta / gamma;
+                corners = Some((alpha, beta, gamma));
             }
         }
-    }
-
-    fn factored(first: usize, low: &[f64], high: &[f64], diagonal: &[f64]) -> Self {
-        let n = diagonal.len();
-        let (mut inv, mut above) = (vec![0.0; n], vec![0.0; n]);
         for i in 0..n {
-            let pivot = if i == 0 { diagonal[0] } else { diagonal[i] - low[i] * above[i - 1] };
+            let pivot = if i == 0 { inv[0] } else { inv[i] - below[i] * above[i - 1] };
             inv[i] = 1.0 / pivot;
-            above[i] = high[i] * inv[i];
+            above[i] *= inv[i];
         }
-        Self { first, below: low.to_vec(), inv, above, cyclic: None }
+        let mut z = cyclic.take().map(|(_, z)| z).unwrap_or_default();
+        let Some((alpha, beta, gamma)) = corners else { return };
+        z.clear();
+        z.resize(n, 0.0);
+        (z[0], z[n - 1]) = (gamma, beta);
+        self.solve_side_by_side(&mut z, |i| i, &mut [0.0]);
+        let ratio = alpha / gamma;
+        let scale = 1.0 / (1.0 + z[0] + ratio * z[n - 1]);
+        z.iter_mut().for_each(|z| *z *= scale);
+        self.cyclic = Some((ratio, z));
     }
 
     /// Solves lines that lie side by side: `rows(i)` is where node `first` + i starts in `data`; there are as many as `sums`
@@ -152,10 +160,8 @@ impl<const D: usize> ImplicitDiffusion<D> {
         for (c, a) in (0..D).flat_map(|c| (0..D).map(move |a| (c, a))).filter(|&(_, a)| kappa[a] > 0.0) {
             let (nodes, n) = (metrics.of(Some(c), a), self.grid.cells()[a]);
             let first = usize::from(a == c && !metrics.periodic[a]);
-            let scaled = |list: &[f64]| -> Vec<f64> {
-                list[GHOSTS + first..GHOSTS + n].iter().map(|x| kappa[a] * x).collect()
-            };
-            let (low, high) = (scaled(&nodes.down), scaled(&nodes.up));
+            let inside = GHOSTS + first..GHOSTS + n;
+            let (low, high) = (&nodes.down[inside.clone()], &nodes.up[inside]);
             // A value given on the next node (normal component), or half way to it.
             let fixed = |upper: bool| {
                 let e = Extrapolation::beyond(&self.grid, a, upper);
@@ -164,7 +170,7 @@ impl<const D: usize> ImplicitDiffusion<D> {
             for kind in 0..4 {
                 let part = |bit: usize| if kind & bit != 0 { [1.0, 0.0] } else { fixed(bit == 2) };
                 let ends = (!metrics.periodic[a]).then(|| [part(1), part(2)]);
-                self.factors[c][a][kind] = Tridiagonal::new(first, low.clone(), high.clone(), ends);
+                self.factors[c][a][kind].set(kappa[a], first, low, high, ends);
             }
         }
     }

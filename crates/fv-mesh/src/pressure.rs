@@ -20,6 +20,52 @@ pub enum PressureSolver {
 /// What multigrid to a tolerance of 10⁻⁶ costs per cell \[ns\], by `cargo bench -p fv-mesh --bench multigrid`.
 const MULTIGRID_COST: f64 = 200.0;
 
+/// What holds for the pressure at the ends of the axes.
+pub(crate) struct PressureEnds<const D: usize> {
+    axes: [PoissonAxis; D],
+    /// The first axis with a side of which only a part has a given pressure.
+    partial: Option<usize>,
+    /// Per bounded axis and side: where the pressure is given.
+    given: [Option<[Vec<bool>; 2]>; D],
+}
+
+impl<const D: usize> PressureEnds<D> {
+    pub(crate) fn new(grid: &CartesianGrid<D>, boundaries: &Boundaries<D>) -> Self {
+        let given: [_; D] = std::array::from_fn(|a| {
+            let given = |kinds: Vec<FaceKind>| kinds.into_iter().map(|k| k == FaceKind::Pressure).collect();
+            Some(boundaries.kinds(a)?.map(given))
+        });
+        let all = |side: &Vec<bool>| side.iter().all(|&given| given);
+        let axes = std::array::from_fn(|a| {
+            let ends = match given[a].as_ref().map(|sides| sides.each_ref().map(all)) {
+                None => AxisBounds::Periodic,
+                Some([false, false]) => AxisBounds::Neumann,
+                Some([true, true]) => AxisBounds::Dirichlet,
+                Some([false, true]) => AxisBounds::NeumannDirichlet,
+                Some([true, false]) => AxisBounds::DirichletNeumann,
+            };
+            PoissonAxis::from_axis(grid.axis(a), ends)
+        });
+        let partial =
+            (0..D).find(|&a| given[a].iter().flatten().any(|side| side.contains(&true) && !all(side)));
+        Self { axes, partial, given }
+    }
+
+    /// The solver that any ends can have.
+    pub(crate) fn multigrid(self, params: MultigridParams) -> Result<MultigridCg<D>, PoissonError> {
+        let params = MultigridParams { variable: params.variable || self.partial.is_some(), ..params };
+        let mut solver = MultigridCg::new(self.axes, 0.0, params)?;
+        if self.partial.is_some() {
+            for (a, sides) in self.given.iter().enumerate() {
+                for (upper, given) in sides.iter().flatten().enumerate() {
+                    solver.multigrid().set_ends(a, upper == 1, given)?;
+                }
+            }
+        }
+        Ok(solver)
+    }
+}
+
 /// The solver of one flow.
 pub(crate) struct Pressure<const D: usize> {
     solver: Solver<D>,
@@ -40,28 +86,9 @@ impl<const D: usize> Pressure<D> {
         boundaries: &Boundaries<D>,
         wanted: PressureSolver,
     ) -> Result<Self, PoissonError> {
-        let kinds: [_; D] = std::array::from_fn(|a| boundaries.kinds(a));
-        let given = |k: &FaceKind| *k == FaceKind::Pressure;
-        let mut partial = None;
-        let axes: [PoissonAxis; D] = std::array::from_fn(|a| {
-            let ends = match &kinds[a] {
-                None => AxisBounds::Periodic,
-                Some(ends) => {
-                    if ends.iter().any(|k| k.iter().any(given) && !k.iter().all(given)) {
-                        partial = Some(a);
-                    }
-                    match ends.each_ref().map(|k| k.iter().all(given)) {
-                        [false, false] => AxisBounds::Neumann,
-                        [true, true] => AxisBounds::Dirichlet,
-                        [false, true] => AxisBounds::NeumannDirichlet,
-                        [true, false] => AxisBounds::DirichletNeumann,
-                    }
-                }
-            };
-            PoissonAxis::from_axis(grid.axis(a), ends)
-        });
-        let cost = PoissonChoice::new(&axes).nanoseconds_per_cell;
-        let (params, why) = match (wanted, partial) {
+        let ends = PressureEnds::new(grid, boundaries);
+        let cost = PoissonChoice::new(&ends.axes).nanoseconds_per_cell;
+        let (params, why) = match (wanted, ends.partial) {
             (PressureSolver::Direct, Some(axis)) => return Err(PoissonError::PartialOutlet { axis }),
             (PressureSolver::Multigrid(params), _) => (params, "as asked".to_string()),
             (_, Some(axis)) => (
@@ -73,7 +100,7 @@ impl<const D: usize> Pressure<D> {
                 format!("the direct solver would take about {cost:.0} ns per cell"),
             ),
             (PressureSolver::Auto | PressureSolver::Direct, None) => {
-                let solver = Poisson::new(axes, 0.0)?;
+                let solver = Poisson::new(ends.axes, 0.0)?;
                 let reason = format!("direct: {}", solver.choice());
                 return Ok(Self {
                     solver: Solver::Direct(Box::new(solver)),
@@ -82,16 +109,7 @@ impl<const D: usize> Pressure<D> {
                 });
             }
         };
-        let params = MultigridParams { variable: params.variable || partial.is_some(), ..params };
-        let mut solver = MultigridCg::new(axes, 0.0, params)?;
-        if partial.is_some() {
-            for (a, ends) in kinds.iter().enumerate() {
-                for (upper, kinds) in ends.iter().flatten().enumerate() {
-                    let zero: Vec<bool> = kinds.iter().map(given).collect();
-                    solver.multigrid().set_ends(a, upper == 1, &zero)?;
-                }
-            }
-        }
+        let solver = ends.multigrid(params)?;
         let reason = format!("multigrid, {why}: {}", solver.describe());
         Ok(Self { solver: Solver::Multigrid(Box::new(solver)), reason, info: PoissonInfo::default() })
     }

@@ -207,3 +207,20 @@ fn a_blow_up_is_an_error_not_a_nan() {
     let error = (0..10_000).find_map(|_| flow.advance(0.5, [0.0; 2]).err());
     assert!(matches!(error, Some(FlowError::Diverged { .. })), "{error:?}");
 }
+
+/// Implicit factors are made anew in the memory they have when the step changes.
+#[test]
+fn a_step_of_any_length_allocates_nothing() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let grid = CartesianGrid::new([12, 10, 8], [1.0; 3]).unwrap();
+    let sides = [Side::Periodic.both(), Side::WALL.both(), Side::FreeSlip.both()];
+    let fluid = Fluid { density: 1.0, viscosity: 1.0 };
+    let mut flow = Projection::new(grid, sides, fluid).unwrap().with_diffusion(Diffusion::Implicit);
+    flow.set_velocity(|x| [(3.0 * x[1]).sin(), 0.0, 0.1]);
+    let count = pool.install(|| {
+        let mut steps = |dts: [f64; 3]| dts.into_iter().try_for_each(|dt| flow.advance(dt, [1.0, 0.0, 0.0]));
+        steps([1e-3, 2e-3, 1e-3]).unwrap();
+        allocation_counter::measure(|| steps([3e-3, 1e-3, 2e-3]).unwrap()).count_total
+    });
+    assert_eq!(count, 0);
+}

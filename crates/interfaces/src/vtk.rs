@@ -120,3 +120,13 @@ pub fn write_series(out: &mut impl Write, entries: &[(f64, usize, String)]) -> i
     }
     writeln!(out, "</Collection>\n</VTKFile>")
 }
+
+/// The entries of a `.pvd` series that [`write_series`] wrote; lines that are none are skipped.
+pub fn read_series(text: &str) -> Vec<(f64, usize, String)> {
+    let entry = |line: &str| {
+        let value = |key: &str| line.split_once(key)?.1.split('"').nth(1);
+        let file = value("file=")?.replace("&lt;", "<").replace("&gt;", ">").replace("&quot;", "\"");
+        Some((value("timestep=")?.parse().ok()?, value("part=")?.parse().ok()?, file.replace("&amp;", "&")))
+    };
+    text.lines().filter_map(entry).collect()
+}

@@ -132,16 +132,8 @@ impl<const D: usize, const C: usize, const KIND: u8> WithSimd for Typed<'_, D, C
             let o = row_start(&momentum.grid, r);
             let at = row_place(&momentum.grid, r);
             let local = o - start..o - start + n;
-            advance_row::<D, C, KIND>(
-                momentum,
-                o,
-                at,
-                k,
-                u,
-                p,
-                &mut next[local.clone()],
-                &mut tendency[local],
-            );
+            let out = [&mut next[local.clone()], &mut tendency[local]];
+            advance_row::<D, C, KIND>(momentum, (o, at), k, (u, p), out);
         }
     }
 }
@@ -153,18 +145,15 @@ macro_rules! along {
     };
 }
 
-/// One row; `o` is the storage index of its first cell, `at` its place along the other axes.
+/// One row of the new velocity and of the tendency; `o` is the storage index of its first cell, `at` its place along the
+/// other axes, `u` and `p` are velocity and pressure.
 #[inline(always)]
-#[allow(clippy::too_many_arguments)]
 fn advance_row<const D: usize, const C: usize, const KIND: u8>(
     momentum: &Momentum<D>,
-    o: usize,
-    at: [usize; D],
+    (o, at): (usize, [usize; D]),
     k: Advance<D>,
-    u: [&[f64]; D],
-    p: &[f64],
-    next: &mut [f64],
-    tendency: &mut [f64],
+    (u, p): ([&[f64]; D], &[f64]),
+    [next, tendency]: [&mut [f64]; 2],
 ) {
     let (n, s) = (next.len(), momentum.grid.stride());
     let axes = &momentum.metrics.axes;

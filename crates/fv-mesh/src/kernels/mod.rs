@@ -7,7 +7,8 @@ mod project;
 pub(crate) use advance::{Advance, LIMITED, LINEAR, Momentum, flux, upwinded};
 pub(crate) use eddy::add_eddy_stress;
 pub(crate) use project::{
-    add_dense, change, copy_dense, correct_component, divergence_row, subtract_second_differences,
+    Conductance, add_dense, change, copy_dense, correct_component, divergence_row,
+    subtract_second_differences,
 };
 
 use crate::grid::GHOSTS;
@@ -19,8 +20,24 @@ pub(crate) fn layers_per_task(layers: usize) -> usize {
     layers.div_ceil(16).max(4)
 }
 
-/// Calls `f(task, rows)` for fixed runs of rows, with the matching part of two fields to write.
-/// `f` gets (first row's number, end row's number, storage index of the parts' first entry).
+/// Calls `f` for fixed runs of rows, with the matching part of a field to write: `f` gets the numbers of the rows, the
+/// storage index of the part's first entry and the part.
+pub(crate) fn for_rows<const D: usize>(
+    grid: &CartesianGrid<D>,
+    field: &mut Field<D>,
+    f: impl Fn(std::ops::Range<usize>, usize, &mut [f64]) + Sync,
+) {
+    let layer = grid.stride()[D - 1];
+    let (layers, rows) = (grid.cells()[D - 1], grid.rows_per_layer());
+    let per_task = layers_per_task(layers);
+    field.layers_mut().par_chunks_mut(layer * per_task).enumerate().for_each(|(task, part)| {
+        let first = task * per_task;
+        let end = (first + per_task).min(layers);
+        f(first * rows..end * rows, (GHOSTS + first) * layer, part);
+    });
+}
+
+/// [`for_rows`] with two fields to write.
 pub(crate) fn for_layers<const D: usize>(
     grid: &CartesianGrid<D>,
     a: &mut Field<D>,
@@ -50,4 +67,14 @@ pub(crate) fn row_place<const D: usize>(grid: &CartesianGrid<D>, r: usize) -> [u
         at[1] = r % per_layer;
     }
     at
+}
+
+/// Place of the face below the first cell of row `r` among the n_c + 1 faces of component `c` on each line, x fastest.
+pub(crate) fn face_row<const D: usize>(grid: &CartesianGrid<D>, c: usize, r: usize) -> usize {
+    let n = grid.cells();
+    match (D, c) {
+        (_, 0) => r * (n[0] + 1),
+        (3, 1) => (r / n[1] * (n[1] + 1) + r % n[1]) * n[0],
+        _ => r * n[0],
+    }
 }

@@ -1,5 +1,5 @@
 //! Divergence, correction of the velocity, pressure.
-use super::{layers_per_task, row_place};
+use super::{face_row, for_rows, layers_per_task, row_place};
 use crate::field::row_start;
 use crate::grid::GHOSTS;
 use crate::metrics::Metrics;
@@ -32,41 +32,38 @@ pub(crate) fn divergence_row<const D: usize>(
     }
 }
 
-/// u_c −= dt ∂φ/∂x_c /ρ on every face but those on the boundary; `phi` is dense, x fastest.
+/// What the velocity on a face answers to a gradient of φ.
+#[derive(Clone, Copy)]
+pub(crate) enum Conductance<'a> {
+    /// The same on all faces.
+    Same(f64),
+    /// One number per face of the component ([`face_row`]).
+    Faces(&'a [f64]),
+}
+
+/// u_c −= β ∂φ/∂x_c on every face but those on the boundary; `phi` is dense, x fastest.
 pub(crate) fn correct_component<const D: usize>(
     grid: &CartesianGrid<D>,
     metrics: &Metrics<D>,
     c: usize,
-    scale: f64,
+    beta: Conductance,
     phi: &[f64],
     component: &mut Field<D>,
 ) {
-    let n = grid.cells();
-    let periodic = metrics.periodic[c];
-    let inv = &metrics.axes[c].faces.inv_volume[GHOSTS..];
-    let layer = grid.stride()[D - 1];
-    let per_task = layers_per_task(n[D - 1]);
-    let rows_per_layer = grid.rows_per_layer();
-    // The row below along c: so many rows down, or from the first of n[c] up to the last.
-    let step = if c == 2 { n[1] } else { 1 };
-    component.layers_mut().par_chunks_mut(layer * per_task).enumerate().for_each(|(task, out)| {
-        let first = task * per_task;
-        let end = (first + per_task).min(n[D - 1]);
-        let rows = first * rows_per_layer..end * rows_per_layer;
-        let start = (GHOSTS + first) * layer;
-        Arch::new().dispatch(CorrectRows { grid, c, periodic, scale, inv, step, rows, start, phi, out });
+    for_rows(grid, component, |rows, start, out| {
+        let job = Correct { grid, metrics, c, rows, start, phi, out };
+        match beta {
+            Conductance::Same(beta) => Arch::new().dispatch(Same { job, beta }),
+            Conductance::Faces(beta) => Arch::new().dispatch(Varying { job, beta }),
+        }
     });
 }
 
-/// [`correct_component`] for a run of rows.
-struct CorrectRows<'a, const D: usize> {
+/// A run of rows to correct.
+struct Correct<'a, const D: usize> {
     grid: &'a CartesianGrid<D>,
+    metrics: &'a Metrics<D>,
     c: usize,
-    periodic: bool,
-    scale: f64,
-    /// 1/distance of the centres beside each face along c.
-    inv: &'a [f64],
-    step: usize,
     rows: std::ops::Range<usize>,
     /// Storage index of the first entry of `out`.
     start: usize,
@@ -74,21 +71,53 @@ struct CorrectRows<'a, const D: usize> {
     out: &'a mut [f64],
 }
 
-impl<const D: usize> WithSimd for CorrectRows<'_, D> {
+struct Same<'a, const D: usize> {
+    job: Correct<'a, D>,
+    beta: f64,
+}
+struct Varying<'a, const D: usize> {
+    job: Correct<'a, D>,
+    beta: &'a [f64],
+}
+
+impl<const D: usize> WithSimd for Same<'_, D> {
     type Output = ();
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { grid, c, periodic, scale, inv, step, rows, start, phi, out } = self;
-        let n = grid.cells();
+        let beta = self.beta;
+        self.job.run(|_| move |_| beta);
+    }
+}
+impl<const D: usize> WithSimd for Varying<'_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let (grid, c, n) = (self.job.grid, self.job.c, self.job.grid.cells()[0]);
+        self.job.run(|r| {
+            let row = &self.beta[face_row(grid, c, r)..][..n];
+            move |i| row[i]
+        });
+    }
+}
+
+impl<const D: usize> Correct<'_, D> {
+    /// `beta(r)(i)` is that of the face below cell i of row r.
+    #[inline(always)]
+    fn run<B: Fn(usize) -> f64>(self, beta: impl Fn(usize) -> B) {
+        let Self { grid, metrics, c, rows, start, phi, out } = self;
+        let (n, periodic) = (grid.cells(), metrics.periodic[c]);
+        let inv = &metrics.axes[c].faces.inv_volume[GHOSTS..];
+        // The row below along c: so many rows down, or from the first of n[c] up to the last.
+        let step = if c == 2 { n[1] } else { 1 };
         for r in rows {
             let local = row_start(grid, r) - start;
             let out = &mut out[local..local + n[0]];
-            let here = &phi[r * n[0]..][..n[0]];
+            let (beta, here) = (beta(r), &phi[r * n[0]..][..n[0]]);
             if c == 0 {
-                out[0] -= scale * inv[0] * (here[0] - here[if periodic { n[0] - 1 } else { 0 }]);
-                let (out, inv, below) = (&mut out[1..], &inv[1..n[0]], &here[..n[0] - 1]);
-                for (i, here) in here[1..].iter().enumerate() {
-                    out[i] -= scale * inv[i] * (here - below[i]);
+                out[0] -= beta(0) * inv[0] * (here[0] - here[if periodic { n[0] - 1 } else { 0 }]);
+                let inv = &inv[..n[0]];
+                for i in 1..n[0] {
+                    out[i] -= beta(i) * inv[i] * (here[i] - here[i - 1]);
                 }
             } else {
                 let at = (r / step) % n[c];
@@ -97,10 +126,9 @@ impl<const D: usize> WithSimd for CorrectRows<'_, D> {
                     (0, false) => continue,
                     _ => r - step,
                 };
-                let below = &phi[below * n[0]..][..n[0]];
-                let scale = scale * inv[at];
+                let (below, inv) = (&phi[below * n[0]..][..n[0]], inv[at]);
                 for i in 0..n[0] {
-                    out[i] -= scale * (here[i] - below[i]);
+                    out[i] -= beta(i) * inv * (here[i] - below[i]);
                 }
             }
         }
@@ -109,16 +137,11 @@ impl<const D: usize> WithSimd for CorrectRows<'_, D> {
 
 /// p += φ.
 pub(crate) fn add_dense<const D: usize>(grid: &CartesianGrid<D>, phi: &[f64], p: &mut Field<D>) {
-    let n = grid.cells();
-    let layer = grid.stride()[D - 1];
-    let per_task = layers_per_task(n[D - 1]);
-    let rows_per_layer = grid.rows_per_layer();
-    p.layers_mut().par_chunks_mut(layer * per_task).enumerate().for_each(|(task, out)| {
-        let first = task * per_task;
-        let end = (first + per_task).min(n[D - 1]);
-        for r in first * rows_per_layer..end * rows_per_layer {
-            let local = row_start(grid, r) - (GHOSTS + first) * layer;
-            for (p, phi) in out[local..local + n[0]].iter_mut().zip(&phi[r * n[0]..]) {
+    let n = grid.cells()[0];
+    for_rows(grid, p, |rows, start, out| {
+        for r in rows {
+            let local = row_start(grid, r) - start;
+            for (p, phi) in out[local..local + n].iter_mut().zip(&phi[r * n..]) {
                 *p += phi;
             }
         }
@@ -159,17 +182,19 @@ pub(crate) fn subtract_second_differences<const D: usize>(
 ) {
     let (n, s) = (grid.cells()[0], grid.stride());
     let phi = phi.data();
-    for r in 0..p.n_rows() {
-        let (o, at) = (row_start(grid, r), row_place(grid, r));
-        let out = &mut p.data_mut()[o..o + n];
-        for a in (0..D).filter(|&a| kappa[a] > 0.0) {
-            let nodes = &metrics.axes[a].centres;
-            let (here, above, below) = (&phi[o..][..n], &phi[o + s[a]..][..n], &phi[o - s[a]..][..n]);
-            for i in 0..n {
-                let j = GHOSTS + if a == 0 { i } else { at[a] };
-                let second = nodes.up[j] * (above[i] - here[i]) - nodes.down[j] * (here[i] - below[i]);
-                out[i] -= kappa[a] * second;
+    for_rows(grid, p, |rows, start, out| {
+        for r in rows {
+            let (o, at) = (row_start(grid, r), row_place(grid, r));
+            let out = &mut out[o - start..][..n];
+            for a in (0..D).filter(|&a| kappa[a] > 0.0) {
+                let nodes = &metrics.axes[a].centres;
+                let (here, above, below) = (&phi[o..][..n], &phi[o + s[a]..][..n], &phi[o - s[a]..][..n]);
+                for i in 0..n {
+                    let j = GHOSTS + if a == 0 { i } else { at[a] };
+                    let second = nodes.up[j] * (above[i] - here[i]) - nodes.down[j] * (here[i] - below[i]);
+                    out[i] -= kappa[a] * second;
+                }
             }
         }
-    }
+    });
 }

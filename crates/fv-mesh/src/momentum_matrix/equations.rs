@@ -1,7 +1,7 @@
 //! One momentum equation after the other.
-use super::{Implicit, MomentumSolver, Terms, add_eddy_stress, assemble, fold_ends};
+use super::{Implicit, MomentumSolver, Terms, assemble, fold_ends};
 use crate::boundary::Boundaries;
-use crate::kernels::{Advance, Momentum};
+use crate::kernels::{Advance, Momentum, add_eddy_stress};
 use crate::linear::StencilMatrix;
 use crate::metrics::Metrics;
 use crate::{CartesianGrid, Convection, Field, Fluid};
@@ -89,7 +89,7 @@ impl<const D: usize> MomentumEquations<D> {
         };
         self.convection.advance(c, k, e.velocity, e.pressure, &mut self.scratch, &mut self.tendency);
         if let Some(eddy) = e.eddy {
-            add_eddy_stress(&self.grid, &self.metrics, c, eddy, e.velocity, &mut self.tendency);
+            add_eddy_stress(&self.grid, &self.metrics, c, e.velocity, eddy, &mut self.tendency);
         }
         let terms = Terms {
             velocity: e.velocity,

@@ -1,12 +1,10 @@
 //! Implicit momentum equations on the staggered control volumes.
 mod assemble;
-mod eddy;
 mod equations;
 mod solver;
 
 pub(crate) use assemble::Implicit;
 use assemble::{Terms, assemble};
-use eddy::add_eddy_stress;
 pub(crate) use equations::{Equation, MomentumEquations};
 pub(crate) use solver::MomentumSolver;
 
@@ -14,7 +12,7 @@ use crate::boundary::{Boundaries, Extrapolation};
 use crate::grid::GHOSTS;
 use crate::linear::StencilMatrix;
 use crate::metrics::Metrics;
-use crate::{CartesianGrid, Field, FlowError, Velocity};
+use crate::{CartesianGrid, Field, FlowError};
 
 /// Takes what stands beyond the ends of bounded axes out of the matrix of component `c`: a change δ of the node at an end
 /// comes with δ beyond it if the value there is free, and by the parabola of the ghosts if it is fixed half way; the nodes on
@@ -127,23 +125,6 @@ pub(crate) fn throughput<const D: usize>(
         }
     }
     sum
-}
-
-/// Sets every component to `u(x)[c]` at its nodes.
-pub(crate) fn set_velocity<const D: usize>(
-    grid: &CartesianGrid<D>,
-    metrics: &Metrics<D>,
-    velocity: &mut Velocity<D>,
-    u: &impl Fn([f64; D]) -> [f64; D],
-) {
-    let s = grid.stride();
-    for (c, component) in velocity.components.iter_mut().enumerate() {
-        let data = component.data_mut();
-        for cell in (0..grid.n_cells()).map(|i| grid.cell(i)) {
-            let x = std::array::from_fn(|a| metrics.of(Some(c), a).x[GHOSTS + cell[a]]);
-            data[grid.base() + (0..D).map(|a| cell[a] * s[a]).sum::<usize>()] = u(x)[c];
-        }
-    }
 }
 
 /// Number of the dense cell of a node of component `c` at which the velocity is to be `value`.

@@ -18,24 +18,47 @@ impl TimeSeries {
         Self { path: path.into(), entries: Vec::new() }
     }
 
-    /// Adds the file `name`, as seen from the folder of the series, at time `time` \[s\], and writes the series: beside
-    /// its old version and then in its place, so that what is there can always be opened.
+    /// The series that an earlier run wrote to `path`, up to `time` \[s\]; what it lists later is dropped.
     ///
     /// # Errors
-    /// [`OutputError::Time`] for a time that is not finite or before the last, [`OutputError::Io`] if the file cannot
-    /// be written; the entry is not kept then.
-    pub fn push(&mut self, time: f64, name: impl Into<String>) -> Result<(), OutputError> {
+    /// [`OutputError::Io`] if there is none or it cannot be read.
+    pub fn resume(path: impl Into<PathBuf>, time: f64) -> Result<Self, OutputError> {
+        let path = path.into();
+        let mut entries = vtk::read_series(&std::fs::read_to_string(&path)?);
+        // Times are written with ten digits.
+        entries.retain(|(t, ..)| *t <= time * (1.0 + 1e-9));
+        Ok(Self { path, entries })
+    }
+
+    /// Adds the file `name`, as seen from the folder of the series, at time `time` \[s\]; [`save`](Self::save) writes it.
+    ///
+    /// # Errors
+    /// [`OutputError::Time`] for a time that is not finite or before the last.
+    pub fn add(&mut self, time: f64, name: impl Into<String>) -> Result<(), OutputError> {
         let last = self.entries.last().map_or(f64::NEG_INFINITY, |e| e.0);
         if !(time.is_finite() && time >= last) {
             return Err(OutputError::Time { time, last });
         }
         self.entries.push((time, 0, name.into()));
-        self.write().inspect_err(|_| {
+        Ok(())
+    }
+
+    /// [`add`](Self::add) and [`save`](Self::save).
+    ///
+    /// # Errors
+    /// Those of both; the entry is not kept then.
+    pub fn push(&mut self, time: f64, name: impl Into<String>) -> Result<(), OutputError> {
+        self.add(time, name)?;
+        self.save().inspect_err(|_| {
             self.entries.pop();
         })
     }
 
-    fn write(&self) -> Result<(), OutputError> {
+    /// Writes the series beside its old version and then in its place, so that what is there can always be opened.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`] if it cannot be written.
+    pub fn save(&self) -> Result<(), OutputError> {
         let mut part = self.path.clone().into_os_string();
         part.push(".part");
         let mut file = BufWriter::new(File::create(&part)?);

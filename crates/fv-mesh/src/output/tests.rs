@@ -229,6 +229,12 @@ fn series_list_their_files() {
     assert_eq!(attribute(sets[1], "timestep").unwrap().parse(), Ok(0.5));
     assert_eq!(attribute(sets[1], "file"), Some("b&lt;1&gt;.vti"));
     assert!(!folder.join("run.pvd.part").exists());
+    // A run that goes on from some time forgets what came after it.
+    for (time, kept) in [(0.0, 1), (0.5, 2)] {
+        let resumed = TimeSeries::resume(series.path(), time).unwrap();
+        assert!(resumed.entries().eq(series.entries().take(kept)), "{resumed:?}");
+    }
+    assert!(matches!(TimeSeries::resume(folder.join("none.pvd"), 1.0), Err(OutputError::Io(_))));
     std::fs::remove_dir_all(&folder).unwrap();
     assert!(matches!(series.push(1.0, "c.vti"), Err(OutputError::Io(_))));
     assert_eq!(series.entries().count(), 2);

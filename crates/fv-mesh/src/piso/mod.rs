@@ -4,18 +4,15 @@ mod params;
 #[cfg(test)]
 mod tests;
 
-pub use params::{Forcing, PisoParams, TimeScheme};
+pub use params::{PisoParams, TimeScheme};
 
-use crate::boundary::Boundaries;
+use crate::flow_state::{FlowState, show_clock, show_state};
 use crate::kernels;
 use crate::linear::StencilMatrix;
-use crate::metrics::Metrics;
 use crate::momentum_matrix::{self as momentum, Equation, Implicit, MomentumEquations, MomentumSolver};
 use crate::poisson::PoissonError;
-use crate::projection::check_fluid;
 use crate::simple::PressureCorrection;
-use crate::statistics::{self, Measure};
-use crate::{CartesianGrid, Convection, Field, FlowError, FlowStatistics, Fluid, Side, Sides, Velocity};
+use crate::{CartesianGrid, Convection, Field, FlowError, Fluid, ImmersedForcing, Side};
 
 /// A step may be at most so many times longer than the last for BDF2 to look back: it is stable up to 1 + √2.
 const LONGEST_RATIO: f64 = 2.4;
@@ -36,7 +33,7 @@ const ITERATIONS: usize = 100;
 /// of the [`Convection`] scheme in the right-hand side), carried by û = uⁿ (Euler) or by its extrapolation to the
 /// end of the step (BDF2). The pressure is that of the end of the step.
 /// The parts of a step are public: [`predict`](Self::predict), [`correct`](Self::correct) (several
-/// times) and [`finish`](Self::finish); [`advance`](Self::advance) is all of them, with a [`Forcing`] between. Outlets
+/// times) and [`finish`](Self::finish); [`advance`](Self::advance) is all of them, with an [`ImmersedForcing`] between. Outlets
 /// of given pressure are those of [`Simple`](crate::Simple).
 ///
 /// ```
@@ -52,22 +49,16 @@ const ITERATIONS: usize = 100;
 /// # Ok::<(), fv_mesh::FlowError>(())
 /// ```
 pub struct Piso<const D: usize> {
-    grid: CartesianGrid<D>,
-    metrics: Metrics<D>,
-    boundaries: Boundaries<D>,
-    fluid: Fluid,
+    state: FlowState<D>,
     params: PisoParams,
     equations: MomentumEquations<D>,
     matrices: [StencilMatrix<D>; D],
     correction: PressureCorrection<D>,
-    measure: Measure<D>,
-    velocity: Velocity<D>,
     /// Of the last step and of the one before it; at the start of a step `old` is uⁿ⁻¹.
     old: [Field<D>; D],
     older: [Field<D>; D],
     /// Before the last correction.
     last: [Field<D>; D],
-    pressure: Field<D>,
     delta: [Vec<f64>; D],
     zeros: Vec<f64>,
     eddy: Option<Field<D>>,
@@ -75,11 +66,6 @@ pub struct Piso<const D: usize> {
     imposed: [Vec<(usize, usize, f64)>; D],
     /// Corrections made in this step.
     corrections: usize,
-    time: f64,
-    step: u64,
-    last_dt: f64,
-    /// Largest |u_c|/h_c \[1/s\].
-    rates: [f64; D],
 }
 
 impl<const D: usize> Piso<D> {
@@ -88,50 +74,29 @@ impl<const D: usize> Piso<D> {
     /// # Errors
     /// [`FlowError`] for sides or fluid properties that make no sense.
     pub fn new(grid: CartesianGrid<D>, sides: [[Side; 2]; D], fluid: Fluid) -> Result<Self, FlowError> {
-        let sides = Sides::new(sides)?;
-        check_fluid(fluid)?;
-        let metrics = Metrics::new(&grid, std::array::from_fn(|a| sides.periodic(a)));
-        let velocity = Velocity::zeros(&grid, &sides);
-        let boundaries = Boundaries::new(&grid, sides, &metrics)?;
+        let state = FlowState::new(grid, sides, fluid)?;
+        let FlowState { grid, metrics, boundaries, .. } = &state;
         let params = PisoParams::default();
         let n = grid.n_cells();
         let matrix = StencilMatrix::new(grid.cells(), metrics.periodic)?;
-        let fields = || std::array::from_fn(|_| Field::zeros(&grid));
+        let fields = || std::array::from_fn(|_| Field::zeros(grid));
         let solver = MomentumSolver::new(n, params.momentum_tolerance, ITERATIONS);
-        let mut flow = Self {
-            equations: MomentumEquations::new(&grid, &metrics, fluid, solver, Implicit::Central),
+        let tolerance = params.pressure_tolerance;
+        Ok(Self {
+            equations: MomentumEquations::new(grid, metrics, fluid, solver, Implicit::Central),
             matrices: std::array::from_fn(|_| matrix.clone()),
-            correction: PressureCorrection::new(
-                &grid,
-                &metrics,
-                &boundaries,
-                params.pressure_tolerance,
-                ITERATIONS,
-            )?,
-            measure: Measure::new(&grid, &metrics),
-            velocity,
+            correction: PressureCorrection::new(grid, metrics, boundaries, tolerance, ITERATIONS)?,
             old: fields(),
             older: fields(),
             last: fields(),
-            pressure: Field::zeros(&grid),
             delta: std::array::from_fn(|_| vec![0.0; n]),
             zeros: vec![0.0; n],
             eddy: None,
             imposed: std::array::from_fn(|_| Vec::new()),
             corrections: 0,
-            time: 0.0,
-            step: 0,
-            last_dt: 0.0,
-            rates: [0.0; D],
             params,
-            grid,
-            metrics,
-            boundaries,
-            fluid,
-        };
-        flow.fill_velocity();
-        flow.boundaries.fill_pressure(&mut flow.pressure);
-        Ok(flow)
+            state,
+        })
     }
 
     /// The same with another convection scheme than [`Convection::Central`].
@@ -147,21 +112,17 @@ impl<const D: usize> Piso<D> {
     /// [`FlowError::Parameter`].
     pub fn with_params(mut self, params: PisoParams) -> Result<Self, FlowError> {
         params.check()?;
-        self.equations.solver =
-            MomentumSolver::new(self.grid.n_cells(), params.momentum_tolerance, ITERATIONS);
+        let FlowState { grid, metrics, boundaries, .. } = &self.state;
+        self.equations.solver = MomentumSolver::new(grid.n_cells(), params.momentum_tolerance, ITERATIONS);
         let tolerance = params.pressure_tolerance;
-        self.correction =
-            PressureCorrection::new(&self.grid, &self.metrics, &self.boundaries, tolerance, ITERATIONS)?;
+        self.correction = PressureCorrection::new(grid, metrics, boundaries, tolerance, ITERATIONS)?;
         self.params = params;
         Ok(self)
     }
 
     /// Sets every velocity component to `u(x)[c]` at its nodes \[m/s\], outlets included; walls and inlets keep theirs.
     pub fn set_velocity(&mut self, u: impl Fn([f64; D]) -> [f64; D]) {
-        momentum::set_velocity(&self.grid, &self.metrics, &mut self.velocity, &u);
-        self.boundaries.start(&self.metrics, u);
-        self.fill_velocity();
-        self.rates = self.measure_rates();
+        self.state.set_velocity(u);
     }
 
     /// Sets the kinematic eddy viscosity ν_t \[m²/s\] at the cell centres; `None` takes it away. Ghost values are used as
@@ -183,7 +144,7 @@ impl<const D: usize> Piso<D> {
     pub fn impose(&mut self, nodes: impl IntoIterator<Item = (usize, usize, f64)>) -> Result<(), FlowError> {
         self.imposed.iter_mut().for_each(Vec::clear);
         for (c, index, value) in nodes {
-            let cell = momentum::check_node(&self.grid, c, index, value)?;
+            let cell = momentum::check_node(&self.state.grid, c, index, value)?;
             self.imposed[c].push((cell, index, value));
         }
         Ok(())
@@ -195,29 +156,27 @@ impl<const D: usize> Piso<D> {
     /// [`FlowError::TimeStep`] for a step that is not positive and finite, [`FlowError::MassBalance`] if
     /// what enters cannot leave, [`FlowError::Diverged`] when the velocity is not finite.
     pub fn predict(&mut self, dt: f64, force: [f64; D]) -> Result<(), FlowError> {
-        if !(dt.is_finite() && dt > 0.0) {
-            return Err(FlowError::TimeStep { dt, time: self.time });
-        }
-        let mut r = if self.step > 0 { dt / self.last_dt } else { 0.0 };
+        self.state.check_step(dt)?;
+        let mut r = if self.state.step > 0 { dt / self.state.last_dt } else { 0.0 };
         if r > LONGEST_RATIO || self.params.time_scheme == TimeScheme::Euler {
             r = 0.0;
         }
         let weights = [(1.0 + 2.0 * r) / (1.0 + r), -(1.0 + r), r * r / (1.0 + r)].map(|w| w / dt);
         std::mem::swap(&mut self.old, &mut self.older);
-        for c in 0..D {
-            let u = self.velocity.components[c].data_mut();
-            let (old, older) = (self.old[c].data_mut(), self.older[c].data());
+        for (c, u) in self.state.velocity.components.iter_mut().enumerate() {
+            let (u, old, older) = (u.data_mut(), self.old[c].data_mut(), self.older[c].data());
             old.copy_from_slice(u);
             if r > 0.0 {
                 u.iter_mut().zip(older).for_each(|(u, older)| *u += r * (*u - older));
             }
         }
-        self.boundaries.advance(&self.metrics, self.time + dt)?;
-        self.fill_velocity();
+        self.state.boundaries.advance(&self.state.metrics, self.state.time + dt)?;
+        self.state.fill_velocity();
         for c in 0..D {
+            let FlowState { boundaries, velocity, pressure, .. } = &self.state;
             let equation = Equation {
-                velocity: &self.velocity.components,
-                pressure: &self.pressure,
+                velocity: &velocity.components,
+                pressure,
                 history: [&self.old[c], &self.older[c]],
                 weights,
                 force: force[c],
@@ -226,31 +185,27 @@ impl<const D: usize> Piso<D> {
                 eddy: self.eddy.as_ref(),
             };
             let matrix = &mut self.matrices[c];
-            let [terms, _] = self.equations.make(c, equation, &self.boundaries, matrix);
+            let [terms, _] = self.equations.make(c, equation, boundaries, matrix);
             if !terms.is_finite() {
-                return Err(self.diverged(dt));
+                return Err(self.state.diverged(dt));
             }
             for &(cell, index, value) in &self.imposed[c] {
-                let change = value - self.velocity.components[c].data()[index];
+                let change = value - velocity.components[c].data()[index];
                 momentum::pin(matrix, cell, change, &mut self.equations.rhs);
             }
             self.equations.solver.solve(matrix, &self.equations.rhs, &mut self.delta[c])?;
             self.correction.set(c, matrix, None, 1.0 / weights[0]);
         }
-        for (u, delta) in self.velocity.components.iter_mut().zip(&self.delta) {
-            kernels::add_dense(&self.grid, delta, u);
+        let FlowState { grid, metrics, boundaries, fluid, velocity, .. } = &mut self.state;
+        for (u, delta) in velocity.components.iter_mut().zip(&self.delta) {
+            kernels::add_dense(grid, delta, u);
         }
-        self.boundaries.advance_outlets(
-            &self.metrics,
-            &self.velocity.components,
-            dt,
-            self.fluid.viscosity,
-        )?;
-        self.boundaries.reset_outlets(&self.velocity.components);
-        self.correction.update(&mut self.boundaries, self.fluid.viscosity)?;
-        self.fill_velocity();
+        boundaries.advance_outlets(metrics, &velocity.components, dt, fluid.viscosity)?;
+        boundaries.reset_outlets(&velocity.components);
+        self.correction.update(boundaries, fluid.viscosity)?;
+        self.state.fill_velocity();
         self.corrections = 0;
-        self.last_dt = dt;
+        self.state.last_dt = dt;
         Ok(())
     }
 
@@ -261,8 +216,9 @@ impl<const D: usize> Piso<D> {
     /// [`FlowError::Diverged`] when the velocity is not finite; [`FlowError::Poisson`] if the pressure equation could not
     /// be solved to its tolerance.
     pub fn correct(&mut self, dt: f64) -> Result<(), FlowError> {
-        for c in 0..D {
-            let (u, last) = (&mut self.velocity.components[c], &mut self.last[c]);
+        let FlowState { grid, boundaries, velocity, .. } = &mut self.state;
+        for (c, u) in velocity.components.iter_mut().enumerate() {
+            let last = &mut self.last[c];
             if self.corrections > 0 {
                 momentum::difference(u, last, &mut self.delta[c]);
             }
@@ -271,27 +227,23 @@ impl<const D: usize> Piso<D> {
                 let (matrix, h) = (&self.matrices[c], &mut self.equations.rhs);
                 matrix.h(&self.zeros, &self.delta[c], h)?;
                 h.iter_mut().zip(matrix.centre()).for_each(|(h, centre)| *h /= centre);
-                kernels::add_dense(&self.grid, h, u);
+                kernels::add_dense(grid, h, u);
             }
         }
-        self.boundaries.reset_outlets(&self.velocity.components);
-        self.fill_velocity();
-        self.correction.measure(
-            &mut self.boundaries,
-            &self.velocity.components,
-            &self.pressure,
-            self.fluid.density,
-        );
+        boundaries.reset_outlets(&velocity.components);
+        self.state.fill_velocity();
+        let FlowState { grid, boundaries, fluid, velocity, pressure, .. } = &mut self.state;
+        self.correction.measure(boundaries, &velocity.components, pressure, fluid.density);
         match self.correction.solve(true) {
-            Err(PoissonError::NonFinite { .. }) => return Err(self.diverged(dt)),
+            Err(PoissonError::NonFinite { .. }) => return Err(self.state.diverged(dt)),
             other => other?,
         };
-        self.correction.correct(&mut self.boundaries, &mut self.velocity.components);
-        let density = self.fluid.density;
+        self.correction.correct(boundaries, &mut velocity.components);
+        let density = fluid.density;
         self.correction.phi.iter_mut().for_each(|phi| *phi *= density);
-        kernels::add_dense(&self.grid, &self.correction.phi, &mut self.pressure);
-        self.boundaries.fill_pressure(&mut self.pressure);
-        self.fill_velocity();
+        kernels::add_dense(grid, &self.correction.phi, pressure);
+        self.state.fill_pressure();
+        self.state.fill_velocity();
         self.corrections += 1;
         Ok(())
     }
@@ -301,12 +253,11 @@ impl<const D: usize> Piso<D> {
     /// # Errors
     /// [`FlowError::Diverged`] when the velocity is not finite.
     pub fn finish(&mut self, dt: f64) -> Result<(), FlowError> {
-        self.rates = self.measure_rates();
-        if self.rates.iter().any(|u: &f64| !u.is_finite()) {
-            return Err(self.diverged(dt));
+        self.state.measure_rates();
+        if self.state.rates.iter().any(|u| !u.is_finite()) {
+            return Err(self.state.diverged(dt));
         }
-        self.time += dt;
-        self.step += 1;
+        self.state.tick(dt);
         Ok(())
     }
 
@@ -319,89 +270,23 @@ impl<const D: usize> Piso<D> {
         &mut self,
         dt: f64,
         force: [f64; D],
-        forcing: &mut impl Forcing<D>,
+        forcing: &mut impl ImmersedForcing<D>,
     ) -> Result<(), FlowError> {
         self.predict(dt, force)?;
         for _ in 0..self.params.correctors {
-            forcing.force(&mut self.velocity, self.time + dt, dt);
+            forcing.force(&mut self.state.velocity, self.state.time + dt, dt)?;
             self.correct(dt)?;
         }
         self.finish(dt)
     }
 
-    fn fill_velocity(&mut self) {
-        for c in 0..D {
-            self.boundaries.fill_velocity(c, &mut self.velocity.components[c]);
-        }
-    }
-
-    fn measure_rates(&self) -> [f64; D] {
-        let u = &self.velocity.components;
-        std::array::from_fn(|c| statistics::largest_rate(&self.grid, &self.metrics, c, &u[c]))
-    }
-
-    fn diverged(&self, dt: f64) -> FlowError {
-        let cell = statistics::worst_cell(&self.velocity.components);
-        FlowError::Diverged { step: self.step, time: self.time, dt, courant: self.courant(dt), cell }
-    }
-
-    /// Courant number dt Σ_a max(|u_a|/h_a) of a step of length `dt`.
-    pub fn courant(&self, dt: f64) -> f64 {
-        dt * self.rates.iter().sum::<f64>()
-    }
-
     /// The longest step \[s\] with Courant number ≤ `courant`, which may be above 1, at most twice the last step. Infinite
     /// for the first step of a fluid at rest.
     pub fn stable_dt(&self, courant: f64) -> f64 {
-        let growth = if self.step > 0 { GROWTH * self.last_dt } else { f64::INFINITY };
+        let growth = if self.steps() > 0 { GROWTH * self.last_dt() } else { f64::INFINITY };
         (courant / self.courant(1.0)).min(growth)
     }
 
-    /// Sums and extremes of the velocity, as it is now.
-    pub fn statistics(&mut self) -> FlowStatistics {
-        let fluid = [self.fluid.density, self.fluid.viscosity];
-        let scratch = &mut self.equations.rhs;
-        self.measure.of(&self.grid, &self.metrics, &self.velocity.components, fluid, scratch)
-    }
-
-    /// The grid.
-    pub fn grid(&self) -> &CartesianGrid<D> {
-        &self.grid
-    }
-    /// The sides of the box.
-    pub fn sides(&self) -> &Sides<D> {
-        &self.boundaries.sides
-    }
-    /// The fluid.
-    pub fn fluid(&self) -> Fluid {
-        self.fluid
-    }
-    /// The velocity \[m/s\]; between the parts of a step it is u*.
-    pub fn velocity(&self) -> &Velocity<D> {
-        &self.velocity
-    }
-    /// The velocity, for an immersed boundary to change between the parts of a step.
-    pub fn velocity_mut(&mut self) -> &mut Velocity<D> {
-        &mut self.velocity
-    }
-    /// The pressure at the cell centres \[Pa\], without the hydrostatic part.
-    pub fn pressure(&self) -> &Field<D> {
-        &self.pressure
-    }
-    /// Length of the last step \[s\].
-    pub fn last_dt(&self) -> f64 {
-        self.last_dt
-    }
-    /// Time \[s\].
-    pub fn time(&self) -> f64 {
-        self.time
-    }
-    /// Steps made.
-    pub fn steps(&self) -> u64 {
-        self.step
-    }
-    /// Sets the clock exactly (to the end of an interval that was cut into equal steps).
-    pub fn set_time(&mut self, time: f64) {
-        self.time = time;
-    }
+    show_state!();
+    show_clock!();
 }

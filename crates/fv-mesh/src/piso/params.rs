@@ -1,5 +1,5 @@
 //! Parameters of the unsteady segregated algorithm.
-use crate::{FlowError, Velocity};
+use crate::FlowError;
 
 /// How the velocity is advanced in time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -51,22 +51,5 @@ impl PisoParams {
             }
         }
         Ok(())
-    }
-}
-
-/// A force that acts between the parts of a step by changing the velocity, as immersed boundaries do.
-pub trait Forcing<const D: usize> {
-    /// Changes the velocity \[m/s\] of time `time` \[s\], the end of a step of `dt` \[s\].
-    fn force(&mut self, velocity: &mut Velocity<D>, time: f64, dt: f64);
-}
-
-/// None.
-impl<const D: usize> Forcing<D> for () {
-    fn force(&mut self, _: &mut Velocity<D>, _: f64, _: f64) {}
-}
-
-impl<const D: usize, F: FnMut(&mut Velocity<D>, f64, f64)> Forcing<D> for F {
-    fn force(&mut self, velocity: &mut Velocity<D>, time: f64, dt: f64) {
-        self(velocity, time, dt);
     }
 }

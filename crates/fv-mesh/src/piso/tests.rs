@@ -1,6 +1,6 @@
 //! The unsteady algorithm against exact solutions, conservation laws and the projection.
 use super::*;
-use crate::{Patch, Profile, Projection};
+use crate::{Patch, Profile, Projection, Velocity};
 use interfaces::{Checkpoint, VelocityField};
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
@@ -155,6 +155,7 @@ fn forcing_acts_between_the_parts() {
                 }
             }
         }
+        Ok(())
     };
     for _ in 0..1500 {
         flow.advance(0.001, [1.0, 0.0], &mut hold).unwrap();
@@ -280,7 +281,10 @@ fn bad_input_is_an_error() {
     let diverged = flow.advance(0.1, [f64::NAN, 0.0], &mut ());
     assert!(matches!(diverged, Err(FlowError::Diverged { .. })), "{diverged:?}");
     let mut flow = start([8, 8], PisoParams::default());
-    let mut poison = |velocity: &mut Velocity<2>, _: f64, _: f64| velocity.component_mut(0).fill(PI / 0.0);
+    let mut poison = |velocity: &mut Velocity<2>, _: f64, _: f64| {
+        velocity.component_mut(0).fill(PI / 0.0);
+        Ok(())
+    };
     let diverged = flow.advance(0.1, [0.0; 2], &mut poison);
     assert!(matches!(diverged, Err(FlowError::Diverged { .. })), "{diverged:?}");
     let grid = CartesianGrid::new([8, 8], [1.0, 1.0]).unwrap();

@@ -62,16 +62,13 @@ impl<const D: usize> ScalarDiffusion<D> {
         self.kappa = kappa;
         for (a, kinds) in self.kinds.iter_mut().enumerate().filter(|&(a, _)| kappa[a] > 0.0) {
             let nodes = &metrics.axes[a].centres;
-            let scaled = |list: &[f64]| -> Vec<f64> {
-                list[GHOSTS..list.len() - GHOSTS].iter().map(|x| kappa[a] * x).collect()
-            };
-            let (low, high) = (scaled(&nodes.down), scaled(&nodes.up));
-            kinds.factors.clear();
-            let factor = |ends: &Option<[f64; 2]>| {
+            let inside = GHOSTS..nodes.down.len() - GHOSTS;
+            let (low, high) = (&nodes.down[inside.clone()], &nodes.up[inside]);
+            kinds.factors.resize_with(kinds.ends.len(), Tridiagonal::default);
+            for (factor, ends) in kinds.factors.iter_mut().zip(&kinds.ends) {
                 let ends = ends.map(|parts| parts.map(|part| [part, 0.0]));
-                Tridiagonal::new(0, low.clone(), high.clone(), ends)
-            };
-            kinds.factors.extend(kinds.ends.iter().map(factor));
+                factor.set(kappa[a], 0, low, high, ends);
+            }
         }
     }
 

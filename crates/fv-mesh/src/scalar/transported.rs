@@ -2,6 +2,7 @@
 use super::diffusion::ScalarDiffusion;
 use super::kernel::{Input, Step, advance};
 use super::{ScalarBoundaries, ScalarSide};
+use crate::diffusion::{SplitDiffusion, stiffness};
 use crate::metrics::Metrics;
 use crate::operators::{Carrier, integral};
 use crate::{CartesianGrid, Convection, Diffusion, Field, FlowError, Velocity, kernels, statistics};
@@ -9,9 +10,6 @@ use interfaces::{Checkpoint, RestartError, VelocityField};
 
 /// Adams–Bashforth is used while a step is at most so many times longer than the last.
 const LONGEST_GROWTH: f64 = 10.0;
-
-/// Implicit steps are at most so many times the explicit limit, for the sake of accuracy.
-const IMPLICIT_GAIN: f64 = 10.0;
 
 /// A passive scalar φ at the cell centres (temperature, concentration) in a staggered velocity:
 ///
@@ -37,9 +35,7 @@ pub struct Scalar<const D: usize> {
     carrier: Carrier<D>,
     implicit: ScalarDiffusion<D>,
     diffusivity: f64,
-    diffusion: Diffusion,
-    /// The axes whose diffusion was implicit in the last step.
-    implicit_axes: [bool; D],
+    diffusion: SplitDiffusion<D>,
     phi: Field<D>,
     next: Field<D>,
     tendency: Field<D>,
@@ -69,8 +65,10 @@ impl<const D: usize> Scalar<D> {
             carrier: Carrier::new(&metrics, Convection::Central),
             implicit: ScalarDiffusion::new(&boundaries),
             diffusivity,
-            diffusion: Diffusion::Auto,
-            implicit_axes: [false; D],
+            diffusion: SplitDiffusion::new(
+                diffusivity,
+                std::array::from_fn(|a| stiffness(&metrics.axes[a].centres, grid.cells()[a])),
+            ),
             phi: Field::zeros(grid),
             next: Field::zeros(grid),
             tendency: Field::zeros(grid),
@@ -95,7 +93,7 @@ impl<const D: usize> Scalar<D> {
     /// The same with diffusion as told rather than [`Diffusion::Auto`].
     #[must_use]
     pub fn with_diffusion(mut self, diffusion: Diffusion) -> Self {
-        self.diffusion = diffusion;
+        self.diffusion.mode = diffusion;
         self
     }
 
@@ -131,46 +129,9 @@ impl<const D: usize> Scalar<D> {
         self.step
     }
 
-    /// The longest step \[s\] for which explicit diffusion is stable along all axes, 1/(4Γ Σ 1/h²), h the narrowest cell
-    /// along each.
+    /// The longest step \[s\] for which explicit diffusion is stable along all axes: 1/(4Γ Σ 1/h²) on a uniform grid.
     pub fn diffusive_limit(&self) -> f64 {
-        self.limit_along(&[false; D])
-    }
-
-    fn limit_along(&self, implicit: &[bool; D]) -> f64 {
-        let stiffness = |a: usize| self.grid.axis(a).narrowest().powi(-2);
-        1.0 / (4.0 * self.diffusivity * (0..D).filter(|&a| !implicit[a]).map(stiffness).sum::<f64>())
-    }
-
-    /// The fewest axes that have to be implicit for the others to be stable with a step of `dt`.
-    fn stiff_axes(&self, dt: f64) -> [bool; D] {
-        let mut implicit = [false; D];
-        while dt > self.limit_along(&implicit) {
-            let stiffest = (0..D)
-                .filter(|&a| !implicit[a])
-                .min_by(|&a, &b| self.grid.axis(a).narrowest().total_cmp(&self.grid.axis(b).narrowest()));
-            let Some(a) = stiffest else { break };
-            implicit[a] = true;
-        }
-        implicit
-    }
-
-    /// The axes whose diffusion has to be implicit in a step of `dt`.
-    fn choose_implicit(&self, dt: f64) -> Result<[bool; D], FlowError> {
-        match self.diffusion {
-            Diffusion::Implicit => Ok([self.diffusivity > 0.0; D]),
-            Diffusion::Explicit => {
-                let limit = self.diffusive_limit();
-                if dt > limit { Err(FlowError::Unstable { dt, limit }) } else { Ok([false; D]) }
-            }
-            Diffusion::Auto => {
-                // Not to and fro with small changes of the step.
-                let (needed, soon) = (self.stiff_axes(dt), self.stiff_axes(2.0 * dt));
-                let last = self.implicit_axes;
-                let keep = (0..D).all(|a| (last[a] || !needed[a]) && (soon[a] || !last[a]));
-                Ok(if keep { last } else { needed })
-            }
-        }
+        self.diffusion.limit(0.0, &[false; D])
     }
 
     fn check_velocity(&self, velocity: &Velocity<D>) -> Result<(), FlowError> {
@@ -225,18 +186,17 @@ impl<const D: usize> ScalarTransport<D> for Scalar<D> {
             return Err(FlowError::TimeStep { dt, time });
         }
         self.check_velocity(velocity)?;
-        let implicit = self.choose_implicit(dt)?;
+        let implicit = self.diffusion.choose(dt, 0.0)?;
         if self.boundaries.time() != time {
             self.boundaries.set_time(time);
             self.boundaries.fill_ghosts(&mut self.phi);
         }
         // The last tendency is no guide at the start, after a much shorter step, or if it holds other terms.
         let growth = dt / self.last_dt;
-        let usable = self.step > 0 && growth <= LONGEST_GROWTH && implicit == self.implicit_axes;
+        let usable = self.step > 0 && growth <= LONGEST_GROWTH && implicit == self.diffusion.last;
         let r = if usable { growth } else { 0.0 };
-        self.implicit_axes = implicit;
-        let [explicit_part, implicit_part] =
-            [false, true].map(|which| implicit.map(|i| if i == which { self.diffusivity } else { 0.0 }));
+        self.diffusion.last = implicit;
+        let [explicit_part, implicit_part] = self.diffusion.parts(implicit);
         let input = Input {
             grid: &self.grid,
             metrics: &self.metrics,
@@ -267,8 +227,7 @@ impl<const D: usize> ScalarTransport<D> for Scalar<D> {
     }
 
     fn longest_step(&self) -> f64 {
-        let gain = if self.diffusion == Diffusion::Explicit { 0.9 } else { IMPLICIT_GAIN };
-        gain * self.diffusive_limit()
+        self.diffusion.longest_step(0.0)
     }
 }
 
@@ -277,7 +236,7 @@ impl<const D: usize> Checkpoint for Scalar<D> {
         sink("scalar", self.phi.data());
         sink("tendency", self.tendency.data());
         sink("clock", &[self.step as f64, self.last_dt]);
-        sink("implicit", &self.implicit_axes.map(|i| f64::from(u8::from(i))));
+        sink("implicit", &self.diffusion.last.map(|i| f64::from(u8::from(i))));
         if let Some(source) = &self.source {
             sink("source", source.data());
         }
@@ -289,7 +248,7 @@ impl<const D: usize> Checkpoint for Scalar<D> {
         let clock = RestartError::take(source, "clock", 2)?;
         (self.step, self.last_dt) = (clock[0] as u64, clock[1]);
         let implicit = RestartError::take(source, "implicit", D)?;
-        self.implicit_axes = std::array::from_fn(|a| implicit[a] != 0.0);
+        self.diffusion.last = std::array::from_fn(|a| implicit[a] != 0.0);
         if source("source").is_none() {
             self.source = None;
             return Ok(());

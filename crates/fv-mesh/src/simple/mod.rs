@@ -7,15 +7,11 @@ mod tests;
 pub use params::{SimpleInfo, SimpleParams};
 pub(crate) use pressure_correction::PressureCorrection;
 
-use crate::boundary::Boundaries;
+use crate::flow_state::{FlowState, show_state};
 use crate::kernels;
 use crate::linear::StencilMatrix;
-use crate::metrics::Metrics;
 use crate::momentum_matrix::{self as momentum, Equation, Implicit, MomentumEquations};
-use crate::projection::check_fluid;
-use crate::statistics;
-use crate::statistics::Measure;
-use crate::{CartesianGrid, Convection, Field, FlowError, FlowStatistics, Fluid, Side, Sides, Velocity};
+use crate::{CartesianGrid, Convection, Field, FlowError, Fluid, Side};
 
 /// Step \[s\] that outlets are moved on by in one iteration: they follow the flow inside at once.
 const LONG: f64 = 1e30;
@@ -54,23 +50,17 @@ const FLOOR: f64 = 1e-5;
 /// # Ok::<(), fv_mesh::FlowError>(())
 /// ```
 pub struct Simple<const D: usize> {
-    grid: CartesianGrid<D>,
-    metrics: Metrics<D>,
-    boundaries: Boundaries<D>,
-    fluid: Fluid,
+    /// Its steps are iterations.
+    state: FlowState<D>,
     params: SimpleParams,
     equations: MomentumEquations<D>,
     matrix: StencilMatrix<D>,
     correction: PressureCorrection<D>,
-    measure: Measure<D>,
-    velocity: Velocity<D>,
-    pressure: Field<D>,
     delta: [Vec<f64>; D],
     force: [f64; D],
     eddy: Option<Field<D>>,
     /// Dense numbers of the nodes whose velocity is given.
     pinned: [Vec<usize>; D],
-    iterations: usize,
 }
 
 impl<const D: usize> Simple<D> {
@@ -80,39 +70,22 @@ impl<const D: usize> Simple<D> {
     /// # Errors
     /// [`FlowError`] for sides or fluid properties that make no sense.
     pub fn new(grid: CartesianGrid<D>, sides: [[Side; 2]; D], fluid: Fluid) -> Result<Self, FlowError> {
-        let sides = Sides::new(sides)?;
-        check_fluid(fluid)?;
-        let metrics = Metrics::new(&grid, std::array::from_fn(|a| sides.periodic(a)));
-        let velocity = Velocity::zeros(&grid, &sides);
-        let boundaries = Boundaries::new(&grid, sides, &metrics)?;
+        let state = FlowState::new(grid, sides, fluid)?;
+        let FlowState { grid, metrics, boundaries, .. } = &state;
         let params = SimpleParams::default();
         let n = grid.n_cells();
-        let mut flow = Self {
-            equations: MomentumEquations::new(
-                &grid,
-                &metrics,
-                fluid,
-                params.momentum_solver(n),
-                Implicit::Hybrid,
-            ),
+        let solver = params.momentum_solver(n);
+        Ok(Self {
+            equations: MomentumEquations::new(grid, metrics, fluid, solver, Implicit::Hybrid),
             matrix: StencilMatrix::new(grid.cells(), metrics.periodic)?,
-            correction: params.pressure_solver(&grid, &metrics, &boundaries)?,
-            measure: Measure::new(&grid, &metrics),
-            velocity,
-            pressure: Field::zeros(&grid),
+            correction: params.pressure_solver(grid, metrics, boundaries)?,
             delta: std::array::from_fn(|_| vec![0.0; n]),
             force: [0.0; D],
             eddy: None,
             pinned: std::array::from_fn(|_| Vec::new()),
-            iterations: 0,
             params,
-            grid,
-            metrics,
-            boundaries,
-            fluid,
-        };
-        flow.fill();
-        Ok(flow)
+            state,
+        })
     }
 
     /// The same with another convection scheme than [`Convection::Central`].
@@ -129,16 +102,15 @@ impl<const D: usize> Simple<D> {
     pub fn with_params(mut self, params: SimpleParams) -> Result<Self, FlowError> {
         params.check()?;
         self.params = params;
-        self.equations.solver = params.momentum_solver(self.grid.n_cells());
-        self.correction = params.pressure_solver(&self.grid, &self.metrics, &self.boundaries)?;
+        let FlowState { grid, metrics, boundaries, .. } = &self.state;
+        self.equations.solver = params.momentum_solver(grid.n_cells());
+        self.correction = params.pressure_solver(grid, metrics, boundaries)?;
         Ok(self)
     }
 
     /// Sets the first guess of the velocity to `u(x)` \[m/s\], outlets included; walls and inlets keep theirs.
     pub fn set_velocity(&mut self, u: impl Fn([f64; D]) -> [f64; D]) {
-        momentum::set_velocity(&self.grid, &self.metrics, &mut self.velocity, &u);
-        self.boundaries.start(&self.metrics, u);
-        self.fill();
+        self.state.set_velocity(u);
     }
 
     /// Sets the body force per mass \[m/s²\].
@@ -164,11 +136,11 @@ impl<const D: usize> Simple<D> {
     pub fn pin(&mut self, nodes: impl IntoIterator<Item = (usize, usize, f64)>) -> Result<(), FlowError> {
         self.pinned.iter_mut().for_each(Vec::clear);
         for (c, index, value) in nodes {
-            let cell = momentum::check_node(&self.grid, c, index, value)?;
-            self.velocity.components[c].data_mut()[index] = value;
+            let cell = momentum::check_node(&self.state.grid, c, index, value)?;
+            self.state.velocity.components[c].data_mut()[index] = value;
             self.pinned[c].push(cell);
         }
-        self.fill();
+        self.state.fill_velocity();
         Ok(())
     }
 
@@ -181,10 +153,11 @@ impl<const D: usize> Simple<D> {
         let mut info = SimpleInfo::default();
         let mut scale = 0.0_f64;
         for c in 0..D {
-            let u = &self.velocity.components;
+            let FlowState { grid, metrics, boundaries, velocity, pressure, .. } = &self.state;
+            let u = &velocity.components;
             let equation = Equation {
                 velocity: u,
-                pressure: &self.pressure,
+                pressure,
                 history: [&u[c], &u[c]],
                 weights: [0.0; 3],
                 force: self.force[c],
@@ -192,15 +165,15 @@ impl<const D: usize> Simple<D> {
                 viscous_share: self.params.viscous_share,
                 eddy: self.eddy.as_ref(),
             };
-            let [terms, inertia] = self.equations.make(c, equation, &self.boundaries, &mut self.matrix);
+            let [terms, inertia] = self.equations.make(c, equation, boundaries, &mut self.matrix);
             for &cell in &self.pinned[c] {
                 momentum::pin(&mut self.matrix, cell, 0.0, &mut self.equations.rhs);
             }
             scale = scale.max(terms).max(FLOOR * inertia);
             let rhs = &self.equations.rhs;
-            info.momentum[c] = momentum::absolute_sum(&self.grid, &self.metrics, Some(c), rhs);
+            info.momentum[c] = momentum::absolute_sum(grid, metrics, Some(c), rhs);
             if !info.momentum[c].is_finite() {
-                return Err(self.diverged());
+                return Err(self.state.diverged(0.0));
             }
             info.sweeps += self.equations.solver.solve(&self.matrix, rhs, &mut self.delta[c])?;
             // Sums of rows do not fall below this but where the velocity is not yet free of divergence.
@@ -214,43 +187,37 @@ impl<const D: usize> Simple<D> {
         if scale > 0.0 {
             info.momentum.iter_mut().for_each(|r| *r /= scale);
         }
-        for (u, delta) in self.velocity.components.iter_mut().zip(&self.delta) {
-            kernels::add_dense(&self.grid, delta, u);
+        let FlowState { grid, metrics, boundaries, fluid, velocity, .. } = &mut self.state;
+        for (u, delta) in velocity.components.iter_mut().zip(&self.delta) {
+            kernels::add_dense(grid, delta, u);
         }
-        self.boundaries.advance_outlets(
-            &self.metrics,
-            &self.velocity.components,
-            LONG,
-            self.fluid.viscosity,
-        )?;
-        self.boundaries.reset_outlets(&self.velocity.components);
-        self.fill();
-        self.correction.update(&mut self.boundaries, self.fluid.viscosity)?;
-        let through = momentum::throughput(&self.grid, &self.metrics, &self.velocity.components);
-        let divergence = self.correction.measure(
-            &mut self.boundaries,
-            &self.velocity.components,
-            &self.pressure,
-            self.fluid.density,
-        );
+        boundaries.advance_outlets(metrics, &velocity.components, LONG, fluid.viscosity)?;
+        boundaries.reset_outlets(&velocity.components);
+        self.state.fill_velocity();
+        let FlowState { grid, metrics, boundaries, fluid, velocity, pressure, .. } = &mut self.state;
+        self.correction.update(boundaries, fluid.viscosity)?;
+        let velocity = &mut velocity.components;
+        let through = momentum::throughput(grid, metrics, velocity);
+        let divergence = self.correction.measure(boundaries, velocity, pressure, fluid.density);
         if !divergence.is_finite() {
-            return Err(self.diverged());
+            return Err(self.state.diverged(0.0));
         }
         info.continuity = if through > 0.0 { divergence / through } else { 0.0 };
         if self.pinned.iter().any(|p| !p.is_empty()) {
             self.correction.skip_frozen();
         }
         info.pressure_iterations = self.correction.solve(false)?.iterations;
-        self.correction.correct(&mut self.boundaries, &mut self.velocity.components);
-        let gain = self.params.pressure_relaxation * self.fluid.density;
+        self.correction.correct(boundaries, velocity);
+        let gain = self.params.pressure_relaxation * fluid.density;
         // The viscous part of what the divergence takes (Cahouet & Chabat 1988); in SIMPLE proper β has it.
-        let viscosity = if self.params.consistent { self.fluid.viscosity } else { 0.0 };
+        let viscosity = if self.params.consistent { fluid.viscosity } else { 0.0 };
         let eddy = self.eddy.as_ref().filter(|_| self.params.consistent);
         self.correction.scale(gain, viscosity, eddy);
-        kernels::add_dense(&self.grid, &self.correction.phi, &mut self.pressure);
-        self.fill();
-        self.iterations += 1;
-        info.iterations = self.iterations;
+        kernels::add_dense(grid, &self.correction.phi, pressure);
+        self.state.fill_velocity();
+        self.state.fill_pressure();
+        self.state.step += 1;
+        info.iterations = self.iterations();
         Ok(info)
     }
 
@@ -273,51 +240,16 @@ impl<const D: usize> Simple<D> {
 
     /// β where a box is one cell wide between two openings.
     fn single(&self) -> f64 {
-        let stiffness: f64 = (0..D).map(|a| self.grid.axis(a).narrowest().powi(-2)).sum();
-        let rate = 4.0 * self.fluid.viscosity * stiffness;
+        let FlowState { grid, fluid, .. } = &self.state;
+        let stiffness: f64 = (0..D).map(|a| grid.axis(a).narrowest().powi(-2)).sum();
+        let rate = 4.0 * fluid.viscosity * stiffness;
         if rate > 0.0 { 1.0 / rate } else { 0.0 }
     }
 
-    fn fill(&mut self) {
-        for c in 0..D {
-            self.boundaries.fill_velocity(c, &mut self.velocity.components[c]);
-        }
-        self.boundaries.fill_pressure(&mut self.pressure);
-    }
-
-    fn diverged(&self) -> FlowError {
-        let cell = statistics::worst_cell(&self.velocity.components);
-        FlowError::Diverged { step: self.iterations as u64, time: 0.0, dt: 0.0, courant: 0.0, cell }
-    }
-
-    /// Sums and extremes of the velocity, as it is now.
-    pub fn statistics(&mut self) -> FlowStatistics {
-        let fluid = [self.fluid.density, self.fluid.viscosity];
-        let scratch = &mut self.equations.rhs;
-        self.measure.of(&self.grid, &self.metrics, &self.velocity.components, fluid, scratch)
-    }
-    /// The grid.
-    pub fn grid(&self) -> &CartesianGrid<D> {
-        &self.grid
-    }
-    /// The sides of the box.
-    pub fn sides(&self) -> &Sides<D> {
-        &self.boundaries.sides
-    }
-    /// The fluid.
-    pub fn fluid(&self) -> Fluid {
-        self.fluid
-    }
-    /// The velocity \[m/s\].
-    pub fn velocity(&self) -> &Velocity<D> {
-        &self.velocity
-    }
-    /// The pressure at the cell centres \[Pa\], without the hydrostatic part.
-    pub fn pressure(&self) -> &Field<D> {
-        &self.pressure
-    }
     /// Iterations made.
     pub fn iterations(&self) -> usize {
-        self.iterations
+        self.state.step as usize
     }
+
+    show_state!();
 }

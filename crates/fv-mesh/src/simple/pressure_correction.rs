@@ -1,12 +1,12 @@
 //! The pressure equation of segregated algorithms.
-use crate::boundary::{Boundaries, FaceKind, PressureFace};
+use crate::boundary::{Boundaries, PressureFace};
 use crate::grid::GHOSTS;
-use crate::kernels::{self, layers_per_task, row_place};
+use crate::kernels::{self, Conductance, face_row, layers_per_task};
 use crate::linear::StencilMatrix;
 use crate::metrics::Metrics;
-use crate::poisson::PoissonAxis;
 use crate::poisson::multigrid::{MultigridCg, MultigridParams};
-use crate::poisson::{AxisBounds, PoissonError, PoissonInfo};
+use crate::poisson::{PoissonError, PoissonInfo};
+use crate::pressure::PressureEnds;
 use crate::{CartesianGrid, Field, FlowError};
 use rayon::prelude::*;
 
@@ -49,29 +49,9 @@ impl<const D: usize> PressureCorrection<D> {
         tolerance: f64,
         max_iterations: usize,
     ) -> Result<Self, FlowError> {
-        let kinds: [Option<[Vec<FaceKind>; 2]>; D] = std::array::from_fn(|a| boundaries.kinds(a));
-        let given = |kinds: &[FaceKind]| kinds.iter().all(|&k| k == FaceKind::Pressure);
-        let axes = std::array::from_fn(|a| {
-            let axis = grid.axis(a);
-            let ends = match kinds[a].as_ref().map(|k| [given(&k[0]), given(&k[1])]) {
-                None => AxisBounds::Periodic,
-                Some([false, false]) => AxisBounds::Neumann,
-                Some([true, true]) => AxisBounds::Dirichlet,
-                Some([false, true]) => AxisBounds::NeumannDirichlet,
-                Some([true, false]) => AxisBounds::DirichletNeumann,
-            };
-            PoissonAxis::from_axis(axis, ends)
-        });
+        let ends = PressureEnds::new(grid, boundaries);
         let params = MultigridParams { tolerance, max_iterations, variable: true, ..Default::default() };
-        let mut solver = MultigridCg::new(axes, 0.0, params)?;
-        for (a, kinds) in kinds.iter().enumerate() {
-            for (high, kinds) in kinds.iter().flatten().enumerate() {
-                let zero: Vec<bool> = kinds.iter().map(|&k| k == FaceKind::Pressure).collect();
-                if zero.contains(&true) && zero.contains(&false) {
-                    solver.multigrid().set_ends(a, high == 1, &zero)?;
-                }
-            }
-        }
+        let solver = ends.multigrid(params)?;
         let cells = grid.cells();
         let beta = std::array::from_fn(|a| vec![0.0; grid.n_cells() / cells[a] * (cells[a] + 1)]);
         let (phi, divergence) = (vec![0.0; grid.n_cells()], vec![0.0; grid.n_cells()]);
@@ -262,49 +242,14 @@ impl<const D: usize> PressureCorrection<D> {
     /// u ← u − β ∇φ, sides included.
     pub(crate) fn correct(&self, boundaries: &mut Boundaries<D>, velocity: &mut [Field<D>; D]) {
         for (c, component) in velocity.iter_mut().enumerate() {
-            self.correct_component(c, component);
+            let beta = Conductance::Faces(&self.beta[c]);
+            kernels::correct_component(&self.grid, &self.metrics, c, beta, &self.phi, component);
         }
         let mut given = self.given.iter();
         boundaries.each_pressure_face(|face, normal| {
             let Some(g) = given.next() else { return };
             let sign = if face.upper { 1.0 } else { -1.0 };
             *normal += sign * g.conductance * (self.phi[g.cell] - g.phi);
-        });
-    }
-
-    fn correct_component(&self, c: usize, component: &mut Field<D>) {
-        let (grid, n, rows) = (&self.grid, self.grid.cells(), self.grid.rows_per_layer());
-        let (beta, phi, periodic) = (&self.beta[c], &self.phi, self.metrics.periodic[c]);
-        let inv = &self.metrics.axes[c].faces.inv_volume[GHOSTS..];
-        let layer = grid.stride()[D - 1];
-        let per_task = layers_per_task(n[D - 1]);
-        let step = if c == 2 { n[1] } else { 1 };
-        component.layers_mut().par_chunks_mut(layer * per_task).enumerate().for_each(|(task, out)| {
-            let first = task * per_task;
-            for r in first * rows..(first + per_task).min(n[D - 1]) * rows {
-                let local = crate::field::row_start(grid, r) - (GHOSTS + first) * layer;
-                let out = &mut out[local..][..n[0]];
-                let here = &phi[r * n[0]..][..n[0]];
-                let beta = &beta[face_row(grid, c, r)..][..n[0]];
-                if c == 0 {
-                    out[0] -= beta[0] * inv[0] * (here[0] - here[if periodic { n[0] - 1 } else { 0 }]);
-                    let (beta, inv, after) = (&beta[1..], &inv[1..n[0]], &here[1..]);
-                    for (i, out) in out[1..].iter_mut().enumerate() {
-                        *out -= beta[i] * inv[i] * (after[i] - here[i]);
-                    }
-                    continue;
-                }
-                let at = row_place(grid, r)[c];
-                let below = match (at, periodic) {
-                    (0, true) => r + (n[c] - 1) * step,
-                    (0, false) => continue,
-                    _ => r - step,
-                };
-                let below = &phi[below * n[0]..][..n[0]];
-                for i in 0..n[0] {
-                    out[i] -= beta[i] * inv[at] * (here[i] - below[i]);
-                }
-            }
         });
     }
 }
@@ -327,16 +272,4 @@ fn face_layer<const D: usize>(grid: &CartesianGrid<D>, c: usize) -> usize {
     let mut faces = n;
     faces[c] += 1;
     faces[..D - 1].iter().product()
-}
-
-/// Place of the face below the first cell of row `r` among the faces of component `c`.
-fn face_row<const D: usize>(grid: &CartesianGrid<D>, c: usize, r: usize) -> usize {
-    let n = grid.cells();
-    if c == 0 {
-        return r * (n[0] + 1);
-    }
-    if D == 3 && c == 1 {
-        return (r / n[1] * (n[1] + 1) + r % n[1]) * n[0];
-    }
-    r * n[0]
 }

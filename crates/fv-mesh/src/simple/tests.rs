@@ -1,6 +1,6 @@
 //! The steady algorithm against exact solutions and a benchmark.
 use super::*;
-use crate::{Axis, Cluster, Patch, Piso, Profile};
+use crate::{Axis, Cluster, Patch, Piso, Profile, Velocity};
 use std::f64::consts::{PI, TAU};
 
 fn fluid(viscosity: f64) -> Fluid {

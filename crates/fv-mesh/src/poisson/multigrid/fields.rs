@@ -267,40 +267,15 @@ impl Sweeps {
         self.run(&Direct { s, scale, z, beta }, p, &mut [], &mut []);
     }
 
-    /// φ ← φ + `alpha` p, r ← r − `alpha` q, `single` ← `scale` r; returns the mean square of r.
-    #[allow(clippy::too_many_arguments)]
+    /// φ ← φ + α p, r ← r − α q, `single` ← `scale` r; returns the mean square of r.
     pub(super) fn advance<T: Real>(
         &mut self,
-        alpha: f64,
-        p: &[f64],
-        q: &[f64],
-        scale: f64,
+        step: Advance<'_>,
         r: &mut [f64],
         single: &mut [T],
         phi: &mut [f64],
     ) -> f64 {
-        struct Advance<'a> {
-            alpha: f64,
-            p: &'a [f64],
-            q: &'a [f64],
-            scale: f64,
-        }
-        impl<T: Real> RowSweep<T> for Advance<'_> {
-            #[inline(always)]
-            fn row(&self, at: At, row: Row<T>, w: &[f64]) -> [f64; 2] {
-                let n = row.dense.len();
-                let inner = at.row * (n + 2) + 1;
-                let (p, q) = (&self.p[inner..][..n], &self.q[inner..][..n]);
-                let (r, single, phi) = (&mut row.a[1..n + 1], &mut row.single[1..n + 1], row.dense);
-                for i in 0..n {
-                    phi[i] += self.alpha * p[i];
-                    r[i] -= self.alpha * q[i];
-                    single[i] = T::of(self.scale * r[i]);
-                }
-                [weighted(w, n, |i| r[i], |r| r * r), 0.0]
-            }
-        }
-        self.run(&Advance { alpha, p, q, scale }, r, single, phi)[0]
+        self.run(&step, r, single, phi)[0]
     }
 
     /// Subtracts the mean of a dense field.
@@ -316,5 +291,30 @@ impl Sweeps {
         }
         let [mean, _] = self.run(&Shift(0.0), &mut [], &mut [], phi);
         self.run(&Shift(mean), &mut [], &mut [], phi);
+    }
+}
+
+/// A step of conjugate gradients along the direction p, q = A p.
+pub(super) struct Advance<'a> {
+    pub(super) alpha: f64,
+    pub(super) p: &'a [f64],
+    pub(super) q: &'a [f64],
+    /// Of the residual in lower precision.
+    pub(super) scale: f64,
+}
+
+impl<T: Real> RowSweep<T> for Advance<'_> {
+    #[inline(always)]
+    fn row(&self, at: At, row: Row<T>, w: &[f64]) -> [f64; 2] {
+        let n = row.dense.len();
+        let inner = at.row * (n + 2) + 1;
+        let (p, q) = (&self.p[inner..][..n], &self.q[inner..][..n]);
+        let (r, single, phi) = (&mut row.a[1..n + 1], &mut row.single[1..n + 1], row.dense);
+        for i in 0..n {
+            phi[i] += self.alpha * p[i];
+            r[i] -= self.alpha * q[i];
+            single[i] = T::of(self.scale * r[i]);
+        }
+        [weighted(w, n, |i| r[i], |r| r * r), 0.0]
     }
 }

@@ -1,5 +1,5 @@
 //! The hierarchy in single or double precision.
-use super::fields::Sweeps;
+use super::fields::{Advance, Sweeps};
 use super::hierarchy::Hierarchy;
 use super::stencil::Stencil;
 
@@ -54,17 +54,13 @@ impl Precision {
     }
 
     /// [`Sweeps::advance`] with the right-hand side.
-    #[allow(clippy::too_many_arguments)]
     pub(super) fn advance(
         &mut self,
         sweeps: &mut Sweeps,
-        alpha: f64,
-        p: &[f64],
-        q: &[f64],
-        scale: f64,
+        step: Advance<'_>,
         r: &mut [f64],
         phi: &mut [f64],
     ) -> f64 {
-        with!(self, h => sweeps.advance(alpha, p, q, scale, r, &mut h.levels[0].f, phi))
+        with!(self, h => sweeps.advance(step, r, &mut h.levels[0].f, phi))
     }
 }

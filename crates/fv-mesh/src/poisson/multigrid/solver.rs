@@ -1,7 +1,7 @@
 //! Multigrid on its own.
 use super::MultigridParams;
 use super::axis::{self, AxisLevel};
-use super::fields::Sweeps;
+use super::fields::{Advance, Sweeps};
 use super::hierarchy::Hierarchy;
 use super::precision::Precision;
 use super::stencil::Stencil;
@@ -165,8 +165,8 @@ impl<const D: usize> Multigrid<D> {
 
     /// φ ← φ + `alpha` p and the residual with it; returns the residual over f.
     pub(super) fn advance(&mut self, begun: &Begun, alpha: f64, phi: &mut [f64]) -> f64 {
-        let (p, q) = (&self.p, &self.q);
-        let square = self.hierarchy.advance(&mut self.sweeps, alpha, p, q, begun.scale, &mut self.r, phi);
+        let step = Advance { alpha, p: &self.p, q: &self.q, scale: begun.scale };
+        let square = self.hierarchy.advance(&mut self.sweeps, step, &mut self.r, phi);
         square.sqrt() / begun.norm
     }
 

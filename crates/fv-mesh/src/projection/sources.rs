@@ -1,0 +1,83 @@
+//! Accelerations that vary in space.
+use super::Projection;
+use crate::flow_state::FlowState;
+use crate::{Field, FlowError, kernels};
+use interfaces::SolveError;
+
+/// What accelerates the fluid in the next predictor step; its fields are made when first needed.
+#[derive(Default)]
+pub(super) struct Sources<const D: usize> {
+    fields: Option<Box<[Field<D>; D]>>,
+    /// Is there anything in `fields`?
+    given: bool,
+    /// ν_t with ghosts.
+    eddy: Option<Box<Field<D>>>,
+    /// The largest ν_t of the last step with a closure \[m²/s\].
+    eddy_most: f64,
+}
+
+impl<const D: usize> Sources<D> {
+    /// The largest eddy viscosity that is given, or was in the last step \[m²/s\].
+    pub(super) fn eddy_most(&self) -> f64 {
+        self.eddy_most
+    }
+
+    /// Forgets the eddy viscosity of an earlier step.
+    pub(super) fn start(&mut self) {
+        if !self.given {
+            self.eddy_most = 0.0;
+        }
+    }
+
+    /// Takes back accelerations that no predictor step used.
+    pub(super) fn forget(&mut self) {
+        (self.given, self.eddy_most) = (false, 0.0);
+    }
+
+    /// What was given since the last call.
+    pub(super) fn take(&mut self) -> Option<&[Field<D>; D]> {
+        std::mem::take(&mut self.given).then_some(self.fields.as_deref())?
+    }
+}
+
+impl<const D: usize> Projection<D> {
+    /// Lets `f` add accelerations that vary in space \[m/s²\] for the next predictor step.
+    pub(crate) fn with_sources(&mut self, f: impl FnOnce(&Self, &mut [Field<D>; D])) {
+        let zeros = || Box::new(std::array::from_fn(|_| Field::zeros(&self.state.grid)));
+        let mut fields = self.sources.fields.take().unwrap_or_else(zeros);
+        if !self.sources.given {
+            fields.iter_mut().for_each(|s| s.data_mut().fill(0.0));
+        }
+        f(self, &mut fields);
+        self.sources.fields = Some(fields);
+        self.sources.given = true;
+    }
+
+    /// Takes back accelerations that no predictor step used.
+    pub(crate) fn forget_sources(&mut self) {
+        self.sources.forget();
+    }
+
+    /// Adds ∇·[ν_t(∇u + ∇uᵀ)] of the eddy viscosity ν_t \[m²/s\] (dense) to the next predictor step of `dt`.
+    pub(crate) fn add_eddy_stress(&mut self, eddy: &[f64], dt: f64) -> Result<(), FlowError> {
+        let n = self.state.grid.n_cells();
+        if eddy.len() != n {
+            let source = SolveError::Length { what: "the eddy viscosity", expected: n, found: eddy.len() };
+            return Err(FlowError::Closure { time: self.state.time, source });
+        }
+        self.sources.eddy_most = eddy.iter().copied().fold(0.0, f64::max);
+        self.choose_implicit(dt)?;
+        let grid = &self.state.grid;
+        let mut field = self.sources.eddy.take().unwrap_or_else(|| Box::new(Field::zeros(grid)));
+        kernels::copy_dense(grid, eddy, &mut field);
+        self.state.boundaries.fill_even(&mut field);
+        self.with_sources(|flow, sources| {
+            let FlowState { grid, metrics, velocity, .. } = &flow.state;
+            for (c, source) in sources.iter_mut().enumerate() {
+                kernels::add_eddy_stress(grid, metrics, c, &velocity.components, &field, source);
+            }
+        });
+        self.sources.eddy = Some(field);
+        Ok(())
+    }
+}

@@ -536,8 +536,7 @@ impl<const D: usize> Projection<D> {
     pub fn fluid(&self) -> Fluid {
         self.fluid
     }
-    /// The velocity \[m/s\]; between the halves of a step it is u*. On stretched axes its lattices give the storage, not the
-    /// positions ([`CartesianGrid::lattice`]).
+    /// The velocity \[m/s\]; between the halves of a step it is u*.
     pub fn velocity(&self) -> &Velocity<D> {
         &self.velocity
     }

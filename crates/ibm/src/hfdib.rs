@@ -77,12 +77,7 @@ impl Hfdib {
 /// bounded side.
 fn interpolation(lattice: &Lattice, x: Point) -> Option<[(usize, f64); 8]> {
     let mut out = [(lattice.base, 0.0); 8];
-    let (mut first, mut part) = ([0_isize; 3], [0.0; 3]);
-    for a in 0..lattice.dim {
-        let r = (x[a] - lattice.origin[a]) / lattice.spacing[a];
-        first[a] = r.floor() as isize;
-        part[a] = r - r.floor();
-    }
+    let (first, part) = lattice.locate(x);
     for corner in 0..1 << lattice.dim {
         let up = [corner & 1, (corner >> 1) & 1, (corner >> 2) & 1];
         let index = lattice.index(std::array::from_fn(|a| first[a] + up[a] as isize))?;
@@ -126,7 +121,7 @@ impl Forcing for Hfdib {
                     .for_each(|n| forced[n.index] = to);
             };
             mark(&mut self.forced, true);
-            let h = lattice.cell_volume().powf(1.0 / lattice.dim as f64);
+            let root = 1.0 / lattice.dim as f64;
             for (b, cells) in self.bodies.iter_mut().enumerate() {
                 let (solid, pose) = (bodies.solid(BodyId(b)), bodies.pose(BodyId(b)));
                 cells.surface[c].clear();
@@ -136,6 +131,7 @@ impl Forcing for Hfdib {
                     cells.surface[c].reserve(2 * room);
                 }
                 for node in self.inside[c].nodes(BodyId(b)).iter().filter(|n| n.fraction < 1.0) {
+                    let h = node.volume.powf(root);
                     let local = pose.to_body(pose.position + node.arm);
                     let normal = pose.orientation * solid.normal(local, h);
                     let foot = node.arm - normal * node.distance;
@@ -177,11 +173,11 @@ impl Forcing for Hfdib {
     fn layer(&self, velocity: &dyn VelocityField, b: BodyId) -> Layer {
         let mut layer = Layer::default();
         for c in 0..velocity.dim() {
-            let (u, mass) = (velocity.component(c), self.density * velocity.lattice(c).cell_volume());
+            let u = velocity.component(c);
             for cell in &self.bodies[b.0].surface[c] {
                 // The part of u* that the body's own motion replaces: a·(û/a), a the weight of U_S.
                 let free: f64 = cell.fluid.iter().map(|&(i, w)| w * u[i]).sum();
-                let weight = mass * (1.0 - cell.node.fraction) * cell.solid;
+                let weight = self.density * cell.node.volume * (1.0 - cell.node.fraction) * cell.solid;
                 if weight > 0.0 {
                     layer.add(c, cell.foot, weight, (u[cell.node.index] - free) / cell.solid);
                 }
@@ -198,12 +194,11 @@ impl Forcing for Hfdib {
         for (b, cells) in self.bodies.iter_mut().enumerate() {
             let twist = bodies.twist(BodyId(b));
             for c in 0..velocity.dim() {
-                let mass = self.density * velocity.lattice(c).cell_volume();
                 let u = velocity.component_mut(c);
-                let reaction = &mut cells.reaction;
+                let (reaction, density) = (&mut cells.reaction, self.density);
                 let mut set = |u: &mut [f64], node: &SolidNode, target: f64| {
                     let mut force = Vector::zeros();
-                    force[c] = mass * (u[node.index] - target);
+                    force[c] = density * node.volume * (u[node.index] - target);
                     *reaction += Wrench::at(force, node.arm);
                     u[node.index] = target;
                 };
@@ -294,7 +289,7 @@ mod tests {
         let mut velocity = Collocated::new(lattice(2, [0.05; 3], 3.0), |x| [x[1].sin(), x[0].cos(), 0.0]);
         let mut forcing = Hfdib::new(2.0);
         forcing.place(&velocity, &bodies).unwrap();
-        let mass = 2.0 * velocity.lattice.cell_volume();
+        let mass = 2.0 * velocity.lattice.volume([0; 3]);
         let total = |v: &Collocated, c: usize| v.values[c].iter().sum::<f64>() * mass;
         let before = [0, 1].map(|c| total(&velocity, c));
         forcing.force(&mut velocity, &bodies);

@@ -13,6 +13,8 @@ pub struct SolidNode {
     pub distance: f64,
     /// Place of the node from the body's centre of mass \[m\].
     pub arm: Vector,
+    /// Its control volume \[m³\]; area in a plane lattice.
+    pub volume: f64,
 }
 
 /// The solid fraction of every body on one lattice; only bodies whose pose changed are worked on.
@@ -57,12 +59,9 @@ impl SolidFraction {
 
     /// λ of all bodies added to a dense field, x fastest; where bodies share a cell it stays ≤ 1.
     pub fn add_to_dense(&self, lattice: &Lattice, out: &mut [f64]) {
-        let [nx, ny, _] = lattice.shape;
+        let [nx, ny, _] = lattice.shape();
         for node in self.bodies.iter().flat_map(|(_, nodes)| nodes) {
-            let offset = node.index - lattice.base;
-            let k = offset.checked_div(lattice.stride[2]).unwrap_or(0);
-            let rest = offset - k * lattice.stride[2];
-            let (j, i) = (rest / lattice.stride[1], rest % lattice.stride[1]);
+            let [i, j, k] = lattice.node(node.index).map(|i| i as usize);
             let cell = &mut out[i + nx * (j + ny * k)];
             *cell = (*cell + node.fraction).min(1.0);
         }
@@ -81,22 +80,34 @@ fn project<B: Bodies + ?Sized>(
     if !pose.position.iter().all(|x| x.is_finite()) {
         return Err(IbmError::Lost { body: b, position: pose.position.into() });
     }
-    let mut h = Vector::from(lattice.spacing);
-    if lattice.dim == 2 {
-        h.z = 0.0;
-    }
-    // Beyond half a diagonal a cell is all fluid or all solid.
-    let reach = 0.5 * h.norm();
-    let bounds = bodies.aabb(b).grown(reach);
+    let bounds = bodies.aabb(b);
+    let range: [_; 3] = std::array::from_fn(|a| {
+        if a >= lattice.dim {
+            return 0..1;
+        }
+        // One node more on both sides: cells that the box reaches into.
+        let (nodes, inside) = (&lattice.axes[a], lattice.range(a, bounds.min[a], bounds.max[a]));
+        let one_more = inside.start - 1..inside.end + 1;
+        if nodes.is_periodic() {
+            one_more
+        } else {
+            one_more.start.max(0)..one_more.end.min(nodes.len() as isize)
+        }
+    });
     // Room for as many nodes as the box may ever cover, so that a moving body allocates nothing.
-    let extent = bounds.extent();
-    nodes.reserve((0..lattice.dim).map(|a| (extent[a] / h[a]) as usize + 2).product());
-    let range: [_; 3] = std::array::from_fn(|a| lattice.range(a, bounds.min[a], bounds.max[a]));
+    nodes.reserve(range.iter().map(|r| r.len() + 1).product());
     let to_body = pose.orientation.inverse().to_rotation_matrix();
     for k in range[2].clone() {
         for j in range[1].clone() {
             for i in range[0].clone() {
                 let Some(index) = lattice.index([i, j, k]) else { continue };
+                let mut h = Vector::from(lattice.widths([i, j, k]));
+                let volume = h.product();
+                if lattice.dim == 2 {
+                    h.z = 0.0;
+                }
+                // Beyond half a diagonal a cell is all fluid or all solid.
+                let reach = 0.5 * h.norm();
                 let arm = Point::from(lattice.position([i, j, k])) - pose.position;
                 let local = Point::from(to_body * arm);
                 let distance = solid.signed_distance(local, 1.01 * reach);
@@ -109,7 +120,7 @@ fn project<B: Bodies + ?Sized>(
                     cell_fraction(distance, normal, solid.curvature(local, reach), h)
                 };
                 if fraction > 0.0 {
-                    nodes.push(SolidNode { index, fraction, distance, arm });
+                    nodes.push(SolidNode { index, fraction, distance, arm, volume });
                 }
             }
         }
@@ -129,7 +140,7 @@ mod tests {
         let mut fraction = SolidFraction::new();
         fraction.update(&lattice, &bodies).unwrap();
         let sum: f64 = fraction.nodes(BodyId(0)).iter().map(|n| n.fraction).sum();
-        sum * lattice.cell_volume()
+        sum * lattice.volume([0; 3])
     }
 
     proptest! {

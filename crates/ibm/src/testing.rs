@@ -1,7 +1,7 @@
 //! Bodies and lattices for the unit tests.
 use interfaces::{
-    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Lattice, Point, Pose, Solid, SurfaceElement, Twist,
-    Vector, VelocityField,
+    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Lattice, Nodes, Point, Pose, Solid, SurfaceElement,
+    Twist, Vector, VelocityField,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -80,25 +80,18 @@ impl Bodies for Balls {
 
 /// A periodic lattice of cell centres of about this spacing in a box of edge `length`.
 pub(crate) fn lattice(dim: usize, spacing: [f64; 3], length: f64) -> Lattice {
-    let mut l = Lattice {
-        dim,
-        origin: [0.0; 3],
-        spacing: [1.0; 3],
-        shape: [1; 3],
-        periodic: [false; 3],
-        base: 0,
-        stride: [0; 3],
+    let axis = |a: usize| {
+        let n = (length / spacing[a]).round();
+        let h = length / n;
+        Nodes::uniform(0.5 * h, h, n as usize, true)
     };
-    let mut stride = 1;
-    for a in 0..dim {
-        l.shape[a] = (length / spacing[a]).round() as usize;
-        l.spacing[a] = length / l.shape[a] as f64;
-        l.origin[a] = 0.5 * l.spacing[a];
-        l.periodic[a] = true;
-        l.stride[a] = stride;
-        stride *= l.shape[a];
+    let (x, y, z) = (axis(0), axis(1), axis(2));
+    let stride = [1, x.len(), x.len() * y.len()];
+    if dim == 2 {
+        Lattice::new([x, y], 0, [stride[0], stride[1]])
+    } else {
+        Lattice::new([x, y, z], 0, stride)
     }
-    l
 }
 
 /// A collocated velocity field on one lattice.
@@ -109,10 +102,11 @@ pub(crate) struct Collocated {
 
 impl Collocated {
     pub(crate) fn new(lattice: Lattice, u: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
-        let [nx, ny, nz] = lattice.shape;
+        let [nx, ny, nz] = lattice.shape();
         let cells = (0..nx * ny * nz).map(|c| [c % nx, c / nx % ny, c / (nx * ny)].map(|i| i as isize));
         let points: Vec<_> = cells.map(|i| u(lattice.position(i))).collect();
-        Self { lattice, values: (0..lattice.dim).map(|c| points.iter().map(|u| u[c]).collect()).collect() }
+        let values = (0..lattice.dim).map(|c| points.iter().map(|u| u[c]).collect()).collect();
+        Self { lattice, values }
     }
 }
 

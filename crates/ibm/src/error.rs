@@ -40,6 +40,20 @@ pub enum IbmError {
         /// Largest distance of neighbouring nodes \[m\].
         most: f64,
     },
+    /// A body is longer than the period of the grid.
+    #[error(
+        "body {} is {size:.3e} m long along axis {axis}, longer than the period of {period:.3e} m: make the body smaller or the box larger", body.0
+    )]
+    TooLarge {
+        /// The body.
+        body: BodyId,
+        /// Axis, 0 for x.
+        axis: usize,
+        /// Extent of the body \[m\].
+        size: f64,
+        /// Period of the grid \[m\].
+        period: f64,
+    },
     /// A body's place is not finite.
     #[error("body {} stands at {position:?}, which is not finite; the run has diverged: take a smaller time step", body.0)]
     Lost {

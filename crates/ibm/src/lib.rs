@@ -15,8 +15,12 @@ mod forcing;
 mod fraction;
 mod hfdib;
 mod kernel;
+#[cfg(feature = "mesh")]
+mod mesh;
+mod projection;
 mod smooth;
 mod solid_fraction;
+mod subcells;
 #[cfg(test)]
 mod testing;
 
@@ -25,5 +29,7 @@ pub use forcing::{Forcing, Layer};
 pub use fraction::{cell_fraction, plane_fraction};
 pub use hfdib::Hfdib;
 pub use kernel::{Kernel, WIDEST};
+#[cfg(feature = "mesh")]
+pub use mesh::{MeshError, TriangleMesh};
 pub use smooth::SmoothForcing;
-pub use solid_fraction::{SolidFraction, SolidNode};
+pub use solid_fraction::{FractionRule, SolidFraction, SolidNode};

@@ -31,21 +31,37 @@ impl Solid for Ball {
     }
 }
 
-/// Equal balls that move as they are told.
+/// A box of these half-widths; a rectangle where the last is 0.
+pub(crate) struct Brick(pub(crate) [f64; 3]);
+
+impl Solid for Brick {
+    fn signed_distance(&self, x: Point, _: f64) -> f64 {
+        let flat = self.0[2] == 0.0;
+        let q =
+            Vector::from_fn(|a, _| if a == 2 && flat { f64::NEG_INFINITY } else { x[a].abs() - self.0[a] });
+        q.map(|q| q.max(0.0)).norm() + q.max().min(0.0)
+    }
+    fn aabb(&self) -> Aabb {
+        Aabb::around(Point::origin(), self.0.into())
+    }
+}
+
+/// Bodies of one shape (balls, unless told) that move as they are told.
 pub(crate) struct Balls {
-    ball: Ball,
-    poses: Vec<Pose>,
+    solid: Box<dyn Solid>,
+    volume: f64,
+    pub(crate) poses: Vec<Pose>,
     pub(crate) twists: Vec<Twist>,
 }
 
 impl Balls {
     pub(crate) fn new(dim: usize, radius: f64, centres: Vec<[f64; 3]>) -> Self {
-        let n = centres.len();
-        Self {
-            ball: Ball { dim, radius },
-            poses: centres.into_iter().map(Pose::at).collect(),
-            twists: vec![Twist::default(); n],
-        }
+        let volume = if dim == 2 { PI * radius * radius } else { 4.0 / 3.0 * PI * radius.powi(3) };
+        Self::of(Ball { dim, radius }, volume, centres.into_iter().map(Pose::at).collect())
+    }
+    pub(crate) fn of(solid: impl Solid + 'static, volume: f64, poses: Vec<Pose>) -> Self {
+        let twists = vec![Twist::default(); poses.len()];
+        Self { solid: Box::new(solid), volume, poses, twists }
     }
     pub(crate) fn shift(&mut self, b: usize, by: Vector) {
         self.poses[b].position += by;
@@ -66,11 +82,10 @@ impl Kinematics for Balls {
 
 impl Bodies for Balls {
     fn solid(&self, _: BodyId) -> &dyn Solid {
-        &self.ball
+        &*self.solid
     }
     fn inertia(&self, _: BodyId) -> Inertia {
-        let r = self.ball.radius;
-        let volume = if self.ball.dim == 2 { PI * r * r } else { 4.0 / 3.0 * PI * r.powi(3) };
+        let volume = self.volume;
         Inertia { mass: volume, volume, tensor: nalgebra::Matrix3::identity() }
     }
     fn freedom(&self, _: BodyId) -> Freedom {

@@ -1,0 +1,139 @@
+//! The nearest point of a mesh.
+use super::triangle::{Part, Triangle};
+use interfaces::{Point, Vector};
+use parry3d::bounding_volume::Aabb;
+use parry3d::partitioning::{Bvh, BvhBuildStrategy, BvhNode, TraversalAction};
+use std::collections::HashMap;
+
+/// Triangles in a tree of boxes, with the pseudo-normals of their faces, edges and corners.
+#[derive(Clone, Debug)]
+pub(crate) struct Surface {
+    triangles: Vec<Triangle>,
+    normals: Vec<Normals>,
+    tree: Bvh,
+}
+
+/// Unit normals of a face; sums of them weighted by angle at its edges and corners.
+#[derive(Clone, Copy, Debug)]
+struct Normals {
+    face: Vector,
+    edges: [Vector; 3],
+    corners: [Vector; 3],
+}
+
+/// The nearest point of the surface.
+pub(crate) struct Nearest {
+    pub(crate) face: u32,
+    pub(crate) point: Point,
+    pub(crate) distance: f64,
+    pub(crate) outside: bool,
+    /// Pseudo-normal there, of unit length.
+    pub(crate) normal: Vector,
+}
+
+impl Surface {
+    pub(crate) fn new(points: Vec<Vector>, mut faces: Vec<[u32; 3]>) -> Self {
+        let triangle = |f: &[u32; 3]| {
+            let [a, b, c] = f.map(|v| points[v as usize]);
+            Triangle::new(a, b, c)
+        };
+        // Neighbours in space are stored near one another: in the order of the tree's leaves.
+        let order: Vec<u32> = tree(faces.iter().map(triangle)).leaves(|_| true).collect();
+        if order.len() == faces.len() {
+            faces = order.iter().map(|&f| faces[f as usize]).collect();
+        }
+        let triangles: Vec<Triangle> = faces.iter().map(triangle).collect();
+        let mut corners = vec![Vector::zeros(); points.len()];
+        let mut edges: HashMap<(u32, u32), Vector> = HashMap::with_capacity(2 * faces.len());
+        let units: Vec<Vector> = triangles.iter().map(|t| t.cross().normalize()).collect();
+        let edge = |f: &[u32; 3], i: usize| {
+            let (from, to) = (f[i], f[(i + 1) % 3]);
+            (from.min(to), from.max(to))
+        };
+        for ((f, t), n) in faces.iter().zip(&triangles).zip(&units) {
+            for i in 0..3 {
+                corners[f[i] as usize] += t.angle(i) * n;
+                *edges.entry(edge(f, i)).or_default() += n;
+            }
+        }
+        let of = |(f, face): (&[u32; 3], &Vector)| Normals {
+            face: *face,
+            edges: [0, 1, 2].map(|i| edges[&edge(f, i)]),
+            corners: f.map(|v| corners[v as usize]),
+        };
+        let normals = faces.iter().zip(&units).map(of).collect();
+        Self { tree: tree(triangles.iter().copied()), triangles, normals }
+    }
+
+    pub(crate) fn n_faces(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// The point of the surface nearest to `x`, if it is nearer than `within`; a `seed` is a face that
+    /// may be near.
+    pub(crate) fn nearest(&self, x: Point, within: f64, seed: Option<u32>) -> Option<Nearest> {
+        let mut best = (within * within, None);
+        let look = |f: u32, best: &mut (f64, Option<(u32, Vector, Part)>)| {
+            let (away, part) = self.triangles[f as usize].nearest(x.coords);
+            let square = away.norm_squared();
+            if square < best.0 {
+                *best = (square, Some((f, away, part)));
+            }
+        };
+        if let Some(seed) = seed {
+            look(seed, &mut best);
+        } else if best.0 == f64::INFINITY {
+            // Nothing is known: down the nearer branches to a face that is not far.
+            let found = self.tree.find_best(
+                f64::INFINITY,
+                |node: &BvhNode, _| square_distance(node, x),
+                |f, _| Some(self.triangles[f as usize].nearest(x.coords).0.norm_squared()),
+            );
+            if let Some((f, _)) = found {
+                look(f, &mut best);
+            }
+            return best.1.map(|found| self.describe(x, found));
+        }
+        self.tree.traverse(|node| {
+            if square_distance(node, x) >= best.0 {
+                return TraversalAction::Prune;
+            }
+            if let Some(f) = node.leaf_data() {
+                look(f, &mut best);
+            }
+            TraversalAction::Continue
+        });
+        best.1.map(|found| self.describe(x, found))
+    }
+
+    fn describe(&self, x: Point, (face, away, part): (u32, Vector, Part)) -> Nearest {
+        let normals = &self.normals[face as usize];
+        let normal = match part {
+            Part::Inside => normals.face,
+            Part::Edge(i) => normals.edges[i],
+            Part::Corner(i) => normals.corners[i],
+        };
+        Nearest {
+            face,
+            point: x - away,
+            distance: away.norm(),
+            outside: away.dot(&normal) >= 0.0,
+            normal: normal.try_normalize(0.0).unwrap_or(normals.face),
+        }
+    }
+}
+
+fn tree(triangles: impl Iterator<Item = Triangle>) -> Bvh {
+    let boxes: Vec<Aabb> = triangles
+        .map(|t| Aabb::new(<[f64; 3]>::from(t.lower()).into(), <[f64; 3]>::from(t.upper()).into()))
+        .collect();
+    Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes)
+}
+
+/// Square of the distance of `x` from a box.
+#[inline]
+fn square_distance(node: &BvhNode, x: Point) -> f64 {
+    let (low, high) = (node.mins(), node.maxs());
+    let gap = |x: f64, low: f64, high: f64| (low - x).max(x - high).max(0.0);
+    gap(x.x, low.x, high.x).powi(2) + gap(x.y, low.y, high.y).powi(2) + gap(x.z, low.z, high.z).powi(2)
+}

@@ -39,21 +39,23 @@ pub fn plane_fraction(d: f64, n: Vector, h: Vector) -> f64 {
 /// Within a half, a surface that bulges leaves its tangent plane by ½κs² at distance s from the foot
 /// point; over the cuts of all cells s² is h²/12 per tangential direction on average, so the plane is
 /// moved inward by κh²/24 per direction. A plane alone would make a disc's λ sum to too much by
-/// h²/12R², a sphere's by h²/4R².
+/// h²/12R², a sphere's by h²/4R²; one plane so moved still by up to h²/50R² where the body is centred on
+/// the grid.
 pub fn cell_fraction(d: f64, n: Vector, curvature: f64, h: Vector) -> f64 {
     let depth = if h.z == 0.0 { 1 } else { 2 };
     let bend = curvature / f64::from(depth);
     let half = h * 0.5;
     let spread: f64 = (0..3).map(|a| half[a] * half[a] * (1.0 - n[a] * n[a])).sum();
+    let moved = d + bend * spread / 24.0;
     let mut sum = 0.0;
     for k in 0..depth {
         for (j, i) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             let at = |i: i32, h: f64| (f64::from(i) - 0.5) * h;
             let x = Vector::new(at(i, half.x), at(j, half.y), at(k, half.z));
             let along = x - n * n.dot(&x);
-            let normal = (n + bend * along).try_normalize(0.0).unwrap_or(n);
-            let distance = d + n.dot(&x) + 0.5 * bend * along.norm_squared();
-            sum += plane_fraction(distance + bend * spread / 24.0, normal, half);
+            // Longer than one by ½(κ|x_t|)² only: not worth a root.
+            let normal = n + bend * along;
+            sum += plane_fraction(moved + n.dot(&x) + 0.5 * bend * along.norm_squared(), normal, half);
         }
     }
     sum / f64::from(4 * depth)

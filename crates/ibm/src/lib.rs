@@ -17,6 +17,7 @@ mod hfdib;
 mod kernel;
 #[cfg(feature = "mesh")]
 mod mesh;
+mod pockets;
 mod projection;
 mod smooth;
 mod solid_fraction;
@@ -31,5 +32,6 @@ pub use hfdib::Hfdib;
 pub use kernel::{Kernel, WIDEST};
 #[cfg(feature = "mesh")]
 pub use mesh::{MeshError, TriangleMesh};
+pub use pockets::{Pocket, Pockets};
 pub use smooth::SmoothForcing;
 pub use solid_fraction::{FractionRule, SolidFraction, SolidNode};

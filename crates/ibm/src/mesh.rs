@@ -115,7 +115,7 @@ struct Last {
     at: Point,
     /// |d| is no less there.
     least: f64,
-    outside: bool,
+    sign: f64,
     face: u32,
 }
 
@@ -135,28 +135,27 @@ impl Solid for TriangleMesh {
                 *out = gap;
                 continue;
             }
-            // The sign holds as far as the surface is away from where it is known.
-            let inherited =
-                last.as_ref().map(|l| (l, l.least - (x - l.at).norm())).filter(|(_, left)| *left > 0.0);
-            if let Some((l, left)) = inherited
-                && left >= band
-            {
-                *out = if l.outside { left } else { -left };
+            let step = last.as_ref().map_or(f64::INFINITY, |l| (x - l.at).norm());
+            // Too near where the surface was far.
+            if let Some(l) = last.as_ref().filter(|l| l.least - step >= band) {
+                *out = (l.least - step).copysign(l.sign);
                 continue;
             }
             let seed = last.as_ref().map(|l| l.face);
-            let within = if inherited.is_some() { band } else { f64::INFINITY };
-            match self.surface.nearest(*x, within, seed) {
-                Some(Nearest { face, distance, outside, .. }) => {
-                    *out = if outside { distance } else { -distance };
-                    last = Some(Last { at: *x, least: distance, outside, face });
+            let mut found = self.surface.nearest(*x, band, seed);
+            if found.is_none() {
+                // |d| ≥ band; and since d changes by no more than the step, its sign may be known.
+                if let Some(l) = last.as_mut().filter(|l| step < band + l.least) {
+                    *out = band.copysign(l.sign);
+                    (l.at, l.least) = (*x, band);
+                    continue;
                 }
-                None => {
-                    let (face, outside) = last.map_or((0, true), |l| (l.face, l.outside));
-                    *out = if outside { band } else { -band };
-                    last = Some(Last { at: *x, least: band, outside, face });
-                }
+                found = self.surface.nearest(*x, f64::INFINITY, seed);
             }
+            let Some(Nearest { face, distance, outside, .. }) = found else { continue };
+            let sign = if outside { 1.0 } else { -1.0 };
+            *out = distance * sign;
+            last = Some(Last { at: *x, least: distance, sign, face });
         }
     }
 

@@ -35,7 +35,7 @@ struct Column {
 /// |∇d|² of differences over neighbours outside this tells of an edge, a corner or something thin: on a
 /// sphere it is between 1 − (h/R)²/2 and 1, across an edge cos² of half its angle; beside an edge,
 /// where a neighbour in the surface's direction is past it, above 1.
-const SMOOTH: std::ops::Range<f64> = 0.95..1.002;
+const SMOOTH: std::ops::Range<f64> = 0.965..1.002;
 
 impl Projector {
     /// Lists the nodes that body `b` covers at least in part.
@@ -134,7 +134,7 @@ impl Projector {
         self.points.clear();
         self.slots.clear();
         for n in 0..all {
-            let block = [n % blocks[0], n / blocks[0] % blocks[1], n / (blocks[0] * blocks[1])];
+            let block = winding(n, blocks);
             let (x, hx) = middle(columns_x, span(0, block[0]));
             let (y, hy) = middle(columns_y, span(1, block[1]));
             let (z, hz) =
@@ -144,14 +144,20 @@ impl Projector {
         }
         // Cells of blocks farther away are not cut, nor are their neighbours' neighbours asked for.
         let far = farthest.sqrt() + band;
+        self.answers.clear();
         self.answers.resize(all, 0.0);
-        solid.signed_distances(&self.points, far, &mut self.answers);
+        // In a body not much wider all blocks are near the surface.
+        let extent = solid.aabb().extent();
+        let narrowest = if dim == 2 { extent.x.min(extent.y) } else { extent.min() };
+        if far < 0.25 * narrowest {
+            solid.signed_distances(&self.points, far, &mut self.answers);
+        }
         self.points.clear();
         self.distances.clear();
         self.distances.resize(shape.iter().product(), 0.0);
         let stride = [1, shape[0], shape[0] * shape[1]];
         for n in 0..all {
-            let block = [n % blocks[0], n / blocks[0] % blocks[1], n / (blocks[0] * blocks[1])];
+            let block = winding(n, blocks);
             let decided = self.answers[n].abs() >= far;
             let value = band.copysign(self.answers[n]);
             for k in span(2, block[2]) {
@@ -176,6 +182,13 @@ impl Projector {
             self.distances[*slot] = *d;
         }
     }
+}
+
+/// The n-th block on a way on which each is next to the one before.
+fn winding(n: usize, shape: [usize; 3]) -> [usize; 3] {
+    let (row, layer) = (n / shape[0], n / (shape[0] * shape[1]));
+    let turn = |i: usize, back: bool, n: usize| if back { n - 1 - i } else { i };
+    [turn(n % shape[0], row % 2 == 1, shape[0]), turn(row % shape[1], layer % 2 == 1, shape[1]), layer]
 }
 
 /// Ones along the axes that a lattice of `dim` dimensions has.

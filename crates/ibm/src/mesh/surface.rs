@@ -2,7 +2,7 @@
 use super::triangle::{Part, Triangle};
 use interfaces::{Point, Vector};
 use parry3d::bounding_volume::Aabb;
-use parry3d::partitioning::{Bvh, BvhBuildStrategy, BvhNode, TraversalAction};
+use parry3d::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 use std::collections::HashMap;
 
 /// Triangles in a tree of boxes, with the pseudo-normals of their faces, edges and corners.
@@ -72,38 +72,19 @@ impl Surface {
     /// The point of the surface nearest to `x`, if it is nearer than `within`; a `seed` is a face that
     /// may be near.
     pub(crate) fn nearest(&self, x: Point, within: f64, seed: Option<u32>) -> Option<Nearest> {
-        let mut best = (within * within, None);
-        let look = |f: u32, best: &mut (f64, Option<(u32, Vector, Part)>)| {
+        let look = |f: u32| {
             let (away, part) = self.triangles[f as usize].nearest(x.coords);
-            let square = away.norm_squared();
-            if square < best.0 {
-                *best = (square, Some((f, away, part)));
-            }
+            (away.norm_squared(), (f, away, part))
         };
-        if let Some(seed) = seed {
-            look(seed, &mut best);
-        } else if best.0 == f64::INFINITY {
-            // Nothing is known: down the nearer branches to a face that is not far.
-            let found = self.tree.find_best(
-                f64::INFINITY,
-                |node: &BvhNode, _| square_distance(node, x),
-                |f, _| Some(self.triangles[f as usize].nearest(x.coords).0.norm_squared()),
-            );
-            if let Some((f, _)) = found {
-                look(f, &mut best);
-            }
-            return best.1.map(|found| self.describe(x, found));
+        let (mut most, mut best) = (within * within, None);
+        if let Some((square, found)) = seed.map(look).filter(|(square, _)| *square < most) {
+            (most, best) = (square, Some(found));
         }
-        self.tree.traverse(|node| {
-            if square_distance(node, x) >= best.0 {
-                return TraversalAction::Prune;
-            }
-            if let Some(f) = node.leaf_data() {
-                look(f, &mut best);
-            }
-            TraversalAction::Continue
-        });
-        best.1.map(|found| self.describe(x, found))
+        // Nearer boxes first, none that is farther than the best so far.
+        let found =
+            self.tree.find_best(most, |node: &BvhNode, _| square_distance(node, x), |f, _| Some(look(f)));
+        best = found.map(|(_, (_, found))| found).or(best);
+        best.map(|found| self.describe(x, found))
     }
 
     fn describe(&self, x: Point, (face, away, part): (u32, Vector, Part)) -> Nearest {

@@ -18,7 +18,9 @@ mod kernel;
 #[cfg(feature = "mesh")]
 mod mesh;
 mod pockets;
+mod profile;
 mod projection;
+mod reconstruction;
 mod smooth;
 mod solid_fraction;
 mod subcells;
@@ -33,5 +35,7 @@ pub use kernel::{Kernel, WIDEST};
 #[cfg(feature = "mesh")]
 pub use mesh::{MeshError, TriangleMesh};
 pub use pockets::{Pocket, Pockets};
+pub use profile::{Given, Profile, Weights};
+pub use reconstruction::{Reconstruction, SurfaceCell};
 pub use smooth::SmoothForcing;
 pub use solid_fraction::{FractionRule, SolidFraction, SolidNode};

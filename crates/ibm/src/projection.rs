@@ -1,5 +1,5 @@
 //! One body on one lattice.
-use crate::subcells::{Cell, Subcells};
+use crate::subcells::Cell;
 use crate::{FractionRule, SolidNode, cell_fraction};
 use interfaces::{Bodies, BodyId, Lattice, Point, Rotation, Solid, Vector};
 
@@ -15,7 +15,6 @@ pub(crate) struct Projector {
     points: Vec<Point>,
     slots: Vec<usize>,
     answers: Vec<f64>,
-    subcells: Subcells,
 }
 
 /// What all nodes with the same number along one axis share.
@@ -32,10 +31,17 @@ struct Column {
     second: [f64; 3],
 }
 
-/// |∇d|² of differences over neighbours outside this tells of an edge, a corner or something thin: on a
-/// sphere it is between 1 − (h/R)²/2 and 1, across an edge cos² of half its angle; beside an edge,
-/// where a neighbour in the surface's direction is past it, above 1.
-const SMOOTH: std::ops::Range<f64> = 0.965..1.002;
+/// Is the surface smooth here, as far as the square of the `gradient` of the distance tells, its differences taken
+/// over neighbours h away? Across an edge it is the squared cosine of half the edge's angle; beside one, where a
+/// neighbour along the surface is past it, above 1. On a sphere it is between 1 − ⅔(h/R)² and 1, so that
+/// much is allowed for the curvature `bend`, if it is not that of an edge itself (1/R no more than 1/5h).
+fn is_smooth(square: f64, bend: f64, h: f64) -> bool {
+    let least = 1.0 - EDGE - (bend * h).powi(2).min(0.04);
+    (least..1.002).contains(&square)
+}
+
+/// 1 − cos² of half the angle of an edge that is not worth smaller cells: 12°.
+const EDGE: f64 = 0.012;
 
 impl Projector {
     /// Lists the nodes that body `b` covers at least in part.
@@ -99,11 +105,11 @@ impl Projector {
                             }
                         }
                         let square = gradient.norm_squared();
-                        let cut = if SMOOTH.contains(&square) {
+                        let bend = curvature / (dim - 1) as f64;
+                        let cut = if is_smooth(square, bend, h.max()) {
                             cell_fraction(distance, gradient / square.sqrt(), curvature, h)
                         } else {
-                            let cell = Cell { solid, to_body, dim, centre: arm, edges: h };
-                            self.subcells.fraction(&cell)
+                            Cell { solid, to_body, dim, centre: arm, edges: h }.solid_share()
                         };
                         fraction = rule.fraction(cut, distance, volume, dim);
                     }

@@ -62,6 +62,8 @@ pub struct SolidFraction {
 #[derive(Clone, Debug, Default)]
 struct Cover {
     at: Option<(Pose, Aabb)>,
+    /// Which update found it there, counted over all bodies.
+    stamp: u64,
     nodes: Vec<SolidNode>,
 }
 
@@ -96,6 +98,7 @@ impl SolidFraction {
                 self.projector.project(lattice, bodies, body, self.rule, &mut cover.nodes);
                 cover.at = at;
                 self.updates += 1;
+                cover.stamp = self.updates;
             }
         }
         Ok(())
@@ -109,6 +112,11 @@ impl SolidFraction {
     /// How many bodies there were at the last update.
     pub fn n_bodies(&self) -> usize {
         self.bodies.len()
+    }
+
+    /// A number that changes whenever λ of body `b` was computed; 0 before.
+    pub fn stamp(&self, b: BodyId) -> u64 {
+        self.bodies.get(b.0).map_or(0, |cover| cover.stamp)
     }
 
     /// The nodes that body `b` covers at least in part.

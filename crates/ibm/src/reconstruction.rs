@@ -20,6 +20,8 @@ pub struct Reconstruction {
     given: Given,
     bodies: Vec<Rows>,
     covered: Vec<bool>,
+    /// Boxes now, boxes that were left or entered, bodies to work on and bodies those may see.
+    scratch: (Vec<Aabb>, Vec<Aabb>, Vec<usize>, Vec<usize>),
     lowered: u64,
 }
 
@@ -103,27 +105,30 @@ impl Reconstruction {
         if !self.bodies.iter().enumerate().any(|(b, rows)| moved(b, rows)) {
             return;
         }
-        let now: Vec<Aabb> = (0..n).map(|b| bodies.aabb(BodyId(b))).collect();
-        // Boxes that were left or entered.
-        let mut changed = Vec::new();
+        let mut scratch = std::mem::take(&mut self.scratch);
+        let (now, changed, work, seen) = &mut scratch;
+        now.clear();
+        now.extend((0..n).map(|b| bodies.aabb(BodyId(b))));
+        changed.clear();
         for (b, rows) in self.bodies.iter().enumerate().filter(|(b, rows)| moved(*b, rows)) {
             changed.extend(rows.bounds);
             changed.push(now[b]);
         }
-        let work: Vec<usize> =
-            (0..n).filter(|&b| changed.iter().any(|c| near(lattice, c, &now[b]))).collect();
-        let seen: Vec<usize> =
-            (0..n).filter(|&b| work.iter().any(|&w| near(lattice, &now[w], &now[b]))).collect();
+        work.clear();
+        work.extend((0..n).filter(|&b| changed.iter().any(|c| near(lattice, c, &now[b]))));
+        seen.clear();
+        seen.extend((0..n).filter(|&b| work.iter().any(|&w| near(lattice, &now[w], &now[b]))));
         let mark = |covered: &mut [bool], to| {
             seen.iter().flat_map(|&b| fraction.nodes(BodyId(b))).for_each(|node| covered[node.index] = to);
         };
         mark(&mut self.covered, true);
-        for b in work {
+        for &b in work.iter() {
             self.place_body(lattice, bodies, BodyId(b), fraction);
             let rows = &mut self.bodies[b];
             (rows.stamp, rows.bounds) = (fraction.stamp(BodyId(b)), Some(now[b]));
         }
         mark(&mut self.covered, false);
+        self.scratch = scratch;
     }
 
     fn place_body<B: Bodies + ?Sized>(
@@ -134,7 +139,7 @@ impl Reconstruction {
         fraction: &SolidFraction,
     ) {
         let (solid, pose, root) = (bodies.solid(b), bodies.pose(b), 1.0 / lattice.dim as f64);
-        let Self { profile, given, bodies: all, covered, lowered } = self;
+        let Self { profile, given, bodies: all, covered, lowered, .. } = self;
         let (nodes, rows) = (fraction.nodes(b), &mut all[b.0].rows);
         rows.clear();
         // Twice what is there now, so that a moving body allocates nothing.

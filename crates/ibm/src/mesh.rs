@@ -1,4 +1,5 @@
 //! Bodies given as closed triangle meshes.
+mod cluster;
 mod error;
 mod mass;
 mod sphere;

@@ -37,11 +37,11 @@ struct Column {
 /// much is allowed for the curvature `bend`, if it is not that of an edge itself (1/R no more than 1/5h).
 fn is_smooth(square: f64, bend: f64, h: f64) -> bool {
     let least = 1.0 - EDGE - 2.0 / 3.0 * (bend * h).powi(2).min(0.04);
-    (least..1.002).contains(&square)
+    (least..1.0025).contains(&square)
 }
 
-/// 1 − cos² of half the angle of an edge that is not worth smaller cells: 9°.
-const EDGE: f64 = 0.006;
+/// 1 − cos² of half the angle of an edge that is not worth smaller cells: 11°.
+const EDGE: f64 = 0.01;
 
 impl Projector {
     /// Lists the nodes that body `b` covers at least in part.

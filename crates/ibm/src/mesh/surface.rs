@@ -1,15 +1,17 @@
 //! The nearest point of a mesh.
+use super::cluster::{self, Cluster, Found};
 use super::triangle::{Part, Triangle};
 use interfaces::{Point, Vector};
 use parry3d::bounding_volume::Aabb;
 use parry3d::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 use std::collections::HashMap;
 
-/// Triangles in a tree of boxes, with the pseudo-normals of their faces, edges and corners.
+/// Triangles in clusters in a tree of boxes, with the pseudo-normals of their faces, edges and corners.
 #[derive(Clone, Debug)]
 pub(crate) struct Surface {
     triangles: Vec<Triangle>,
     normals: Vec<Normals>,
+    clusters: Vec<Cluster>,
     tree: Bvh,
 }
 
@@ -33,16 +35,14 @@ pub(crate) struct Nearest {
 
 impl Surface {
     pub(crate) fn new(points: Vec<Vector>, mut faces: Vec<[u32; 3]>) -> Self {
+        let centre = |f: &[u32; 3]| f.map(|v| points[v as usize]).iter().sum::<Vector>() / 3.0;
+        let ranges = cluster::sort(&mut faces, &centre);
         let triangle = |f: &[u32; 3]| {
             let [a, b, c] = f.map(|v| points[v as usize]);
             Triangle::new(a, b, c)
         };
-        // Neighbours in space are stored near one another: in the order of the tree's leaves.
-        let order: Vec<u32> = tree(faces.iter().map(triangle)).leaves(|_| true).collect();
-        if order.len() == faces.len() {
-            faces = order.iter().map(|&f| faces[f as usize]).collect();
-        }
         let triangles: Vec<Triangle> = faces.iter().map(triangle).collect();
+        let clusters: Vec<Cluster> = ranges.into_iter().map(|r| Cluster::new(&triangles, r)).collect();
         let mut corners = vec![Vector::zeros(); points.len()];
         let mut edges: HashMap<(u32, u32), Vector> = HashMap::with_capacity(2 * faces.len());
         let units: Vec<Vector> = triangles.iter().map(|t| t.cross().normalize()).collect();
@@ -62,7 +62,7 @@ impl Surface {
             corners: f.map(|v| corners[v as usize]),
         };
         let normals = faces.iter().zip(&units).map(of).collect();
-        Self { tree: tree(triangles.iter().copied()), triangles, normals }
+        Self { tree: tree(&triangles, &clusters), triangles, normals, clusters }
     }
 
     pub(crate) fn n_faces(&self) -> usize {
@@ -72,22 +72,24 @@ impl Surface {
     /// The point of the surface nearest to `x`, if it is nearer than `within`; a `seed` is a face that
     /// may be near.
     pub(crate) fn nearest(&self, x: Point, within: f64, seed: Option<u32>) -> Option<Nearest> {
-        let look = |f: u32| {
-            let (away, part) = self.triangles[f as usize].nearest(x.coords);
-            (away.norm_squared(), (f, away, part))
-        };
         let (mut most, mut best) = (within * within, None);
-        if let Some((square, found)) = seed.map(look).filter(|(square, _)| *square < most) {
-            (most, best) = (square, Some(found));
+        if let Some(face) = seed {
+            let (away, part) = self.triangles[face as usize].nearest(x.coords);
+            if away.norm_squared() < most {
+                (most, best) = (away.norm_squared(), Some(Found { face, away, part }));
+            }
         }
         // Nearer boxes first, none that is farther than the best so far.
-        let found =
-            self.tree.find_best(most, |node: &BvhNode, _| square_distance(node, x), |f, _| Some(look(f)));
+        let found = self.tree.find_best(
+            most,
+            |node: &BvhNode, _| square_distance(node, x),
+            |c, most| self.clusters[c as usize].nearest(&self.triangles, x, most),
+        );
         best = found.map(|(_, (_, found))| found).or(best);
         best.map(|found| self.describe(x, found))
     }
 
-    fn describe(&self, x: Point, (face, away, part): (u32, Vector, Part)) -> Nearest {
+    fn describe(&self, x: Point, Found { face, away, part }: Found) -> Nearest {
         let normals = &self.normals[face as usize];
         let normal = match part {
             Part::Inside => normals.face,
@@ -104,10 +106,15 @@ impl Surface {
     }
 }
 
-fn tree(triangles: impl Iterator<Item = Triangle>) -> Bvh {
-    let boxes: Vec<Aabb> = triangles
-        .map(|t| Aabb::new(<[f64; 3]>::from(t.lower()).into(), <[f64; 3]>::from(t.upper()).into()))
-        .collect();
+fn tree(triangles: &[Triangle], clusters: &[Cluster]) -> Bvh {
+    let around = |c: &Cluster| {
+        let own = &triangles[c.faces.start as usize..c.faces.end as usize];
+        let corners = || own.iter().flat_map(Triangle::corners);
+        let low = corners().fold(Vector::repeat(f64::INFINITY), |low, c| low.inf(&c));
+        let high = corners().fold(Vector::repeat(f64::NEG_INFINITY), |high, c| high.sup(&c));
+        Aabb::new(<[f64; 3]>::from(low).into(), <[f64; 3]>::from(high).into())
+    };
+    let boxes: Vec<Aabb> = clusters.iter().map(around).collect();
     Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes)
 }
 

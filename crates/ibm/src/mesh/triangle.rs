@@ -22,11 +22,8 @@ impl Triangle {
     pub(crate) fn new(a: Vector, b: Vector, c: Vector) -> Self {
         Self { a, ab: b - a, ac: c - a }
     }
-    pub(crate) fn lower(&self) -> Vector {
-        self.a.inf(&(self.a + self.ab)).inf(&(self.a + self.ac))
-    }
-    pub(crate) fn upper(&self) -> Vector {
-        self.a.sup(&(self.a + self.ab)).sup(&(self.a + self.ac))
+    pub(crate) fn corners(&self) -> [Vector; 3] {
+        [self.a, self.a + self.ab, self.a + self.ac]
     }
     /// (b − a) × (c − a).
     pub(crate) fn cross(&self) -> Vector {

@@ -21,7 +21,8 @@ fn crates_meet_only_through_interfaces() {
         let from = name(package);
         for dependency in package["dependencies"].as_array().expect("dependencies") {
             let to = name(dependency);
-            if all.contains(&to) {
+            // A crate may ask itself, for its tests, to take all its features.
+            if all.contains(&to) && to != from {
                 let allowed = match from.as_str() {
                     "siltflow" => true,
                     "coupling" => to != "siltflow",

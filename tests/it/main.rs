@@ -6,6 +6,7 @@ mod frame;
 mod physics;
 mod restart;
 mod skipping;
+mod stretched;
 
 #[path = "../../examples/falling_discs/scene.rs"]
 mod scene;

@@ -30,17 +30,6 @@ pub enum CouplingError {
         /// When \[s\].
         time: f64,
     },
-    /// Bodies cannot be immersed in a stretched grid.
-    #[error(
-        "axis {axis} is stretched (neighbouring cells differ by a factor of up to {ratio:.3}), but bodies are immersed in uniform \
-         grids only: make the axis uniform"
-    )]
-    Stretched {
-        /// Axis, 0 for x.
-        axis: usize,
-        /// Largest ratio of neighbouring cells.
-        ratio: f64,
-    },
     /// A body does not fit into the box.
     #[error(
         "body {} is {size:.3e} m long along axis {axis}, the box only {length:.3e} m: make the body smaller or the box larger", body.0

@@ -301,9 +301,6 @@ impl<const D: usize, F: Forcing, B: Dynamics> Immersed<D> for Particles<F, B> {
                 return Err(CouplingError::Density { flow: density, particles: told });
             }
         }
-        if let Some(axis) = (0..D).find(|&a| !grid.axis(a).is_uniform()) {
-            return Err(CouplingError::Stretched { axis, ratio: grid.axis(axis).largest_ratio() });
-        }
         for body in (0..self.bodies.n_bodies()).map(BodyId) {
             let bounds = self.bodies.aabb(body);
             for axis in 0..D {

@@ -199,8 +199,7 @@ macro_rules! show_state {
         pub fn fluid(&self) -> $crate::Fluid {
             self.state.fluid
         }
-        /// The velocity \[m/s\]; between the parts of a step it is u*. On stretched axes its lattices give the storage,
-        /// not the positions ([`CartesianGrid::lattice`](crate::CartesianGrid::lattice)).
+        /// The velocity \[m/s\]; between the parts of a step it is u*.
         pub fn velocity(&self) -> &$crate::Velocity<D> {
             &self.state.velocity
         }

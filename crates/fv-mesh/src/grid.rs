@@ -1,6 +1,6 @@
 //! The grid.
 use crate::{Axis, FlowError, Sides};
-use interfaces::Lattice;
+use interfaces::{Lattice, Nodes};
 
 /// Ghost layers around every field: what the widest convection scheme looks back.
 pub(crate) const GHOSTS: usize = 2;
@@ -153,30 +153,25 @@ impl<const D: usize> CartesianGrid<D> {
     }
 
     /// The lattice of the cell centres, or of the faces normal to axis `face` that carry an unknown:
-    /// all but those on bounded sides. A stretched axis is shown with its mean width: its shape, base and
-    /// strides hold, its positions do not.
+    /// all but those on bounded sides.
     pub fn lattice(&self, face: Option<usize>, sides: &Sides<D>) -> Lattice {
-        let (h, stride) = (self.spacing(), self.stride());
-        let mut l = Lattice {
-            dim: D,
-            origin: [0.0; 3],
-            spacing: [1.0; 3],
-            shape: [1; 3],
-            periodic: [false; 3],
-            base: self.base(),
-            stride: [0; 3],
-        };
-        for a in 0..D {
-            l.spacing[a] = h[a];
-            l.periodic[a] = sides.periodic(a);
-            l.stride[a] = stride[a];
-            let walled = usize::from(face == Some(a) && !l.periodic[a]);
-            let shift = if face == Some(a) { walled as f64 } else { 0.5 };
-            l.origin[a] = self.axes[a].lower() + shift * h[a];
-            l.shape[a] = self.axes[a].cells() - walled;
-            l.base += walled * stride[a];
-        }
-        l
+        let stride = self.stride();
+        let mut base = self.base();
+        let axes = std::array::from_fn(|a| {
+            let (axis, periodic) = (&self.axes[a], sides.periodic(a));
+            let walled = usize::from(face == Some(a) && !periodic);
+            base += walled * stride[a];
+            if axis.is_uniform() {
+                let (h, n) = (axis.mean_width(), axis.cells() - walled);
+                let shift = if face == Some(a) { walled as f64 } else { 0.5 };
+                Nodes::uniform(axis.lower() + shift * h, h, n, periodic)
+            } else if face == Some(a) {
+                Nodes::faces(axis.faces(), periodic)
+            } else {
+                Nodes::centres(axis.faces(), periodic)
+            }
+        });
+        Lattice::new(axes, base, stride)
     }
 }
 

@@ -26,7 +26,7 @@ fn vortex_error(cells: [usize; 2], steps: usize, end: f64) -> f64 {
     }
     let mut worst = 0.0_f64;
     for c in 0..2 {
-        let lattice = *flow.velocity().lattice(c);
+        let lattice = flow.velocity().lattice(c);
         for (j, i) in (0..cells[1]).flat_map(|j| (0..cells[0]).map(move |i| (j, i))) {
             let at = [i as isize, j as isize, 0];
             let x = lattice.position(at);

@@ -26,6 +26,34 @@ pub enum IbmError {
         /// Cells that are needed.
         least: f64,
     },
+    /// The grid is not uniform around a body.
+    #[error(
+        "around body {} the nodes along axis {axis} are {least:.6e} to {most:.6e} m apart, but the smooth forcing needs equal spacing there: make the grid uniform wherever the body may go, or use `Hfdib`", body.0
+    )]
+    Stretched {
+        /// The body.
+        body: BodyId,
+        /// Axis, 0 for x.
+        axis: usize,
+        /// Smallest distance of neighbouring nodes \[m\].
+        least: f64,
+        /// Largest distance of neighbouring nodes \[m\].
+        most: f64,
+    },
+    /// A body is longer than the period of the grid.
+    #[error(
+        "body {} is {size:.3e} m long along axis {axis}, longer than the period of {period:.3e} m: make the body smaller or the box larger", body.0
+    )]
+    TooLarge {
+        /// The body.
+        body: BodyId,
+        /// Axis, 0 for x.
+        axis: usize,
+        /// Extent of the body \[m\].
+        size: f64,
+        /// Period of the grid \[m\].
+        period: f64,
+    },
     /// A body's place is not finite.
     #[error("body {} stands at {position:?}, which is not finite; the run has diverged: take a smaller time step", body.0)]
     Lost {

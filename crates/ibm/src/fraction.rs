@@ -11,14 +11,15 @@ pub fn plane_fraction(d: f64, n: Vector, h: Vector) -> f64 {
         return if d < 0.0 { 1.0 } else { 0.0 };
     }
     // Scaled so that the cube's corners lie between 0 and 1 along the normal; the smaller part.
-    m = m.map(|m| m / sum);
-    m.sort_unstable_by(f64::total_cmp);
-    let [m1, m2, m3] = m;
-    let alpha = 0.5 - d.abs() / sum;
+    let scale = 1.0 / sum;
+    m = m.map(|m| m * scale);
+    let (low, high) = (m[0].min(m[1]), m[0].max(m[1]));
+    let [m1, m2, m3] = [low.min(m[2]), low.max(m[2].min(high)), high.max(m[2])];
+    let alpha = 0.5 - d.abs() * scale;
     let m12 = m1 + m2;
     let cubic = |m: f64| m * m * (m - 3.0 * alpha);
     let small = if alpha < m1 {
-        alpha.powi(3) / (6.0 * m1 * m2 * m3)
+        alpha * alpha * alpha / (6.0 * m1 * m2 * m3)
     } else if alpha < m2 {
         (alpha * (alpha - m1) + m1 * m1 / 3.0) / (2.0 * m2 * m3)
     } else if alpha < m12.min(m3) {
@@ -39,22 +40,23 @@ pub fn plane_fraction(d: f64, n: Vector, h: Vector) -> f64 {
 /// Within a half, a surface that bulges leaves its tangent plane by ½κs² at distance s from the foot
 /// point; over the cuts of all cells s² is h²/12 per tangential direction on average, so the plane is
 /// moved inward by κh²/24 per direction. A plane alone would make a disc's λ sum to too much by
-/// h²/12R², a sphere's by h²/4R².
+/// h²/12R², a sphere's by h²/4R²; one plane so moved still by up to h²/50R² where the body is centred on
+/// the grid.
 pub fn cell_fraction(d: f64, n: Vector, curvature: f64, h: Vector) -> f64 {
     let depth = if h.z == 0.0 { 1 } else { 2 };
     let bend = curvature / f64::from(depth);
-    let half = h * 0.5;
+    let (half, quarter) = (0.5 * h, 0.25 * h);
     let spread: f64 = (0..3).map(|a| half[a] * half[a] * (1.0 - n[a] * n[a])).sum();
+    // |x|² is the same at the centres of all halves, and |x_t|² = |x|² − (n·x)².
+    let moved = d + bend * (spread / 24.0 + 0.5 * quarter.norm_squared());
     let mut sum = 0.0;
-    for k in 0..depth {
-        for (j, i) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-            let at = |i: i32, h: f64| (f64::from(i) - 0.5) * h;
-            let x = Vector::new(at(i, half.x), at(j, half.y), at(k, half.z));
-            let along = x - n * n.dot(&x);
-            let normal = (n + bend * along).try_normalize(0.0).unwrap_or(n);
-            let distance = d + n.dot(&x) + 0.5 * bend * along.norm_squared();
-            sum += plane_fraction(distance + bend * spread / 24.0, normal, half);
-        }
+    for part in 0..4 * depth {
+        let sign = |bit: i32| if part >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        let x = Vector::new(sign(0) * quarter.x, sign(1) * quarter.y, sign(2) * quarter.z);
+        let t = n.dot(&x);
+        // Longer than one by ½(κ|x_t|)² only: not worth a root.
+        let normal = n * (1.0 - bend * t) + x * bend;
+        sum += plane_fraction(moved + t - 0.5 * bend * t * t, normal, half);
     }
     sum / f64::from(4 * depth)
 }

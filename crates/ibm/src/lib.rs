@@ -15,8 +15,15 @@ mod forcing;
 mod fraction;
 mod hfdib;
 mod kernel;
+#[cfg(feature = "mesh")]
+mod mesh;
+mod pockets;
+mod profile;
+mod projection;
+mod reconstruction;
 mod smooth;
 mod solid_fraction;
+mod subcells;
 #[cfg(test)]
 mod testing;
 
@@ -25,5 +32,10 @@ pub use forcing::{Forcing, Layer};
 pub use fraction::{cell_fraction, plane_fraction};
 pub use hfdib::Hfdib;
 pub use kernel::{Kernel, WIDEST};
+#[cfg(feature = "mesh")]
+pub use mesh::{MeshError, TriangleMesh};
+pub use pockets::{Pocket, Pockets};
+pub use profile::{Given, Profile, Weights};
+pub use reconstruction::{Reconstruction, SurfaceCell};
 pub use smooth::SmoothForcing;
-pub use solid_fraction::{SolidFraction, SolidNode};
+pub use solid_fraction::{FractionRule, SolidFraction, SolidNode};

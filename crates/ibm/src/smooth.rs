@@ -28,7 +28,9 @@ pub struct SmoothForcing {
 #[derive(Clone, Debug, Default)]
 struct Markers {
     pose: Option<Pose>,
-    /// In the body's frame, made once.
+    /// Volume of a cell around the body \[m³\].
+    cell: f64,
+    /// In the body's frame.
     elements: Vec<SurfaceElement>,
     /// From the centre of mass, in the world.
     arms: Vec<Vector>,
@@ -60,15 +62,15 @@ impl Stencil {
         s.weight[2][0] = 1.0;
         s.offset[0][0] = lattice.base;
         for a in 0..lattice.dim {
-            let r = (x[a] - lattice.origin[a]) / lattice.spacing[a];
+            let (node, part) = lattice.axes[a].locate(x[a]);
             let reach = kernel.reach() as isize;
-            let weights = kernel.weights(r - r.floor());
-            let first = r.floor() as isize - reach + 1;
+            let weights = kernel.weights(part);
+            let first = node - reach + 1;
             let base = if a == 0 { lattice.base } else { 0 };
             let (mut width, mut sum) = (0, 0.0);
             for (i, w) in (first..first + 2 * reach).zip(weights) {
                 // Beyond a bounded side there is nothing; the rest is scaled up to sum to one.
-                if let Some(at) = lattice.wrap(a, i) {
+                if let Some(at) = lattice.axes[a].wrap(i) {
                     s.offset[a][width] = base + at * lattice.stride[a];
                     s.weight[a][width] = w;
                     sum += w;
@@ -144,10 +146,12 @@ impl SmoothForcing {
         b: BodyId,
     ) -> Result<(), IbmError> {
         let dim = velocity.dim();
-        let lattice = velocity.lattice(0);
-        let h = lattice.cell_volume().powf(1.0 / dim as f64);
+        let cell = uniform_cell(velocity, self.kernel, bodies, b)?;
+        let h = cell.powf(1.0 / dim as f64);
         let markers = &mut self.bodies[b.0];
-        if markers.elements.is_empty() {
+        // Made once, unless the body has come to where the cells are of another size.
+        if markers.elements.is_empty() || (cell / markers.cell - 1.0).abs() > 3.0 * UNEQUAL {
+            markers.cell = cell;
             let extent = bodies.solid(b).aabb().extent();
             let size = extent.x.min(extent.y).min(if dim == 3 { extent.z } else { f64::INFINITY });
             if size < LEAST_CELLS * h {
@@ -190,6 +194,35 @@ impl SmoothForcing {
 
 /// A marker of whose weights less than this share lies inside the box is outside.
 const LEAST_SHARE: f64 = 1e-3;
+
+/// Distances of nodes that differ by no more than this are equal.
+const UNEQUAL: f64 = 1e-6;
+
+/// Volume of the cells that the markers of body `b` reach, which must all be equal.
+fn uniform_cell(
+    velocity: &dyn VelocityField,
+    kernel: Kernel,
+    bodies: &dyn Bodies,
+    body: BodyId,
+) -> Result<f64, IbmError> {
+    let bounds = bodies.aabb(body);
+    let mut cell = 1.0;
+    for axis in 0..velocity.dim() {
+        let [mut least, mut most] = [f64::INFINITY, 0.0_f64];
+        for c in 0..velocity.dim() {
+            let nodes = &velocity.lattice(c).axes[axis];
+            let [_, here] = nodes.spacings(bounds.min[axis], bounds.max[axis]);
+            let reach = kernel.reach() as f64 * here;
+            let [low, high] = nodes.spacings(bounds.min[axis] - reach, bounds.max[axis] + reach);
+            (least, most) = (least.min(low), most.max(high));
+        }
+        if most - least > UNEQUAL * most {
+            return Err(IbmError::Stretched { body, axis, least, most });
+        }
+        cell *= least;
+    }
+    Ok(cell)
+}
 
 /// Fewer cells across a body than this cannot hold its markers.
 const LEAST_CELLS: f64 = 4.0;
@@ -237,10 +270,10 @@ impl Forcing for SmoothForcing {
     }
 
     fn force(&mut self, velocity: &mut dyn VelocityField, bodies: &dyn Kinematics) {
-        let cell_mass = self.density * velocity.lattice(0).cell_volume();
         for _ in 0..self.passes {
             for (b, markers) in self.bodies.iter_mut().enumerate() {
                 let twist = bodies.twist(BodyId(b));
+                let cell_mass = self.density * markers.cell;
                 for c in 0..velocity.dim() {
                     let u = velocity.component_mut(c);
                     // All markers read before any of them spreads: their order must not matter.
@@ -282,7 +315,7 @@ impl Forcing for SmoothForcing {
     }
 }
 
-/// ρ Σ λ (u, r × u) h^D over the nodes of body `b`.
+/// ρ Σ λ (u, r × u) V over the nodes of body `b`.
 pub(crate) fn internal_momentum(
     inside: &[SolidFraction; 3],
     density: f64,
@@ -291,10 +324,10 @@ pub(crate) fn internal_momentum(
 ) -> Wrench {
     let mut sum = Wrench::default();
     for c in 0..velocity.dim() {
-        let (u, mass) = (velocity.component(c), density * velocity.lattice(c).cell_volume());
+        let u = velocity.component(c);
         for node in inside[c].nodes(b) {
             let mut momentum = Vector::zeros();
-            momentum[c] = mass * node.fraction * u[node.index];
+            momentum[c] = density * node.volume * node.fraction * u[node.index];
             sum += Wrench::at(momentum, node.arm);
         }
     }
@@ -305,7 +338,7 @@ pub(crate) fn internal_momentum(
 mod tests {
     use super::*;
     use crate::testing::{Balls, Collocated, lattice};
-    use interfaces::Twist;
+    use interfaces::{Nodes, Twist};
 
     fn scene(u: impl Fn([f64; 3]) -> [f64; 3]) -> (Balls, Collocated, SmoothForcing) {
         let mut bodies = Balls::new(2, 0.5, vec![[0.1, 1.2, 0.0]]);
@@ -321,7 +354,7 @@ mod tests {
     fn momentum_is_conserved() {
         let (bodies, mut velocity, mut forcing) = scene(|x| [x[1].sin(), x[0].cos(), 0.0]);
         let total = |v: &Collocated| {
-            let mass = 2.0 * v.lattice.cell_volume();
+            let mass = 2.0 * v.lattice.volume([0; 3]);
             Vector::new(v.values[0].iter().sum::<f64>() * mass, v.values[1].iter().sum::<f64>() * mass, 0.0)
         };
         let before = total(&velocity);
@@ -339,7 +372,7 @@ mod tests {
         let (bodies, velocity, _) = scene(|_| [0.0; 3]);
         let mut last = f64::INFINITY;
         for passes in [1, 3, 10] {
-            let mut u = Collocated { lattice: velocity.lattice, values: velocity.values.clone() };
+            let mut u = Collocated { lattice: velocity.lattice.clone(), values: velocity.values.clone() };
             let mut forcing = SmoothForcing::new(2.0).with_passes(passes);
             forcing.place(&u, &bodies).unwrap();
             forcing.force(&mut u, &bodies);
@@ -363,10 +396,10 @@ mod tests {
     fn passes_converge_at_a_wall() {
         let mut bodies = Balls::new(2, 0.5, vec![[1.5, 0.44, 0.0]]);
         bodies.twists[0].linear.x = 1.0;
-        let mut lattice = lattice(2, [0.05; 3], 3.0);
-        lattice.periodic = [true, false, false];
+        let axes = [true, false].map(|periodic| Nodes::uniform(0.025, 0.05, 60, periodic));
+        let lattice = Lattice::new(axes, 0, [1, 60]);
         let slip = |passes| {
-            let mut u = Collocated::new(lattice, |_| [0.0; 3]);
+            let mut u = Collocated::new(lattice.clone(), |_| [0.0; 3]);
             let mut forcing = SmoothForcing::new(2.0).with_passes(passes);
             forcing.place(&u, &bodies).unwrap();
             forcing.force(&mut u, &bodies);

@@ -1,7 +1,7 @@
 //! Bodies and lattices for the unit tests.
 use interfaces::{
-    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Lattice, Point, Pose, Solid, SurfaceElement, Twist,
-    Vector, VelocityField,
+    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Lattice, Nodes, Point, Pose, Solid, SurfaceElement,
+    Twist, Vector, VelocityField,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -31,21 +31,37 @@ impl Solid for Ball {
     }
 }
 
-/// Equal balls that move as they are told.
+/// A box of these half-widths; a rectangle where the last is 0.
+pub(crate) struct Brick(pub(crate) [f64; 3]);
+
+impl Solid for Brick {
+    fn signed_distance(&self, x: Point, _: f64) -> f64 {
+        let flat = self.0[2] == 0.0;
+        let q =
+            Vector::from_fn(|a, _| if a == 2 && flat { f64::NEG_INFINITY } else { x[a].abs() - self.0[a] });
+        q.map(|q| q.max(0.0)).norm() + q.max().min(0.0)
+    }
+    fn aabb(&self) -> Aabb {
+        Aabb::around(Point::origin(), self.0.into())
+    }
+}
+
+/// Bodies of one shape (balls, unless told) that move as they are told.
 pub(crate) struct Balls {
-    ball: Ball,
-    poses: Vec<Pose>,
+    solid: Box<dyn Solid>,
+    volume: f64,
+    pub(crate) poses: Vec<Pose>,
     pub(crate) twists: Vec<Twist>,
 }
 
 impl Balls {
     pub(crate) fn new(dim: usize, radius: f64, centres: Vec<[f64; 3]>) -> Self {
-        let n = centres.len();
-        Self {
-            ball: Ball { dim, radius },
-            poses: centres.into_iter().map(Pose::at).collect(),
-            twists: vec![Twist::default(); n],
-        }
+        let volume = if dim == 2 { PI * radius * radius } else { 4.0 / 3.0 * PI * radius.powi(3) };
+        Self::of(Ball { dim, radius }, volume, centres.into_iter().map(Pose::at).collect())
+    }
+    pub(crate) fn of(solid: impl Solid + 'static, volume: f64, poses: Vec<Pose>) -> Self {
+        let twists = vec![Twist::default(); poses.len()];
+        Self { solid: Box::new(solid), volume, poses, twists }
     }
     pub(crate) fn shift(&mut self, b: usize, by: Vector) {
         self.poses[b].position += by;
@@ -66,11 +82,10 @@ impl Kinematics for Balls {
 
 impl Bodies for Balls {
     fn solid(&self, _: BodyId) -> &dyn Solid {
-        &self.ball
+        &*self.solid
     }
     fn inertia(&self, _: BodyId) -> Inertia {
-        let r = self.ball.radius;
-        let volume = if self.ball.dim == 2 { PI * r * r } else { 4.0 / 3.0 * PI * r.powi(3) };
+        let volume = self.volume;
         Inertia { mass: volume, volume, tensor: nalgebra::Matrix3::identity() }
     }
     fn freedom(&self, _: BodyId) -> Freedom {
@@ -80,25 +95,18 @@ impl Bodies for Balls {
 
 /// A periodic lattice of cell centres of about this spacing in a box of edge `length`.
 pub(crate) fn lattice(dim: usize, spacing: [f64; 3], length: f64) -> Lattice {
-    let mut l = Lattice {
-        dim,
-        origin: [0.0; 3],
-        spacing: [1.0; 3],
-        shape: [1; 3],
-        periodic: [false; 3],
-        base: 0,
-        stride: [0; 3],
+    let axis = |a: usize| {
+        let n = (length / spacing[a]).round();
+        let h = length / n;
+        Nodes::uniform(0.5 * h, h, n as usize, true)
     };
-    let mut stride = 1;
-    for a in 0..dim {
-        l.shape[a] = (length / spacing[a]).round() as usize;
-        l.spacing[a] = length / l.shape[a] as f64;
-        l.origin[a] = 0.5 * l.spacing[a];
-        l.periodic[a] = true;
-        l.stride[a] = stride;
-        stride *= l.shape[a];
+    let (x, y, z) = (axis(0), axis(1), axis(2));
+    let stride = [1, x.len(), x.len() * y.len()];
+    if dim == 2 {
+        Lattice::new([x, y], 0, [stride[0], stride[1]])
+    } else {
+        Lattice::new([x, y, z], 0, stride)
     }
-    l
 }
 
 /// A collocated velocity field on one lattice.
@@ -109,10 +117,11 @@ pub(crate) struct Collocated {
 
 impl Collocated {
     pub(crate) fn new(lattice: Lattice, u: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
-        let [nx, ny, nz] = lattice.shape;
+        let [nx, ny, nz] = lattice.shape();
         let cells = (0..nx * ny * nz).map(|c| [c % nx, c / nx % ny, c / (nx * ny)].map(|i| i as isize));
         let points: Vec<_> = cells.map(|i| u(lattice.position(i))).collect();
-        Self { lattice, values: (0..lattice.dim).map(|c| points.iter().map(|u| u[c]).collect()).collect() }
+        let values = (0..lattice.dim).map(|c| points.iter().map(|u| u[c]).collect()).collect();
+        Self { lattice, values }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The words that the siltflow crates share, and nothing else: where things are ([`Pose`],
 //! [`Aabb`], [`Periods`]), how they move ([`Twist`]) and are pushed ([`Wrench`]), what a body
 //! owes its neighbours ([`Solid`], [`Kinematics`], [`Bodies`], [`Dynamics`]), how a flow shows
-//! its velocity ([`Lattice`], [`VelocityField`]), what a restart needs ([`Checkpoint`]), what a turbulence model asks of a flow
+//! its velocity ([`Lattice`], [`Nodes`], [`VelocityField`]), what a restart needs ([`Checkpoint`]), what a turbulence model asks of a flow
 //! ([`Transport`], [`Closure`]) and the
 //! container of the files that ParaView reads ([`vtk`]).
 //!
@@ -21,6 +21,7 @@
 mod bodies;
 mod geometry;
 mod lattice;
+mod nodes;
 mod restart;
 mod solid;
 mod transport;
@@ -29,6 +30,7 @@ pub mod vtk;
 pub use bodies::{Bodies, BodyId, Dynamics, Freedom, Inertia, Kinematics, Load};
 pub use geometry::{Aabb, Periods, Point, Pose, Rotation, Twist, Vector, Wrench};
 pub use lattice::{Lattice, VelocityField};
+pub use nodes::Nodes;
 pub use restart::{Checkpoint, RestartError};
 pub use solid::{Solid, SurfaceElement};
 pub use transport::{Closure, Equation, SolveError, SolveInfo, Transport};

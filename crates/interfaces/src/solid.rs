@@ -18,6 +18,14 @@ pub trait Solid: Send + Sync {
     /// |d| ≥ `band` are promised.
     fn signed_distance(&self, x: Point, band: f64) -> f64;
 
+    /// Signed distances of many points: one call for a block of them. Points that follow one another
+    /// are best near one another. Default: one by one.
+    fn signed_distances(&self, points: &[Point], band: f64, out: &mut [f64]) {
+        for (d, x) in out.iter_mut().zip(points) {
+            *d = self.signed_distance(*x, band);
+        }
+    }
+
     /// A box that holds the shape, in its own frame. A plane shape has no extent along z.
     fn aabb(&self) -> Aabb;
 

@@ -27,8 +27,9 @@ fn start(cells: [usize; 2], params: PisoParams) -> Piso<2> {
 fn error_at(velocity: &Velocity<2>, time: f64) -> f64 {
     let mut worst = 0.0_f64;
     for c in 0..2 {
-        let lattice = *velocity.lattice(c);
-        for (j, i) in (0..lattice.shape[1]).flat_map(|j| (0..lattice.shape[0]).map(move |i| (j, i))) {
+        let lattice = velocity.lattice(c);
+        for (j, i) in (0..lattice.axes[1].len()).flat_map(|j| (0..lattice.axes[0].len()).map(move |i| (j, i)))
+        {
             let at = [i as isize, j as isize, 0];
             let x = lattice.position(at);
             let u = velocity.component(c)[lattice.index(at).unwrap()];
@@ -146,8 +147,10 @@ fn forcing_acts_between_the_parts() {
     let mut hold = |velocity: &mut Velocity<2>, _: f64, _: f64| {
         calls += 1;
         for c in 0..2 {
-            let lattice = *velocity.lattice(c);
-            for (j, i) in (0..lattice.shape[1]).flat_map(|j| (0..lattice.shape[0]).map(move |i| (j, i))) {
+            let lattice = velocity.lattice(c).clone();
+            for (j, i) in
+                (0..lattice.axes[1].len()).flat_map(|j| (0..lattice.axes[0].len()).map(move |i| (j, i)))
+            {
                 let at = [i as isize, j as isize, 0];
                 if lattice.position(at)[1] > 0.5 {
                     let index = lattice.index(at).unwrap();

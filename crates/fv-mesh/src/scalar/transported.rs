@@ -136,8 +136,8 @@ impl<const D: usize> Scalar<D> {
 
     fn check_velocity(&self, velocity: &Velocity<D>) -> Result<(), FlowError> {
         velocity.components[0].check(&self.grid)?;
-        let (own, flow) = (self.boundaries.periodic(), velocity.lattice(0).periodic);
-        match (0..D).find(|&a| own[a] != flow[a]) {
+        let (own, flow) = (self.boundaries.periodic(), &velocity.lattice(0).axes);
+        match (0..D).find(|&a| own[a] != flow[a].is_periodic()) {
             None => Ok(()),
             Some(a) => Err(FlowError::Boundary {
                 what: format!("axis {a} periodic for either the flow or a scalar in it; make it so for both"),

@@ -1,0 +1,76 @@
+//! One triangle.
+use interfaces::Vector;
+
+/// Which part of a triangle a point lies on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Part {
+    Inside,
+    /// The edge from corner i to corner i + 1.
+    Edge(usize),
+    Corner(usize),
+}
+
+/// A triangle as the distance needs it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Triangle {
+    a: Vector,
+    ab: Vector,
+    ac: Vector,
+}
+
+impl Triangle {
+    pub(crate) fn new(a: Vector, b: Vector, c: Vector) -> Self {
+        Self { a, ab: b - a, ac: c - a }
+    }
+    pub(crate) fn corners(&self) -> [Vector; 3] {
+        [self.a, self.a + self.ab, self.a + self.ac]
+    }
+    /// (b − a) × (c − a).
+    pub(crate) fn cross(&self) -> Vector {
+        self.ab.cross(&self.ac)
+    }
+    /// Angle at corner `i`.
+    pub(crate) fn angle(&self, i: usize) -> f64 {
+        let bc = self.ac - self.ab;
+        match i {
+            0 => self.ab.angle(&self.ac),
+            1 => bc.angle(&-self.ab),
+            _ => bc.angle(&self.ac),
+        }
+    }
+    /// Its point nearest to `x`, as the difference x − point, and where that point lies
+    /// (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
+    #[inline]
+    pub(crate) fn nearest(&self, x: Vector) -> (Vector, Part) {
+        let ap = x - self.a;
+        let (d1, d2) = (self.ab.dot(&ap), self.ac.dot(&ap));
+        if d1 <= 0.0 && d2 <= 0.0 {
+            return (ap, Part::Corner(0));
+        }
+        let bp = ap - self.ab;
+        let (d3, d4) = (self.ab.dot(&bp), self.ac.dot(&bp));
+        if d3 >= 0.0 && d4 <= d3 {
+            return (bp, Part::Corner(1));
+        }
+        let vc = d1 * d4 - d3 * d2;
+        if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+            return (ap - self.ab * (d1 / (d1 - d3)), Part::Edge(0));
+        }
+        let cp = ap - self.ac;
+        let (d5, d6) = (self.ab.dot(&cp), self.ac.dot(&cp));
+        if d6 >= 0.0 && d5 <= d6 {
+            return (cp, Part::Corner(2));
+        }
+        let vb = d5 * d2 - d1 * d6;
+        if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+            return (ap - self.ac * (d2 / (d2 - d6)), Part::Edge(2));
+        }
+        let va = d3 * d6 - d5 * d4;
+        if va <= 0.0 && d4 >= d3 && d5 >= d6 {
+            let t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+            return (bp - (self.ac - self.ab) * t, Part::Edge(1));
+        }
+        let scale = 1.0 / (va + vb + vc);
+        (ap - self.ab * (vb * scale) - self.ac * (vc * scale), Part::Inside)
+    }
+}

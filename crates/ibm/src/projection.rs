@@ -1,0 +1,236 @@
+//! One body on one lattice.
+use crate::subcells::Cell;
+use crate::{FractionRule, SolidNode, cell_fraction};
+use interfaces::{Bodies, BodyId, Lattice, Point, Rotation, Solid, Vector};
+
+/// Nodes along an edge of a block, which one query may tell to be all solid or all fluid.
+const BLOCK: usize = 4;
+
+/// Projects bodies on lattices; holds the memory that this takes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Projector {
+    columns: [Vec<Column>; 3],
+    /// Signed distances in the body's box, x fastest.
+    distances: Vec<f64>,
+    points: Vec<Point>,
+    slots: Vec<usize>,
+    answers: Vec<f64>,
+}
+
+/// What all nodes with the same number along one axis share.
+#[derive(Clone, Copy, Debug)]
+struct Column {
+    /// Place from the body's centre of mass \[m\].
+    arm: f64,
+    /// Width of the control volumes \[m\].
+    width: f64,
+    /// Share of the storage index; `None` outside the lattice.
+    offset: Option<usize>,
+    /// First and second difference of the values below, here and above.
+    first: [f64; 3],
+    second: [f64; 3],
+}
+
+/// Is the surface smooth here, as far as the square of the `gradient` of the distance tells, its differences taken
+/// over neighbours h away? Across an edge it is the squared cosine of half the edge's angle; beside one, where a
+/// neighbour along the surface is past it, above 1. On a sphere it is between 1 − ⅔(h/R)² and 1, so that
+/// much is allowed for the curvature `bend`, if it is not that of an edge itself (1/R no more than 1/5h).
+fn is_smooth(square: f64, bend: f64, h: f64) -> bool {
+    let least = 1.0 - EDGE - 2.0 / 3.0 * (bend * h).powi(2).min(0.04);
+    (least..1.0025).contains(&square)
+}
+
+/// 1 − cos² of half the angle of an edge that is not worth smaller cells: 11°.
+const EDGE: f64 = 0.01;
+
+impl Projector {
+    /// Lists the nodes that body `b` covers at least in part.
+    pub(crate) fn project<B: Bodies + ?Sized>(
+        &mut self,
+        lattice: &Lattice,
+        bodies: &B,
+        b: BodyId,
+        rule: FractionRule,
+        nodes: &mut Vec<SolidNode>,
+    ) {
+        nodes.clear();
+        let (solid, pose, dim) = (bodies.solid(b), bodies.pose(b), lattice.dim);
+        let bounds = bodies.aabb(b);
+        for a in 0..3 {
+            let (low, high) = (bounds.min[a], bounds.max[a]);
+            columns(&mut self.columns[a], lattice, a, [low, high], pose.position[a]);
+        }
+        let shape = [0, 1, 2].map(|a| self.columns[a].len());
+        if shape.contains(&0) {
+            return;
+        }
+        let widest = [0, 1, 2].map(|a| self.columns[a].iter().fold(0.0, |m: f64, c| m.max(c.width)));
+        let widest = Vector::from(widest).component_mul(&plane(dim));
+        // A cut cell's centre is within half a diagonal of the surface, its neighbours a cell further.
+        let band = 1.01 * (0.5 * widest.norm() + widest.max());
+        let to_body = pose.orientation.inverse();
+        self.distances(solid, to_body, band, dim);
+
+        let room: usize = shape.iter().product();
+        if nodes.capacity() < room {
+            nodes.reserve(room + room / 4);
+        }
+        let stride = [1, shape[0], shape[0] * shape[1]];
+        let inner = |a: usize| if a < dim { 1..shape[a] - 1 } else { 0..1 };
+        for k in inner(2) {
+            for j in inner(1) {
+                let (z, y) = (self.columns[2][k], self.columns[1][j]);
+                let (Some(above), Some(beside)) = (z.offset, y.offset) else { continue };
+                for i in inner(0) {
+                    let x = self.columns[0][i];
+                    let Some(along) = x.offset else { continue };
+                    let at = i + stride[1] * j + stride[2] * k;
+                    let distance = self.distances[at];
+                    let h = Vector::new(x.width, y.width, z.width).component_mul(&plane(dim));
+                    let reach2 = 0.25 * h.norm_squared();
+                    if distance > 0.0 && distance * distance >= reach2 {
+                        continue;
+                    }
+                    let arm = Vector::new(x.arm, y.arm, z.arm);
+                    let volume = x.width * y.width * z.width;
+                    let mut fraction = 1.0;
+                    if distance * distance < reach2 {
+                        let (mut gradient, mut curvature) = (Vector::zeros(), 0.0);
+                        for (a, column) in [x, y, z].into_iter().enumerate().take(dim) {
+                            let s = stride[a];
+                            let d = [self.distances[at - s], distance, self.distances[at + s]];
+                            for m in 0..3 {
+                                gradient[a] += column.first[m] * d[m];
+                                curvature += column.second[m] * d[m];
+                            }
+                        }
+                        let square = gradient.norm_squared();
+                        let bend = curvature / (dim - 1) as f64;
+                        let cut = if is_smooth(square, bend, h.max()) {
+                            cell_fraction(distance, gradient / square.sqrt(), curvature, h)
+                        } else {
+                            Cell { solid, to_body, dim, centre: arm, edges: h }.solid_share()
+                        };
+                        fraction = rule.fraction(cut, distance, volume, dim);
+                    }
+                    if fraction > 0.0 {
+                        let index = lattice.base + along + beside + above;
+                        nodes.push(SolidNode { index, fraction, distance, arm, volume });
+                    }
+                }
+            }
+        }
+    }
+
+    /// Fills in the distances: exact where a cut cell needs them, of the right sign and not less than
+    /// half a diagonal elsewhere.
+    fn distances(&mut self, solid: &dyn Solid, to_body: Rotation, band: f64, dim: usize) {
+        let turn = to_body.to_rotation_matrix();
+        let shape = [0, 1, 2].map(|a| self.columns[a].len());
+        let blocks = shape.map(|n| n.div_ceil(BLOCK));
+        let span = |a: usize, block: usize| block * BLOCK..((block + 1) * BLOCK).min(shape[a]);
+        let [columns_x, columns_y, columns_z] = &self.columns;
+        // Blocks: centre and half diagonal between their outermost nodes.
+        let middle = |columns: &[Column], r: std::ops::Range<usize>| {
+            let (low, high) = (columns[r.start].arm, columns[r.end - 1].arm);
+            (0.5 * (low + high), 0.5 * (high - low))
+        };
+        let mut farthest = 0.0_f64;
+        let all = blocks.iter().product();
+        self.points.clear();
+        self.slots.clear();
+        for n in 0..all {
+            let block = winding(n, blocks);
+            let (x, hx) = middle(columns_x, span(0, block[0]));
+            let (y, hy) = middle(columns_y, span(1, block[1]));
+            let (z, hz) =
+                if dim == 2 { (columns_z[0].arm, 0.0) } else { middle(columns_z, span(2, block[2])) };
+            farthest = farthest.max(hx * hx + hy * hy + hz * hz);
+            self.points.push(Point::from(turn * Vector::new(x, y, z)));
+        }
+        // Cells of blocks farther away are not cut, nor are their neighbours' neighbours asked for.
+        let far = farthest.sqrt() + band;
+        self.answers.clear();
+        self.answers.resize(all, 0.0);
+        // In a body not much wider all blocks are near the surface.
+        let extent = solid.aabb().extent();
+        let narrowest = if dim == 2 { extent.x.min(extent.y) } else { extent.min() };
+        if far < 0.25 * narrowest {
+            solid.signed_distances(&self.points, far, &mut self.answers);
+        }
+        self.points.clear();
+        self.distances.clear();
+        self.distances.resize(shape.iter().product(), 0.0);
+        let stride = [1, shape[0], shape[0] * shape[1]];
+        for n in 0..all {
+            let block = winding(n, blocks);
+            let decided = self.answers[n].abs() >= far;
+            let value = band.copysign(self.answers[n]);
+            for k in span(2, block[2]) {
+                for j in span(1, block[1]) {
+                    let row = stride[1] * j + stride[2] * k;
+                    if decided {
+                        self.distances[row..][span(0, block[0])].fill(value);
+                        continue;
+                    }
+                    let side = turn * Vector::new(0.0, columns_y[j].arm, columns_z[k].arm);
+                    let along = turn.matrix().column(0).into_owned();
+                    for i in span(0, block[0]) {
+                        self.slots.push(row + i);
+                        self.points.push(Point::from(side + along * columns_x[i].arm));
+                    }
+                }
+            }
+        }
+        self.answers.resize(self.points.len(), 0.0);
+        solid.signed_distances(&self.points, band, &mut self.answers);
+        for (slot, d) in self.slots.iter().zip(&self.answers) {
+            self.distances[*slot] = *d;
+        }
+    }
+}
+
+/// The n-th block on a way on which each is next to the one before.
+fn winding(n: usize, shape: [usize; 3]) -> [usize; 3] {
+    let (row, layer) = (n / shape[0], n / (shape[0] * shape[1]));
+    let turn = |i: usize, back: bool, n: usize| if back { n - 1 - i } else { i };
+    [turn(n % shape[0], row % 2 == 1, shape[0]), turn(row % shape[1], layer % 2 == 1, shape[1]), layer]
+}
+
+/// Ones along the axes that a lattice of `dim` dimensions has.
+fn plane(dim: usize) -> Vector {
+    Vector::new(1.0, 1.0, if dim == 2 { 0.0 } else { 1.0 })
+}
+
+/// The nodes along axis `a` that a body between `span` may cover, one more on both sides that it may
+/// cut, and one more again for differences.
+fn columns(out: &mut Vec<Column>, lattice: &Lattice, a: usize, span: [f64; 2], centre: f64) {
+    out.clear();
+    let nodes = &lattice.axes[a];
+    if a >= lattice.dim {
+        let arm = nodes.place(0) - centre;
+        out.push(Column { arm, width: 1.0, offset: Some(0), first: [0.0; 3], second: [0.0; 3] });
+        return;
+    }
+    let (first, last) = (nodes.locate(span[0]).0, nodes.locate(span[1]).0 + 1);
+    let range = if nodes.is_periodic() {
+        first..last + 1
+    } else {
+        let n = nodes.len() as isize;
+        first.max(0)..(last + 1).min(n)
+    };
+    if range.is_empty() {
+        return;
+    }
+    for i in range.start - 1..range.end + 1 {
+        let (x, below, above) = (nodes.place(i), nodes.place(i - 1), nodes.place(i + 1));
+        let (m, p) = (x - below, above - x);
+        out.push(Column {
+            arm: x - centre,
+            width: nodes.width(i),
+            offset: if range.contains(&i) { nodes.wrap(i).map(|i| i * lattice.stride[a]) } else { None },
+            first: [-p / (m * (m + p)), (p - m) / (m * p), m / (p * (m + p))],
+            second: [2.0 / (m * (m + p)), -2.0 / (m * p), 2.0 / (p * (m + p))],
+        });
+    }
+}

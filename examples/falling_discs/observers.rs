@@ -1,6 +1,7 @@
 //! Who looks on while the discs fall.
 use crate::scene::{BOX, FLUID, GRAVITY, Scene};
-use crate::support::picture::{Disc, Domain, Frames, Moment, Scalar, Summary, Track};
+use crate::support::picture::summary::{Moment, Summary, Track};
+use crate::support::picture::{Disc, Domain, Frames, Scalar};
 use crate::support::progress::{Progress, Status};
 use crate::support::startup_theory;
 use siltflow::coupling::{

@@ -63,10 +63,9 @@ pub(crate) fn readable(duration: Duration) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
     #[test]
     fn work_takes_processor_time() {
+        use super::*;
         let watch = Stopwatch::start();
         let mut x = 1.0f64;
         while watch.elapsed().wall < 0.05 {
@@ -78,12 +77,14 @@ mod tests {
 
     #[test]
     fn the_high_water_mark_is_read_in_bytes() {
+        use super::*;
         assert_eq!(high_water_mark("VmPeak:\t 9 kB\nVmHWM:\t    2048 kB\n"), Some(2048 * 1024));
         assert_eq!(high_water_mark("Name:\tx\n"), None);
     }
 
     #[test]
     fn durations_read_well() {
+        use super::*;
         let text = |s: f64| readable(Duration::from_secs_f64(s));
         assert_eq!(text(4.21), "4.2 s");
         assert_eq!(text(59.4), "59 s");

@@ -8,15 +8,14 @@ use std::path::Path;
 mod axes;
 mod canvas;
 mod colour;
-mod summary;
+pub(crate) mod plot;
+pub(crate) mod summary;
 mod text;
 
 use axes::{Axes, Look, colour_bar};
 use canvas::{Canvas, Rect};
 use colour::{BLACK, Map, WHITE, mix};
 use text::Type;
-
-pub(crate) use summary::{Moment, Summary, Track};
 
 /// A field at the cell centres of a uniform grid over the [`Domain`]: x runs fastest, y upwards.
 #[derive(Clone, Copy, Debug)]
@@ -183,10 +182,9 @@ impl Frames {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
     #[test]
     fn a_disc_on_a_corner_has_four_images() {
+        use super::*;
         let domain = Domain { width: 1.0, height: 2.0, periodic: [true, true] };
         let disc = |x, y| Disc { x, y, radius: 0.1, angle: 0.0 };
         assert_eq!(domain.images(&disc(0.95, 4.02)).len(), 4);
@@ -197,6 +195,7 @@ mod tests {
 
     #[test]
     fn pixels_wrap_in_a_periodic_direction_only() {
+        use super::*;
         assert_eq!(lattice(4, 2, true, false)[0], (1, 0, 0.75));
         assert_eq!(lattice(4, 2, false, false)[0], (0, 0, 0.75));
         assert_eq!(lattice(4, 2, true, true)[0], lattice(4, 2, true, false)[3]);

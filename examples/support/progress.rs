@@ -142,10 +142,9 @@ impl Progress {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
     #[test]
     fn status_is_asked_seldom() {
+        use super::*;
         let mut progress = Progress::new(0.0, 1.0);
         let mut asked = 0;
         let started = Instant::now();

@@ -137,10 +137,9 @@ pub(crate) fn write_json(path: &Path, value: &Value) -> io::Result<()> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
     #[test]
     fn rows_line_up() {
+        use super::*;
         let mut table = Table::new();
         table.section("Run").row("cells", grouped(45_000), "").row("step Δt", number(2e-4), "s");
         table.matrix(&["body", "x"], vec![vec!["heavy".into(), "1".into()]]);
@@ -152,6 +151,7 @@ mod tests {
 
     #[test]
     fn numbers_keep_four_digits() {
+        use super::*;
         let expected =
             [(0.0, "0"), (1.0, "1.000"), (-12.3456, "-12.35"), (99_999.0, "99999"), (2.5e-7, "2.500e-7")];
         for (value, text) in expected {

@@ -38,11 +38,17 @@ impl Axes {
 
     /// Light lines at the ticks.
     pub(crate) fn grid(&self, canvas: &mut Canvas, look: Look) {
-        for tick in look.ticks(self.x, self.rect.width).places {
+        let ticks = [look.ticks(self.x, self.rect.width), look.ticks(self.y, self.rect.height)];
+        self.grid_at(canvas, look, &ticks);
+    }
+
+    /// The same at given ticks along x and y.
+    pub(crate) fn grid_at(&self, canvas: &mut Canvas, look: Look, [along_x, along_y]: &[Ticks; 2]) {
+        for &tick in &along_x.places {
             let (x, _) = self.at(tick, self.y.0);
             canvas.fill(Rect::new(x, self.rect.top, look.line, self.rect.height), GRID, 1.0);
         }
-        for tick in look.ticks(self.y, self.rect.height).places {
+        for &tick in &along_y.places {
             let (_, y) = self.at(self.x.0, tick);
             canvas.fill(Rect::new(self.rect.left, y, self.rect.width, look.line), GRID, 1.0);
         }
@@ -55,8 +61,12 @@ impl Axes {
 
     /// Ticks and numbers below the plot, with the label under them.
     pub(crate) fn bottom(&self, canvas: &mut Canvas, look: Look, label: &str) {
+        self.bottom_at(canvas, look, &look.ticks(self.x, self.rect.width), label);
+    }
+
+    /// The same with given ticks.
+    pub(crate) fn bottom_at(&self, canvas: &mut Canvas, look: Look, ticks: &Ticks, label: &str) {
         let (foot, length) = (self.rect.bottom() + look.line, 0.4 * look.font);
-        let ticks = look.ticks(self.x, self.rect.width);
         let style = Type::new(look.font, (0.5, 1.0));
         for &tick in &ticks.places {
             let (x, _) = self.at(tick, self.y.0);
@@ -69,8 +79,12 @@ impl Axes {
 
     /// Ticks and numbers left of the plot, with the label beside them, reading upwards.
     pub(crate) fn left(&self, canvas: &mut Canvas, look: Look, label: &str) {
+        self.left_at(canvas, look, &look.ticks(self.y, self.rect.height), label);
+    }
+
+    /// The same with given ticks.
+    pub(crate) fn left_at(&self, canvas: &mut Canvas, look: Look, ticks: &Ticks, label: &str) {
         let (foot, length) = (self.rect.left - look.line, 0.4 * look.font);
-        let ticks = look.ticks(self.y, self.rect.height);
         let mut reach = 0.0f64;
         for &tick in &ticks.places {
             let (_, y) = self.at(self.x.0, tick);
@@ -127,10 +141,14 @@ pub(crate) fn colour_bar(
     canvas.text((x, rect.top + 0.5 * rect.height), Type::new(look.font, (0.5, 1.0)).turned(), label);
 }
 
+const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+
 /// Round numbers within a range.
 pub(crate) struct Ticks {
     pub(crate) places: Vec<f64>,
     decimals: usize,
+    /// Places are powers of ten.
+    powers: bool,
 }
 
 impl Ticks {
@@ -138,7 +156,7 @@ impl Ticks {
     pub(crate) fn new((low, high): (f64, f64), wanted: usize) -> Self {
         let span = high - low;
         if !(span.is_finite() && span > 0.0) {
-            return Self { places: vec![low], decimals: 3 };
+            return Self { places: vec![low], decimals: 3, powers: false };
         }
         let rough = span / wanted.max(1) as f64;
         let power = 10f64.powf(rough.log10().floor());
@@ -151,21 +169,34 @@ impl Ticks {
         };
         let (first, last) = ((low / step - 1e-6).ceil() as i64, (high / step + 1e-6).floor() as i64);
         let decimals = (-(step * 1.001).log10().floor()).max(0.0) as usize;
-        Self { places: (first..=last).map(|k| k as f64 * step).collect(), decimals }
+        Self { places: (first..=last).map(|k| k as f64 * step).collect(), decimals, powers: false }
+    }
+
+    /// The powers of ten whose exponents lie within a range.
+    pub(crate) fn decades((low, high): (f64, f64)) -> Self {
+        let places = (low.ceil() as i64..=high.floor() as i64).map(|k| k as f64).collect();
+        Self { places, decimals: 0, powers: true }
     }
 
     /// The number at a tick, with a true minus sign.
     pub(crate) fn label(&self, tick: f64) -> String {
-        format!("{:.*}", self.decimals, tick + 0.0).replace('-', "−")
+        let text = format!("{:.*}", self.decimals, tick + 0.0);
+        if !self.powers {
+            return text.replace('-', "−");
+        }
+        let raised = |c: char| match c {
+            '-' => '⁻',
+            digit => digit.to_digit(10).map_or(digit, |d| SUPERSCRIPTS[d as usize]),
+        };
+        "10".chars().chain(text.chars().map(raised)).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
     #[test]
     fn ticks_are_round_and_inside() {
+        use super::*;
         let labels = |low, high, wanted| {
             let ticks = Ticks::new((low, high), wanted);
             ticks.places.iter().map(|&t| ticks.label(t)).collect::<Vec<_>>().join(" ")
@@ -175,5 +206,7 @@ mod tests {
         assert_eq!(labels(-2.0, 2.0, 4), "−2 −1 0 1 2");
         assert_eq!(labels(0.0, 0.03, 3), "0.00 0.01 0.02 0.03");
         assert_eq!(labels(1.0, 1.0, 3), "1.000");
+        let decades = Ticks::decades((-2.5, 1.0));
+        assert_eq!(decades.places.iter().map(|&t| decades.label(t)).collect::<String>(), "10⁻²10⁻¹10⁰10¹");
     }
 }

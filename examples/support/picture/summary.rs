@@ -266,10 +266,9 @@ fn periods(path: &[f64], length: f64, periodic: bool) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
     #[test]
     fn a_path_shows_in_every_period_it_visits() {
+        use super::*;
         assert_eq!(periods(&[0.5, -0.2, -1.4], 1.0, true), [-2.0, -1.0, 0.0]);
         assert_eq!(periods(&[0.5, -0.2], 1.0, false), [0.0]);
         assert!(periods(&[], 1.0, true).is_empty());

@@ -5,6 +5,8 @@
 //! convergence index GCI = 1.25 |f₁ − f₂| / (|f₁| (r^p − 1)) of the finest grid (Roache 1994), r the refinement ratio;
 //! p is taken from the three values and held within 0.5 … 3.
 mod cases;
+#[path = "../support/centrelines.rs"]
+mod centrelines;
 
 use cpu_time::ProcessTime;
 

@@ -3,6 +3,8 @@
 mod advance;
 mod eddy;
 mod project;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use advance::{Advance, LIMITED, LINEAR, Momentum, flux, upwinded};
 pub(crate) use eddy::add_eddy_stress;

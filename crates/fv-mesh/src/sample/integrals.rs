@@ -41,6 +41,8 @@ pub struct Extreme<const D: usize> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
+/// [`velocity_norms`](Self::velocity_norms) measures the error of a staggered velocity on its faces.
+///
 /// Sums run in an order that does not depend on the number of threads. A value that is not a number makes every
 /// result that it enters one.
 #[derive(Clone, Debug)]
@@ -57,6 +59,11 @@ impl<const D: usize> Integrals<D> {
             (0..axis.cells()).map(|i| axis.width(i)).collect()
         });
         Self { grid: grid.clone(), widths }
+    }
+
+    /// The grid.
+    pub(super) fn grid(&self) -> &CartesianGrid<D> {
+        &self.grid
     }
 
     /// ∫ f dV.
@@ -76,7 +83,7 @@ impl<const D: usize> Integrals<D> {
     }
 
     /// The norms of f; those of a − b measure the difference of two fields, and with
-    /// [`CartesianGrid::function`] that to an exact solution.
+    /// [`CartesianGrid::function`] that to an exact solution. For a velocity see [`velocity_norms`](Self::velocity_norms).
     ///
     /// # Errors
     /// Those of [`integral`](Self::integral).

@@ -7,6 +7,7 @@ mod probes;
 mod sampler;
 #[cfg(test)]
 mod tests;
+mod velocity_norms;
 
 pub use integrals::{Extreme, Integrals, Norms};
 pub use line::Line;

@@ -361,3 +361,45 @@ fn what_cannot_be_sampled_is_an_error() {
     ));
     assert!(Integrals::new(&grid).integral(&lost).is_err());
 }
+
+#[test]
+fn velocity_norms_are_those_of_the_unknown_faces() {
+    // u = a + x − y, v = 2a on stretched cells, a unknown on all faces that are not on a bounded side.
+    fn flow(sides: [[Side; 2]; 2]) -> Projection<2> {
+        let axes = [
+            Axis::geometric(7, 0.0, 1.0, 1.2).unwrap(),
+            Axis::tanh(6, 0.0, 2.0, 1.1, Cluster::Upper).unwrap(),
+        ];
+        let grid = CartesianGrid::from_axes(axes).unwrap();
+        let mut flow = Projection::new(grid, sides, FLUID).unwrap();
+        flow.set_velocity(|x| [0.5 + x[0] - x[1], 1.0]);
+        flow
+    }
+    let periodic = flow(Side::Periodic.everywhere());
+    let over = Integrals::new(periodic.grid());
+    let found = over.velocity_norms(periodic.velocity(), |x| [x[0] - x[1], 3.0]).unwrap();
+    assert!((found.l1 - 2.5).abs() < 1e-14 && (found.l2 - 0.5_f64.hypot(2.0)).abs() < 1e-14);
+    assert!((found.linf - 2.0).abs() < 1e-14);
+
+    // Between walls at rest, where the error would be 9.
+    let walled = flow(Side::WALL.everywhere());
+    let moved = |x: [f64; 2]| {
+        let on_wall = [x[0] == 0.0, x[1] == 0.0];
+        [[x[0] - x[1], 9.0][usize::from(on_wall[0])], [3.0, 9.0][usize::from(on_wall[1])]]
+    };
+    let found = over.velocity_norms(walled.velocity(), moved).unwrap();
+    assert!((found.l2 - 0.5_f64.hypot(2.0)).abs() < 1e-14 && (found.linf - 2.0).abs() < 1e-14);
+
+    // Each face by its control volume: ⟨(u − u(x̄))²⟩ with the nodes' own mean and spread.
+    let x = periodic.grid().axis(0);
+    let widths: Vec<f64> = (0..7).map(|i| 0.5 * (x.width((i + 6) % 7) + x.width(i))).collect();
+    let spread: f64 = widths.iter().zip(x.faces()).map(|(w, x)| w * x * x).sum();
+    let found = over.velocity_norms(periodic.velocity(), |x| [0.5 - x[1], 1.0]).unwrap();
+    assert!((found.l2 - spread.sqrt()).abs() < 1e-14, "{found:?} {spread}");
+
+    let nowhere = over.velocity_norms(periodic.velocity(), |_| [f64::NAN, 0.0]).unwrap();
+    assert!(nowhere.l2.is_nan() && nowhere.linf.is_nan());
+    let other = Integrals::new(&CartesianGrid::new([7, 6], [1.0, 2.0]).unwrap());
+    let mismatch = other.velocity_norms(periodic.velocity(), |_| [0.0; 2]);
+    assert!(matches!(mismatch, Err(GridMismatch { axis: 0, .. })), "{mismatch:?}");
+}

@@ -1,6 +1,6 @@
 //! Exact solutions of the Navier–Stokes equations.
-use crate::norms::{self, Norms};
-use fv_mesh::{Axis, CartesianGrid, Cluster, Convection, Diffusion, Fluid, Profile, Projection, Side};
+use crate::norms::{self, order};
+use fv_mesh::{Axis, CartesianGrid, Cluster, Convection, Diffusion, Fluid, Norms, Profile, Projection, Side};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 /// Taylor–Green vortices carried along by a uniform flow.
@@ -46,8 +46,8 @@ fn taylor_green_has_the_order_of_the_convection_scheme() {
     ] {
         for stretched in [false, true] {
             let [coarse, fine] = [48, 96].map(|n| taylor_green(n, stretched, scheme, 8 * n));
-            let velocity = coarse[0].order_to(fine[0], 2.0);
-            let pressure = coarse[1].order_to(fine[1], 2.0);
+            let velocity = order(coarse[0], fine[0], 2.0);
+            let pressure = order(coarse[1], fine[1], 2.0);
             println!(
                 "{scheme:?} stretched {stretched}: velocity {velocity:.3?}, pressure {pressure:.3?}; {fine:?}"
             );
@@ -84,7 +84,7 @@ fn kovasznay_flow_is_second_order_with_given_velocities_at_all_sides() {
         [velocity, norms::pressure(&flow, true, |x| kovasznay([x[0], x[1], 0.0]).1)]
     };
     let [coarse, fine] = [32, 64].map(run);
-    let (velocity, pressure) = (coarse[0].order_to(fine[0], 2.0), coarse[1].order_to(fine[1], 2.0));
+    let (velocity, pressure) = (order(coarse[0], fine[0], 2.0), order(coarse[1], fine[1], 2.0));
     println!("velocity {velocity:.3?}, pressure {pressure:.3?}; {coarse:?} {fine:?}");
     assert!(velocity[0] > 1.95 && velocity[1] > 1.8, "{velocity:?}");
     assert!(pressure[0] > 1.8 && pressure[1] > 1.5, "{pressure:?}");
@@ -127,7 +127,7 @@ fn ethier_steinman_is_second_order_explicit_and_implicit() {
     for (diffusion, steps) in [(Diffusion::Explicit, [120, 480]), (Diffusion::Implicit, [40, 80])] {
         let coarse = ethier_steinman_error(16, diffusion, steps[0]);
         let fine = ethier_steinman_error(32, diffusion, steps[1]);
-        let (velocity, pressure) = (coarse[0].order_to(fine[0], 2.0), coarse[1].order_to(fine[1], 2.0));
+        let (velocity, pressure) = (order(coarse[0], fine[0], 2.0), order(coarse[1], fine[1], 2.0));
         println!("{diffusion:?}: velocity {velocity:.3?}, pressure {pressure:.3?}; {coarse:?} {fine:?}");
         assert!(velocity[0] > 1.95 && velocity[1] > 1.8, "{velocity:?}");
         assert!(pressure[0] > 1.9 && pressure[1] > 1.5, "{pressure:?}");
@@ -178,6 +178,6 @@ fn poiseuille_between_stretched_walls_is_exact_in_the_discrete_sense() {
         norms::velocity(&flow, |x| [0.5 * x[1] * (1.0 - x[1]), 0.0])
     };
     let (coarse, fine) = (run(16), run(32));
-    let order = coarse.order_to(fine, 2.0);
-    assert!(order[0] > 1.9 && order[1] > 1.9 && fine.max < 1e-3, "{coarse:?} {fine:?}");
+    let order = order(coarse, fine, 2.0);
+    assert!(order[0] > 1.9 && order[1] > 1.9 && fine.linf < 1e-3, "{coarse:?} {fine:?}");
 }

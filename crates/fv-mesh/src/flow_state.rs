@@ -2,6 +2,7 @@
 use crate::boundary::Boundaries;
 use crate::grid::GHOSTS;
 use crate::metrics::Metrics;
+use crate::per_dimension::per_dimension;
 use crate::statistics::{self, Measure};
 use crate::{CartesianGrid, Field, FlowError, FlowStatistics, Fluid, Side, Sides, Velocity};
 use interfaces::RestartError;
@@ -73,6 +74,10 @@ impl<const D: usize> FlowState<D> {
 
     /// Boundary faces and ghosts of the velocity.
     pub(crate) fn fill_velocity(&mut self) {
+        per_dimension!(self, FlowState, fill_velocity_here() -> ())
+    }
+
+    fn fill_velocity_here(&mut self) {
         for (c, component) in self.velocity.components.iter_mut().enumerate() {
             self.boundaries.fill_velocity(c, component);
         }
@@ -84,6 +89,10 @@ impl<const D: usize> FlowState<D> {
 
     /// Brings the rates up to date; they keep what is not finite.
     pub(crate) fn measure_rates(&mut self) {
+        per_dimension!(self, FlowState, measure_rates_here() -> ())
+    }
+
+    fn measure_rates_here(&mut self) {
         let given = self.boundaries.rates(&self.metrics);
         let u = &self.velocity.components;
         self.rates = std::array::from_fn(|c| {
@@ -117,6 +126,10 @@ impl<const D: usize> FlowState<D> {
 
     /// Sums and extremes of the velocity, as it is now.
     pub(crate) fn statistics(&mut self) -> FlowStatistics {
+        per_dimension!(self, FlowState, measure_here() -> FlowStatistics)
+    }
+
+    fn measure_here(&mut self) -> FlowStatistics {
         let fluid = [self.fluid.density, self.fluid.viscosity];
         self.measure.of(&self.grid, &self.metrics, &self.velocity.components, fluid, &mut self.row)
     }

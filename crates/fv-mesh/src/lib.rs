@@ -38,6 +38,7 @@ mod metrics;
 mod momentum_matrix;
 pub mod operators;
 mod output;
+mod per_dimension;
 mod piso;
 pub mod poisson;
 mod pressure;

@@ -10,6 +10,7 @@ use crate::flow_state::{FlowState, show_clock, show_state};
 use crate::kernels;
 use crate::linear::StencilMatrix;
 use crate::momentum_matrix::{self as momentum, Equation, Implicit, MomentumEquations, MomentumSolver};
+use crate::per_dimension::per_dimension;
 use crate::poisson::PoissonError;
 use crate::simple::PressureCorrection;
 use crate::{CartesianGrid, Convection, Field, FlowError, Fluid, ImmersedForcing, Side};
@@ -74,6 +75,10 @@ impl<const D: usize> Piso<D> {
     /// # Errors
     /// [`FlowError`] for sides or fluid properties that make no sense.
     pub fn new(grid: CartesianGrid<D>, sides: [[Side; 2]; D], fluid: Fluid) -> Result<Self, FlowError> {
+        per_dimension!(Piso, new_here(grid: CartesianGrid<D>, sides: [[Side; 2]; D], fluid: Fluid) -> Result<Piso<D>, FlowError>)
+    }
+
+    fn new_here(grid: CartesianGrid<D>, sides: [[Side; 2]; D], fluid: Fluid) -> Result<Self, FlowError> {
         let state = FlowState::new(grid, sides, fluid)?;
         let FlowState { grid, metrics, boundaries, .. } = &state;
         let params = PisoParams::default();
@@ -156,6 +161,10 @@ impl<const D: usize> Piso<D> {
     /// [`FlowError::TimeStep`] for a step that is not positive and finite, [`FlowError::MassBalance`] if
     /// what enters cannot leave, [`FlowError::Diverged`] when the velocity is not finite.
     pub fn predict(&mut self, dt: f64, force: [f64; D]) -> Result<(), FlowError> {
+        per_dimension!(self, Piso, predict_here(dt: f64, force: [f64; D]) -> Result<(), FlowError>)
+    }
+
+    fn predict_here(&mut self, dt: f64, force: [f64; D]) -> Result<(), FlowError> {
         self.state.check_step(dt)?;
         let mut r = if self.state.step > 0 { dt / self.state.last_dt } else { 0.0 };
         if r > LONGEST_RATIO || self.params.time_scheme == TimeScheme::Euler {
@@ -216,6 +225,10 @@ impl<const D: usize> Piso<D> {
     /// [`FlowError::Diverged`] when the velocity is not finite; [`FlowError::Poisson`] if the pressure equation could not
     /// be solved to its tolerance.
     pub fn correct(&mut self, dt: f64) -> Result<(), FlowError> {
+        per_dimension!(self, Piso, correct_here(dt: f64) -> Result<(), FlowError>)
+    }
+
+    fn correct_here(&mut self, dt: f64) -> Result<(), FlowError> {
         let FlowState { grid, boundaries, velocity, .. } = &mut self.state;
         for (c, u) in velocity.components.iter_mut().enumerate() {
             let last = &mut self.last[c];
@@ -253,6 +266,10 @@ impl<const D: usize> Piso<D> {
     /// # Errors
     /// [`FlowError::Diverged`] when the velocity is not finite.
     pub fn finish(&mut self, dt: f64) -> Result<(), FlowError> {
+        per_dimension!(self, Piso, finish_here(dt: f64) -> Result<(), FlowError>)
+    }
+
+    fn finish_here(&mut self, dt: f64) -> Result<(), FlowError> {
         self.state.measure_rates();
         if self.state.rates.iter().any(|u| !u.is_finite()) {
             return Err(self.state.diverged(dt));

@@ -7,6 +7,7 @@ use crate::flow_state::{FlowState, show_clock, show_state};
 use crate::implicit::ImplicitDiffusion;
 use crate::kernels::{self, Advance, Conductance, Momentum};
 use crate::metrics::Metrics;
+use crate::per_dimension::per_dimension;
 use crate::poisson::{PoissonError, PoissonInfo};
 use crate::pressure::{Pressure, PressureSolver};
 use crate::{CartesianGrid, Convection, Diffusion, Field, FlowError, Fluid, Side, walls};
@@ -58,6 +59,10 @@ impl<const D: usize> Projection<D> {
     /// # Errors
     /// [`FlowError`] for sides or fluid properties that make no sense.
     pub fn new(grid: CartesianGrid<D>, sides: [[Side; 2]; D], fluid: Fluid) -> Result<Self, FlowError> {
+        per_dimension!(Projection, new_here(grid: CartesianGrid<D>, sides: [[Side; 2]; D], fluid: Fluid) -> Result<Projection<D>, FlowError>)
+    }
+
+    fn new_here(grid: CartesianGrid<D>, sides: [[Side; 2]; D], fluid: Fluid) -> Result<Self, FlowError> {
         let state = FlowState::new(grid, sides, fluid)?;
         let grid = &state.grid;
         let field = || std::array::from_fn(|_| Field::zeros(grid));
@@ -104,8 +109,13 @@ impl<const D: usize> Projection<D> {
     /// # Errors
     /// [`FlowError::Poisson`] if it cannot serve these sides.
     pub fn with_pressure_solver(mut self, solver: PressureSolver) -> Result<Self, FlowError> {
-        self.pressure_solver = Pressure::new(&self.state.grid, &self.state.boundaries, solver)?;
+        per_dimension!(&mut self, Projection, set_pressure_solver(solver: PressureSolver) -> Result<(), FlowError>)?;
         Ok(self)
+    }
+
+    fn set_pressure_solver(&mut self, solver: PressureSolver) -> Result<(), FlowError> {
+        self.pressure_solver = Pressure::new(&self.state.grid, &self.state.boundaries, solver)?;
+        Ok(())
     }
 
     /// Sets every velocity component to `u(x)[c]` at its nodes \[m/s\], outlets included; walls and inlets keep theirs.
@@ -123,6 +133,10 @@ impl<const D: usize> Projection<D> {
     /// for one beyond the [`viscous_limit`](Self::viscous_limit) of [`Diffusion::Explicit`], [`FlowError::MassBalance`] if
     /// what enters cannot leave.
     pub fn predict(&mut self, dt: f64, force: [f64; D]) -> Result<(), FlowError> {
+        per_dimension!(self, Projection, predict_here(dt: f64, force: [f64; D]) -> Result<(), FlowError>)
+    }
+
+    fn predict_here(&mut self, dt: f64, force: [f64; D]) -> Result<(), FlowError> {
         self.sources.start();
         let implicit = self.choose_implicit(dt)?;
         // The fields hold the old values in their ghosts.
@@ -215,6 +229,10 @@ impl<const D: usize> Projection<D> {
     /// # Errors
     /// [`FlowError::Diverged`] when the velocity is not finite.
     pub fn project(&mut self, dt: f64) -> Result<(), FlowError> {
+        per_dimension!(self, Projection, project_here(dt: f64) -> Result<(), FlowError>)
+    }
+
+    fn project_here(&mut self, dt: f64) -> Result<(), FlowError> {
         self.state.fill_velocity();
         let FlowState { grid, metrics, boundaries, fluid, velocity, pressure, .. } = &mut self.state;
         let velocity = &mut velocity.components;
@@ -254,6 +272,10 @@ impl<const D: usize> Projection<D> {
     /// [`FlowError::Diverged`] when the velocity is not finite, or so large that this step would have carried it over
     /// more than three cells.
     pub fn finish(&mut self, dt: f64) -> Result<(), FlowError> {
+        per_dimension!(self, Projection, finish_here(dt: f64) -> Result<(), FlowError>)
+    }
+
+    fn finish_here(&mut self, dt: f64) -> Result<(), FlowError> {
         self.state.measure_rates();
         let courant = self.courant(dt);
         if courant.is_nan() || courant > LARGEST_COURANT {

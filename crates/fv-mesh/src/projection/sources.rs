@@ -1,6 +1,7 @@
 //! Accelerations that vary in space.
 use super::Projection;
 use crate::flow_state::FlowState;
+use crate::per_dimension::per_dimension;
 use crate::{Field, FlowError, kernels};
 use interfaces::SolveError;
 
@@ -68,9 +69,15 @@ impl<const D: usize> Projection<D> {
         self.sources.eddy_most = eddy.iter().copied().fold(0.0, f64::max);
         self.choose_implicit(dt)?;
         let grid = &self.state.grid;
-        let mut field = self.sources.eddy.take().unwrap_or_else(|| Box::new(Field::zeros(grid)));
-        kernels::copy_dense(grid, eddy, &mut field);
-        self.state.boundaries.fill_even(&mut field);
+        let field = self.sources.eddy.get_or_insert_with(|| Box::new(Field::zeros(grid)));
+        kernels::copy_dense(grid, eddy, field);
+        self.state.boundaries.fill_even(field);
+        per_dimension!(self, Projection, add_eddy_stress_here() -> ());
+        Ok(())
+    }
+
+    fn add_eddy_stress_here(&mut self) {
+        let Some(field) = self.sources.eddy.take() else { return };
         self.with_sources(|flow, sources| {
             let FlowState { grid, metrics, velocity, .. } = &flow.state;
             for (c, source) in sources.iter_mut().enumerate() {
@@ -78,6 +85,5 @@ impl<const D: usize> Projection<D> {
             }
         });
         self.sources.eddy = Some(field);
-        Ok(())
     }
 }

@@ -11,6 +11,7 @@ use crate::flow_state::{FlowState, show_state};
 use crate::kernels;
 use crate::linear::StencilMatrix;
 use crate::momentum_matrix::{self as momentum, Equation, Implicit, MomentumEquations};
+use crate::per_dimension::per_dimension;
 use crate::{CartesianGrid, Convection, Field, FlowError, Fluid, Side};
 
 /// Step \[s\] that outlets are moved on by in one iteration: they follow the flow inside at once.
@@ -70,6 +71,10 @@ impl<const D: usize> Simple<D> {
     /// # Errors
     /// [`FlowError`] for sides or fluid properties that make no sense.
     pub fn new(grid: CartesianGrid<D>, sides: [[Side; 2]; D], fluid: Fluid) -> Result<Self, FlowError> {
+        per_dimension!(Simple, new_here(grid: CartesianGrid<D>, sides: [[Side; 2]; D], fluid: Fluid) -> Result<Simple<D>, FlowError>)
+    }
+
+    fn new_here(grid: CartesianGrid<D>, sides: [[Side; 2]; D], fluid: Fluid) -> Result<Self, FlowError> {
         let state = FlowState::new(grid, sides, fluid)?;
         let FlowState { grid, metrics, boundaries, .. } = &state;
         let params = SimpleParams::default();
@@ -150,6 +155,10 @@ impl<const D: usize> Simple<D> {
     /// # Errors
     /// [`FlowError::Diverged`] when the velocity is not finite; [`FlowError::MassBalance`] if what enters cannot leave.
     pub fn iterate(&mut self) -> Result<SimpleInfo, FlowError> {
+        per_dimension!(self, Simple, iterate_here() -> Result<SimpleInfo, FlowError>)
+    }
+
+    fn iterate_here(&mut self) -> Result<SimpleInfo, FlowError> {
         let mut info = SimpleInfo::default();
         let mut scale = 0.0_f64;
         for c in 0..D {

@@ -2,9 +2,11 @@
 //! `cargo bench -p ibm --bench lambda` (a minute or so). `-- 50` repeats more often,
 //! `-- cube` takes only the rows with this word.
 //!
-//! 1. A sphere, and a sphere of 20 480 triangles, against cells per diameter, at places all over a cell.
-//! 2. Spheres against their number. 3. Tessellated spheres against triangles. 4. Bodies at rest. 5. Shapes
-//! with edges, and the paper's rule.
+//! 1. A sphere, and one of 20 480 triangles, against cells per diameter, at places all over a cell.
+//! 2. Spheres against their number.
+//! 3. Tessellated spheres against triangles.
+//! 4. Cubes, and the paper's rule.
+//! 5. Bodies at rest.
 use cpu_time::ProcessTime;
 use ibm::{FractionRule, SolidFraction, TriangleMesh};
 use interfaces::{

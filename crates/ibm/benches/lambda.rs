@@ -1,17 +1,18 @@
-//! What λ costs, in ns per touched cell: one with λ > 0 after the update. Sample run:
-//! `cargo bench -p ibm --bench lambda` (a minute or so; add a number for more repetitions).
+//! What λ costs, in ns of CPU time per touched cell: one with λ > 0 after the update. Sample run:
+//! `cargo bench -p ibm --bench lambda` (a minute or so). `-- 50` repeats more often,
+//! `-- cube` takes only the rows with this word.
 //!
-//! 1. A sphere, and a sphere of 20 480 triangles, against cells per diameter, at places all over a cell.
+//! 1. A sphere, and one of 20 480 triangles, against cells per diameter, at places all over a cell.
 //! 2. Spheres against their number.
 //! 3. Tessellated spheres against triangles.
-//! 4. Bodies at rest.
-//! 5. Shapes with edges, and the paper's rule.
+//! 4. Cubes, and the paper's rule.
+//! 5. Bodies at rest.
+use cpu_time::ProcessTime;
 use ibm::{FractionRule, SolidFraction, TriangleMesh};
 use interfaces::{
     Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Lattice, Nodes, Point, Pose, Rotation, Solid, Twist,
     Vector,
 };
-use std::time::Instant;
 
 /// Equal bodies.
 struct Equal {
@@ -75,7 +76,7 @@ fn lattice(cells: usize, length: usize) -> Lattice {
     Lattice::new([axis(), axis(), axis()], 0, [1, n, n * n])
 }
 
-/// Nanoseconds per touched cell of moving all bodies, the best of several, touched cells and
+/// Nanoseconds of CPU time per touched cell of moving all bodies, the best of several, touched cells and
 /// (Σ λ V − V)/V for a body of `volume`.
 fn measure(
     bodies: &mut Equal,
@@ -94,7 +95,7 @@ fn measure(
             pose.position += Vector::new(0.011, 0.023, 0.017) * (1.0 + 0.1 * (b as f64 + s).sin());
             pose.orientation = Rotation::from_euler_angles(0.3 * s, 0.7 * s, 0.2 * s);
         }
-        let start = Instant::now();
+        let start = ProcessTime::now();
         fraction.update(lattice, bodies).expect("bodies on a grid");
         let time = start.elapsed().as_secs_f64();
         let nodes = || (0..bodies.poses.len()).flat_map(|b| fraction.nodes(BodyId(b)));
@@ -106,55 +107,78 @@ fn measure(
     (best, touched, worst)
 }
 
-fn report(name: &str, (ns, touched, worst): (f64, usize, f64)) {
-    println!("{name:<44} {touched:>9} cells  {ns:>8.1} ns/cell   volume off by at most {worst:.1e}");
+/// Prints the rows that were asked for.
+struct Table {
+    repeat: usize,
+    only: Option<String>,
+}
+
+impl Table {
+    fn wants(&self, name: &str) -> bool {
+        self.only.as_ref().is_none_or(|o| name.contains(o))
+    }
+    /// A body of `volume`, or several, on the lattice of so many cells per diameter and `length` diameters.
+    fn row(
+        &self,
+        name: &str,
+        mut bodies: Equal,
+        [cells, length]: [usize; 2],
+        volume: f64,
+        rule: FractionRule,
+    ) {
+        if !self.wants(name) {
+            return;
+        }
+        let (ns, touched, worst) = measure(&mut bodies, &lattice(cells, length), rule, volume, self.repeat);
+        println!("{name:<42} {touched:>8} cells {ns:>8.1} ns/cell, volume off by at most {worst:.1e}");
+    }
 }
 
 fn main() {
-    let repeat = std::env::args().filter_map(|a| a.parse().ok()).next().unwrap_or(20);
+    let arguments = || std::env::args().skip(1).filter(|a| !a.starts_with('-'));
+    let table = Table {
+        repeat: arguments().find_map(|a| a.parse().ok()).unwrap_or(20),
+        only: arguments().find(|a| a.parse::<usize>().is_err()),
+    };
     let sphere = std::f64::consts::PI / 6.0;
     let one = |solid: Box<dyn Solid>| Equal { solid, poses: vec![Pose::at([1.0; 3])] };
-    let mesh = |times| TriangleMesh::sphere(0.5, times).expect("a sphere");
-    let cut = FractionRule::CutVolume;
+    let mesh = |name: &str, times, cells| {
+        let mesh = TriangleMesh::sphere(0.5, times).expect("a sphere");
+        let (volume, name) =
+            (mesh.volume(), format!("{} triangles{name}, {cells} cells per D", mesh.n_faces()));
+        table.row(&name, one(Box::new(mesh)), [cells, 2], volume, FractionRule::CutVolume);
+    };
     for cells in [10, 20, 40] {
-        let lattice = lattice(cells, 2);
-        report(
-            &format!("sphere, {cells} cells per D"),
-            measure(&mut one(Box::new(Sphere)), &lattice, cut, sphere, repeat),
-        );
-        let mesh = mesh(5);
-        let volume = mesh.volume();
-        let name = format!("20480 triangles, {cells} cells per D");
-        report(&name, measure(&mut one(Box::new(mesh)), &lattice, cut, volume, repeat));
+        let name = format!("one sphere, {cells} cells per D");
+        table.row(&name, one(Box::new(Sphere)), [cells, 2], sphere, FractionRule::CutVolume);
+        mesh("", 5, cells);
     }
     for edge in [2, 4, 8] {
         let centres = (0..edge * edge * edge).map(|i| [i % edge, i / edge % edge, i / (edge * edge)]);
         let poses = centres.map(|c| Pose::at(c.map(|x| 1.2 * x as f64 + 0.6))).collect();
-        let mut bodies = Equal { solid: Box::new(Sphere), poses };
+        let bodies = Equal { solid: Box::new(Sphere), poses };
         let name = format!("{} spheres, 10 cells per D", edge * edge * edge);
-        report(&name, measure(&mut bodies, &lattice(10, 2 * edge), cut, sphere, repeat));
+        table.row(&name, bodies, [10, 2 * edge], sphere, FractionRule::CutVolume);
     }
-    for times in [2, 3, 4, 5, 6] {
-        let mesh = mesh(times);
-        let (volume, name) = (mesh.volume(), format!("{} triangles, 20 cells per D", mesh.n_faces()));
-        report(&name, measure(&mut one(Box::new(mesh)), &lattice(20, 2), cut, volume, repeat));
+    for times in [2, 3, 4, 6] {
+        mesh(" (series)", times, 20);
     }
     for cells in [10, 20, 40] {
         let name = format!("cube, {cells} cells per edge");
-        report(&name, measure(&mut one(Box::new(Cube)), &lattice(cells, 2), cut, 1.0, repeat));
+        table.row(&name, one(Box::new(Cube)), [cells, 2], 1.0, FractionRule::CutVolume);
     }
-    let paper = measure(&mut one(Box::new(Sphere)), &lattice(20, 2), FractionRule::Centroid, sphere, repeat);
-    report("sphere, the paper's rule, 20 cells per D", paper);
+    let name = "sphere, the paper's rule, 20 cells per D";
+    table.row(name, one(Box::new(Sphere)), [20, 2], sphere, FractionRule::Centroid);
 
     let poses =
         (0..512).map(|i| Pose::at([i % 8, i / 8 % 8, i / 64].map(|x| 1.2 * f64::from(x) + 0.6))).collect();
     let (bodies, lattice) = (Equal { solid: Box::new(Sphere), poses }, lattice(10, 10));
     let mut fraction = SolidFraction::new();
     fraction.update(&lattice, &bodies).expect("bodies on a grid");
-    let start = Instant::now();
+    let start = ProcessTime::now();
     for _ in 0..1000 {
         fraction.update(&lattice, &bodies).expect("bodies on a grid");
     }
     let ns = start.elapsed().as_secs_f64() * 1e9 / 1000.0 / 512.0;
-    println!("512 spheres at rest                          {ns:.1} ns per body and update");
+    println!("512 spheres at rest: {ns:.1} ns per body and update");
 }

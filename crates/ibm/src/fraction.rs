@@ -35,20 +35,25 @@ pub fn plane_fraction(d: f64, n: Vector, h: Vector) -> f64 {
 /// The solid fraction λ of a cell with edges `h` whose centre has signed distance `d`, outward
 /// normal `n` and sum of principal curvatures `curvature` \[1/m\].
 ///
-/// The cell is cut into halves along each axis; distance and normal at their centres follow from
-/// d(x) = d + n·x + ½κ|x_t|² with κ the mean curvature and x_t the part of x along the surface.
-/// Within a half, a surface that bulges leaves its tangent plane by ½κs² at distance s from the foot
-/// point; over the cuts of all cells s² is h²/12 per tangential direction on average, so the plane is
+/// A surface that bulges leaves its tangent plane by ½κs² at distance s from the foot point, κ the mean
+/// curvature; over the cuts of all cells s² is h²/12 per tangential direction on average, so the plane is
 /// moved inward by κh²/24 per direction. A plane alone would make a disc's λ sum to too much by
-/// h²/12R², a sphere's by h²/4R²; one plane so moved still by up to h²/50R² where the body is centred on
-/// the grid.
+/// h²/12R², a sphere's by h²/4R²; one so moved still by up to h²/80R² (sphere) where the average is missed because
+/// the body is centred on the grid.
+///
+/// So where κh is more than ⅛, or in the plane, the cell is first cut into halves along each axis;
+/// distance and normal at their centres follow from d(x) = d + n·x + ½κ|x_t|² with x_t the part of x along the
+/// surface.
 pub fn cell_fraction(d: f64, n: Vector, curvature: f64, h: Vector) -> f64 {
     let depth = if h.z == 0.0 { 1 } else { 2 };
     let bend = curvature / f64::from(depth);
+    let spread: f64 = (0..3).map(|a| h[a] * h[a] * (1.0 - n[a] * n[a])).sum();
+    if depth == 2 && (bend * h.max()).abs() < BENT {
+        return plane_fraction(d + bend * spread / 24.0, n, h);
+    }
     let (half, quarter) = (0.5 * h, 0.25 * h);
-    let spread: f64 = (0..3).map(|a| half[a] * half[a] * (1.0 - n[a] * n[a])).sum();
     // |x|² is the same at the centres of all halves, and |x_t|² = |x|² − (n·x)².
-    let moved = d + bend * (spread / 24.0 + 0.5 * quarter.norm_squared());
+    let moved = d + bend * (spread / 96.0 + 0.5 * quarter.norm_squared());
     let mut sum = 0.0;
     for part in 0..4 * depth {
         let sign = |bit: i32| if part >> bit & 1 == 1 { 1.0 } else { -1.0 };
@@ -60,6 +65,9 @@ pub fn cell_fraction(d: f64, n: Vector, curvature: f64, h: Vector) -> f64 {
     }
     sum / f64::from(4 * depth)
 }
+
+/// Above this κh one plane is not enough: a sphere 16 cells wide.
+const BENT: f64 = 0.125;
 
 #[cfg(test)]
 mod tests {

@@ -7,6 +7,9 @@
 //!   (figure 3);
 //! * [`SmoothForcing`]: forces on surface markers spread by a smooth kernel: for bodies that move.
 //!
+//! [`Reconstruction`] does the same for any scalar with values or gradients given, [`Pockets`] finds fluid that bodies
+//! have closed in, and with the feature `mesh` closed triangle meshes are bodies (`TriangleMesh`).
+//!
 //! The crate works on any [`interfaces::VelocityField`] and any [`interfaces::Bodies`].
 #![deny(missing_docs)]
 

@@ -20,8 +20,8 @@ use surface::{Nearest, Surface};
 /// Signed distances are exact: the nearest point is found with a tree of boxes, the sign from the
 /// angle-weighted pseudo-normal of the face, edge or vertex it lies on, which is right for every closed
 /// oriented 2-manifold (Bærentzen & Aanæs 2005, IEEE Trans. Vis. Comput. Graph. 11, 243), concave or
-/// with cavities. Meshes that intersect themselves are not found out; their sign is right outside all
-/// of the overlap only.
+/// with cavities. Meshes that intersect themselves, or touch themselves in a vertex, are not found out: signs may be
+/// wrong near there.
 #[derive(Clone, Debug)]
 pub struct TriangleMesh {
     surface: Surface,

@@ -125,7 +125,7 @@ impl Projector {
     /// Fills in the distances: exact where a cut cell needs them, of the right sign and not less than
     /// half a diagonal elsewhere.
     fn distances(&mut self, solid: &dyn Solid, to_body: Rotation, band: f64, dim: usize) {
-        let turn = to_body.to_rotation_matrix();
+        let [ex, ey, ez] = [Vector::x(), Vector::y(), Vector::z()].map(|e| to_body * e);
         let shape = [0, 1, 2].map(|a| self.columns[a].len());
         let blocks = shape.map(|n| n.div_ceil(BLOCK));
         let span = |a: usize, block: usize| block * BLOCK..((block + 1) * BLOCK).min(shape[a]);
@@ -146,7 +146,7 @@ impl Projector {
             let (z, hz) =
                 if dim == 2 { (columns_z[0].arm, 0.0) } else { middle(columns_z, span(2, block[2])) };
             farthest = farthest.max(hx * hx + hy * hy + hz * hz);
-            self.points.push(Point::from(turn * Vector::new(x, y, z)));
+            self.points.push(Point::from(ex * x + ey * y + ez * z));
         }
         // Cells of blocks farther away are not cut, nor are their neighbours' neighbours asked for.
         let far = farthest.sqrt() + band;
@@ -173,11 +173,10 @@ impl Projector {
                         self.distances[row..][span(0, block[0])].fill(value);
                         continue;
                     }
-                    let side = turn * Vector::new(0.0, columns_y[j].arm, columns_z[k].arm);
-                    let along = turn.matrix().column(0).into_owned();
+                    let side = ey * columns_y[j].arm + ez * columns_z[k].arm;
                     for i in span(0, block[0]) {
                         self.slots.push(row + i);
-                        self.points.push(Point::from(side + along * columns_x[i].arm));
+                        self.points.push(Point::from(side + ex * columns_x[i].arm));
                     }
                 }
             }

@@ -99,21 +99,25 @@ impl Reconstruction {
         fraction: &SolidFraction,
     ) {
         let n = fraction.n_bodies();
-        self.bodies.resize_with(n, Rows::default);
         self.covered.resize(storage, false);
-        let moved = |b: usize, rows: &Rows| rows.stamp != fraction.stamp(BodyId(b));
-        if !self.bodies.iter().enumerate().any(|(b, rows)| moved(b, rows)) {
-            return;
-        }
         let mut scratch = std::mem::take(&mut self.scratch);
         let (now, changed, work, seen) = &mut scratch;
+        // Boxes that were left or entered, those of bodies that are gone first.
+        changed.clear();
+        changed.extend(self.bodies.drain(n.min(self.bodies.len())..).filter_map(|rows| rows.bounds));
+        self.bodies.resize_with(n, Rows::default);
+        for (b, rows) in self.bodies.iter().enumerate() {
+            if rows.stamp != fraction.stamp(BodyId(b)) {
+                changed.extend(rows.bounds);
+                changed.push(bodies.aabb(BodyId(b)));
+            }
+        }
+        if changed.is_empty() {
+            self.scratch = scratch;
+            return;
+        }
         now.clear();
         now.extend((0..n).map(|b| bodies.aabb(BodyId(b))));
-        changed.clear();
-        for (b, rows) in self.bodies.iter().enumerate().filter(|(b, rows)| moved(*b, rows)) {
-            changed.extend(rows.bounds);
-            changed.push(now[b]);
-        }
         work.clear();
         work.extend((0..n).filter(|&b| changed.iter().any(|c| near(lattice, c, &now[b]))));
         seen.clear();

@@ -1,7 +1,6 @@
 //! A few neighbouring triangles and a box around them.
 use super::triangle::{Part, Triangle};
 use interfaces::{Point, Vector};
-use nalgebra::Matrix3;
 use std::ops::Range;
 
 /// At most so many triangles go into a cluster.
@@ -11,8 +10,8 @@ const MOST: usize = 8;
 /// nearly theirs: few clusters have to be opened to find the nearest of all triangles.
 #[derive(Clone, Debug)]
 pub(crate) struct Cluster {
-    /// Rows: the box's axes.
-    axes: Matrix3<f64>,
+    /// Of the box.
+    axes: [Vector; 3],
     middle: Vector,
     half: Vector,
     pub(crate) faces: Range<u32>,
@@ -31,9 +30,8 @@ impl Cluster {
         let far = |a: &Vector, b: &Vector| a.norm_squared().total_cmp(&b.norm_squared());
         let along = corners().map(|c| level(c - start)).max_by(far).and_then(|v| v.try_normalize(0.0));
         let along = along.unwrap_or_else(|| level(Vector::x()));
-        let axes =
-            Matrix3::from_rows(&[along.transpose(), normal.cross(&along).transpose(), normal.transpose()]);
-        let turned = || corners().map(|c| axes * c);
+        let axes = [along, normal.cross(&along), normal];
+        let turned = || corners().map(|c| Vector::from(axes.map(|a| a.dot(&c))));
         let low = turned().fold(Vector::repeat(f64::INFINITY), |low, c| low.inf(&c));
         let high = turned().fold(Vector::repeat(f64::NEG_INFINITY), |high, c| high.sup(&c));
         // A little wider, for round-off: the distance to the box must not be more than theirs.
@@ -45,7 +43,8 @@ impl Cluster {
     /// The square of the distance of `x` from the box, which is not more than that from any of its triangles.
     #[inline]
     fn least(&self, x: Point) -> f64 {
-        let gap = (self.axes * x.coords - self.middle).abs() - self.half;
+        let turned = Vector::from(self.axes.map(|a| a.dot(&x.coords)));
+        let gap = (turned - self.middle).abs() - self.half;
         gap.map(|g| g.max(0.0)).norm_squared()
     }
 

@@ -140,3 +140,21 @@ fn bodies_far_from_movers_keep_their_cells() {
     assert_ne!(distances(&reconstruction, 0), before[0]);
     assert_eq!(distances(&reconstruction, 2), before[1]);
 }
+
+/// A body that is taken away no longer stands in its neighbour's way.
+#[test]
+fn bodies_that_are_gone_are_forgotten() {
+    let lattice = lattice(2, [0.025; 3], 3.0);
+    let mut fraction = SolidFraction::new();
+    let mut reconstruction = Reconstruction::new(Profile::Quadratic, Given::Value);
+    let lowered: Vec<usize> = [vec![[0.5, 0.5, 0.0], [0.95, 0.5, 0.0]], vec![[0.5, 0.5, 0.0]]]
+        .into_iter()
+        .map(|centres| {
+            let bodies = Balls::new(2, 0.2, centres);
+            fraction.update(&lattice, &bodies).unwrap();
+            reconstruction.place(&lattice, 14_400, &bodies, &fraction);
+            reconstruction.cells(BodyId(0)).iter().filter(|c| c.points[1].is_none()).count()
+        })
+        .collect();
+    assert!(lowered[0] > 0 && lowered[1] == 0, "{lowered:?}");
+}

@@ -1,0 +1,106 @@
+use super::*;
+use crate::testing::{Balls, Collocated, lattice};
+use interfaces::{Nodes, Twist};
+
+fn scene(u: impl Fn([f64; 3]) -> [f64; 3]) -> (Balls, Collocated, SmoothForcing) {
+    let mut bodies = Balls::new(2, 0.5, vec![[0.1, 1.2, 0.0]]);
+    bodies.twists[0] = Twist { linear: Vector::new(0.3, -0.2, 0.0), angular: Vector::new(0.0, 0.0, 0.7) };
+    let velocity = Collocated::new(lattice(2, [0.05; 3], 3.0), u);
+    let mut forcing = SmoothForcing::new(2.0);
+    forcing.place(&velocity, &bodies).unwrap();
+    (bodies, velocity, forcing)
+}
+
+/// What the fluid gets the body loses, linear and angular momentum, over a periodic side.
+#[test]
+fn momentum_is_conserved() {
+    let (bodies, mut velocity, mut forcing) = scene(|x| [x[1].sin(), x[0].cos(), 0.0]);
+    let total = |v: &Collocated| {
+        let mass = 2.0 * v.lattice.volume([0; 3]);
+        Vector::new(v.values[0].iter().sum::<f64>() * mass, v.values[1].iter().sum::<f64>() * mass, 0.0)
+    };
+    let before = total(&velocity);
+    forcing.force(&mut velocity, &bodies);
+    let gained = total(&velocity) - before;
+    let reaction = forcing.reaction(BodyId(0)).force;
+    assert!(reaction.norm() > 0.1);
+    // Round-off of the sums over the whole field.
+    assert!((gained + reaction).norm() < 1e-14 * 2.0 * 9.0, "{gained} {reaction}");
+}
+
+/// More passes leave less slip; fluid that moves with the body is left alone.
+#[test]
+fn passes_remove_the_slip() {
+    let (bodies, velocity, _) = scene(|_| [0.0; 3]);
+    let mut last = f64::INFINITY;
+    for passes in [1, 3, 10] {
+        let mut u = Collocated { lattice: velocity.lattice.clone(), values: velocity.values.clone() };
+        let mut forcing = SmoothForcing::new(2.0).with_passes(passes);
+        forcing.place(&u, &bodies).unwrap();
+        forcing.force(&mut u, &bodies);
+        let slip = forcing.slip(&u, &bodies);
+        assert!(slip < 0.7 * last, "{passes}: {slip} after {last}");
+        last = slip;
+    }
+    assert!(last < 0.02, "{last}");
+    let (bodies, mut velocity, mut forcing) = scene(|x| {
+        // Rigid motion about the body's centre, which stands across the periodic side.
+        let rx = x[0] - 0.1 - 3.0 * ((x[0] - 0.1) / 3.0).round();
+        [0.3 - 0.7 * (x[1] - 1.2), -0.2 + 0.7 * rx, 0.0]
+    });
+    forcing.force(&mut velocity, &bodies);
+    assert!(forcing.reaction(BodyId(0)).force.norm() < 1e-13);
+    assert!(forcing.slip(&velocity, &bodies) < 1e-13);
+}
+
+/// A body cut by a bounded side: the stencils that are cut off too do not make passes diverge.
+#[test]
+fn passes_converge_at_a_wall() {
+    let mut bodies = Balls::new(2, 0.5, vec![[1.5, 0.44, 0.0]]);
+    bodies.twists[0].linear.x = 1.0;
+    let axes = [true, false].map(|periodic| Nodes::uniform(0.025, 0.05, 60, periodic));
+    let lattice = Lattice::new(axes, 0, [1, 60]);
+    let slip = |passes| {
+        let mut u = Collocated::new(lattice.clone(), |_| [0.0; 3]);
+        let mut forcing = SmoothForcing::new(2.0).with_passes(passes);
+        forcing.place(&u, &bodies).unwrap();
+        forcing.force(&mut u, &bodies);
+        forcing.slip(&u, &bodies)
+    };
+    let slips = [1, 3, 10, 100].map(slip);
+    assert!(slips.windows(2).all(|s| s[1] < 0.9 * s[0]) && slips[3] < 0.1, "{slips:?}");
+}
+
+/// b − M·v = Σ (1−χ) w (û − U − Ω×r), and its moment, for every v.
+#[test]
+fn the_layer_foresees_what_the_markers_outside_take() {
+    let (bodies, velocity, forcing) = scene(|x| [x[1].sin(), x[0].cos(), 0.0]);
+    let (layer, twist) = (forcing.layer(&velocity, BodyId(0)), bodies.twists[0]);
+    let v = nalgebra::Vector6::new(twist.linear.x, twist.linear.y, 0.0, 0.0, 0.0, twist.angular.z);
+    let foreseen = layer.momentum - layer.mass * v;
+    let markers = &forcing.bodies[0];
+    let mut sum = Wrench::default();
+    for (m, &arm) in markers.arms.iter().enumerate() {
+        let mut force = Vector::zeros();
+        for c in 0..2 {
+            let found = markers.stencils[c][m].read(&velocity.values[c]);
+            force[c] = markers.outside[c][m] * markers.masses[m] * (found - twist.at(arm)[c]);
+            // Markers stand a third of a cell inside: somewhat less than half of what they
+            // reach is outside.
+            assert!((0.1..0.5).contains(&markers.outside[c][m]), "{}", markers.outside[c][m]);
+        }
+        sum += Wrench::at(force, arm);
+    }
+    let known = [sum.force.x, sum.force.y, 0.0, 0.0, 0.0, sum.torque.z];
+    for (i, known) in known.into_iter().enumerate() {
+        assert!((foreseen[i] - known).abs() < 1e-13, "{i}: {} {known}", foreseen[i]);
+    }
+}
+
+#[test]
+fn too_coarse_a_grid_is_refused() {
+    let bodies = Balls::new(2, 0.5, vec![[1.0, 1.0, 0.0]]);
+    let velocity = Collocated::new(lattice(2, [0.3; 3], 3.0), |_| [0.0; 3]);
+    let error = SmoothForcing::new(1.0).place(&velocity, &bodies).unwrap_err();
+    assert!(matches!(error, IbmError::TooCoarse { .. }), "{error}");
+}

@@ -17,12 +17,20 @@ pub struct Nodes {
 }
 
 /// Nodes that are not equally spaced.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 struct Table {
     /// Nodes −1 to n.
     places: Arc<[f64]>,
     /// Ends of the control volumes of the nodes 0 to n − 1: entries i and i + 1.
     edges: Arc<[f64]>,
+}
+
+impl PartialEq for Table {
+    /// Copies of one table are not compared number by number.
+    fn eq(&self, other: &Self) -> bool {
+        let same = |a: &Arc<[f64]>, b: &Arc<[f64]>| Arc::ptr_eq(a, b) || a == b;
+        same(&self.places, &other.places) && same(&self.edges, &other.edges)
+    }
 }
 
 impl Nodes {
@@ -31,12 +39,10 @@ impl Nodes {
         Self { len, periodic, first, spacing, table: None }
     }
 
-    /// The centres of the cells between these increasing `faces` \[m\]; mirrored at bounded ends.
-    ///
-    /// # Panics
-    /// With less than two faces.
+    /// The centres of the cells between these increasing `faces` \[m\]; mirrored at bounded ends. Less than two
+    /// faces have none.
     pub fn centres(faces: &[f64], periodic: bool) -> Self {
-        let n = faces.len() - 1;
+        let Some(n) = cells(faces) else { return Self::uniform(0.0, 1.0, 0, false) };
         let centre = |i: usize| 0.5 * (faces[i] + faces[i + 1]);
         let length = faces[n] - faces[0];
         let (below, above) = if periodic {
@@ -50,11 +56,8 @@ impl Nodes {
 
     /// The `faces` \[m\] themselves, with control volumes from cell centre to cell centre: all but
     /// the first and last where the axis is bounded, all but the last where it is periodic.
-    ///
-    /// # Panics
-    /// With less than two faces.
     pub fn faces(faces: &[f64], periodic: bool) -> Self {
-        let n = faces.len() - 1;
+        let Some(n) = cells(faces) else { return Self::uniform(0.0, 1.0, 0, false) };
         let mut edges: Vec<f64> = faces.windows(2).map(|w| 0.5 * (w[0] + w[1])).collect();
         let mut places = faces.to_vec();
         if periodic {
@@ -192,6 +195,11 @@ impl Nodes {
     }
 }
 
+/// How many cells there are between these faces, if any.
+fn cells(faces: &[f64]) -> Option<usize> {
+    faces.len().checked_sub(1).filter(|&n| n > 0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -231,6 +239,17 @@ mod tests {
                     let x = f64::from(step) / 32.0;
                     assert_eq!(a.locate(x), b.locate(x), "{x}");
                     assert_eq!(a.range(x, x + 0.7), b.range(x, x + 0.7), "{x}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_single_face_holds_nothing() {
+        for periodic in [false, true] {
+            for faces in [&[][..], &[2.0]] {
+                for nodes in [Nodes::centres(faces, periodic), Nodes::faces(faces, periodic)] {
+                    assert!(nodes.is_empty() && nodes.wrap(0).is_none() && nodes.range(-9.0, 9.0).is_empty());
                 }
             }
         }

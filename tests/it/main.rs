@@ -7,7 +7,10 @@ mod physics;
 mod restart;
 mod skipping;
 mod stretched;
+mod walls;
 
+#[path = "../../benches/immersed/scene.rs"]
+mod immersed;
 #[path = "../../examples/falling_discs/scene.rs"]
 mod scene;
 

@@ -55,6 +55,15 @@ pub enum FlowError {
         /// The longest stable one \[s\].
         limit: f64,
     },
+    /// The immersed walls leave no pressure equation that can be solved.
+    #[error(
+        "the pressure equation of the {faces} faces that immersed walls cut is not positive definite to round-off; check \
+         that no wall is cut twice within a cell, or refine the grid there"
+    )]
+    Walls {
+        /// Faces that are partly closed.
+        faces: usize,
+    },
     /// The velocity is no longer finite, or grew beyond what a step can carry.
     #[error(
         "the velocity diverged in step {step} (t = {time} s, dt = {dt} s, Courant number {courant:.3e}), first or most in cell \

@@ -24,6 +24,7 @@ pub mod algebra;
 mod axis;
 mod boundary;
 mod convection;
+mod cut;
 mod diffusion;
 mod error;
 mod field;

@@ -54,6 +54,19 @@ pub enum IbmError {
         /// Period of the grid \[m\].
         period: f64,
     },
+    /// No velocity node is inside the body.
+    #[error(
+        "body {} is {size:.3e} m across and no node of some velocity component is inside it (the nodes are about {spacing:.3e} m \
+         apart): refine the grid there or make the body thicker than a cell", body.0
+    )]
+    Unseen {
+        /// The body.
+        body: BodyId,
+        /// Its smallest extent \[m\].
+        size: f64,
+        /// Mean distance of the nodes \[m\].
+        spacing: f64,
+    },
     /// A body's place is not finite.
     #[error("body {} stands at {position:?}, which is not finite; the run has diverged: take a smaller time step", body.0)]
     Lost {

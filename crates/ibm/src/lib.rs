@@ -13,6 +13,7 @@
 //! The crate works on any [`interfaces::VelocityField`] and any [`interfaces::Bodies`].
 #![deny(missing_docs)]
 
+mod cut_link;
 mod error;
 mod forcing;
 mod fraction;
@@ -30,6 +31,7 @@ mod subcells;
 #[cfg(test)]
 mod testing;
 
+pub use cut_link::cut_walls;
 pub use error::IbmError;
 pub use forcing::{Forcing, Layer};
 pub use fraction::{cell_fraction, plane_fraction};

@@ -135,7 +135,7 @@ impl SolidFraction {
     }
 }
 
-fn check<B: Bodies + ?Sized>(lattice: &Lattice, bodies: &B, body: BodyId) -> Result<(), IbmError> {
+pub(crate) fn check<B: Bodies + ?Sized>(lattice: &Lattice, bodies: &B, body: BodyId) -> Result<(), IbmError> {
     let pose = bodies.pose(body);
     let turned = pose.orientation.coords.iter().all(|q| q.is_finite());
     if !(turned && pose.position.iter().all(|x| x.is_finite())) {

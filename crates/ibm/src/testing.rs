@@ -139,3 +139,47 @@ impl VelocityField for Collocated {
         &mut self.values[c]
     }
 }
+
+/// A periodic staggered velocity field: component c on the lower faces along axis c of cells of width `h`.
+pub(crate) struct Staggered {
+    lattices: Vec<Lattice>,
+    pub(crate) values: Vec<Vec<f64>>,
+}
+
+impl Staggered {
+    pub(crate) fn new<const D: usize>(cells: [usize; D], h: f64, origin: [f64; D]) -> Self {
+        let mut stride = [1; D];
+        for a in 1..D {
+            stride[a] = stride[a - 1] * cells[a - 1];
+        }
+        let lattice = |c: usize| {
+            let axis =
+                |a: usize| Nodes::uniform(origin[a] + if a == c { 0.0 } else { 0.5 * h }, h, cells[a], true);
+            Lattice::new(std::array::from_fn::<_, D, _>(axis), 0, stride)
+        };
+        Self { lattices: (0..D).map(lattice).collect(), values: vec![vec![0.0; cells.iter().product()]; D] }
+    }
+    /// Sets every component to `u` at its nodes.
+    pub(crate) fn set(&mut self, u: impl Fn([f64; 3]) -> [f64; 3]) {
+        for (c, (lattice, values)) in self.lattices.iter().zip(&mut self.values).enumerate() {
+            for (index, value) in values.iter_mut().enumerate() {
+                *value = u(lattice.position(lattice.node(index)))[c];
+            }
+        }
+    }
+}
+
+impl VelocityField for Staggered {
+    fn dim(&self) -> usize {
+        self.values.len()
+    }
+    fn lattice(&self, c: usize) -> &Lattice {
+        &self.lattices[c]
+    }
+    fn component(&self, c: usize) -> &[f64] {
+        &self.values[c]
+    }
+    fn component_mut(&mut self, c: usize) -> &mut [f64] {
+        &mut self.values[c]
+    }
+}

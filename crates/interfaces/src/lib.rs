@@ -19,6 +19,7 @@
 #![deny(missing_docs)]
 
 mod bodies;
+mod cut_walls;
 mod geometry;
 mod lattice;
 mod nodes;
@@ -28,6 +29,7 @@ mod transport;
 pub mod vtk;
 
 pub use bodies::{Bodies, BodyId, Dynamics, Freedom, Inertia, Kinematics, Load};
+pub use cut_walls::{CutComponent, CutFace, CutNode, CutWalls, Link, SolidPoint};
 pub use geometry::{Aabb, Periods, Point, Pose, Rotation, Twist, Vector, Wrench};
 pub use lattice::{Lattice, VelocityField};
 pub use nodes::Nodes;

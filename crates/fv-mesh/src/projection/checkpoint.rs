@@ -13,6 +13,9 @@ impl<const D: usize> Checkpoint for Projection<D> {
         if self.pressure_solver.remembers() {
             sink("correction", &self.phi);
         }
+        if let Some(walls) = &self.walls {
+            walls.save(sink);
+        }
         sink("implicit", &self.diffusion.last.map(|i| f64::from(u8::from(i))));
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
@@ -23,6 +26,9 @@ impl<const D: usize> Checkpoint for Projection<D> {
         restore_list(source, "friction", self.friction[0].as_mut_slice())?;
         if self.pressure_solver.remembers() {
             restore_list(source, "correction", &mut self.phi)?;
+        }
+        if let Some(walls) = &mut self.walls {
+            walls.restore(source)?;
         }
         let implicit = RestartError::take(source, "implicit", D)?;
         self.diffusion.last = std::array::from_fn(|a| implicit[a] != 0.0);

@@ -2,6 +2,7 @@
 mod checkpoint;
 mod sources;
 
+use crate::cut::{Step, Walls};
 use crate::diffusion::{SplitDiffusion, stiffness};
 use crate::flow_state::{FlowState, show_clock, show_state};
 use crate::implicit::ImplicitDiffusion;
@@ -11,7 +12,7 @@ use crate::per_dimension::per_dimension;
 use crate::poisson::{PoissonError, PoissonInfo};
 use crate::pressure::{Pressure, PressureSolver};
 use crate::{CartesianGrid, Convection, Diffusion, Field, FlowError, Fluid, Side, walls};
-use interfaces::Vector;
+use interfaces::{CutWalls, Vector, Wrench};
 use sources::Sources;
 
 /// Incompressible flow by incremental pressure projection on a staggered grid:
@@ -45,6 +46,7 @@ pub struct Projection<const D: usize> {
     /// What the sides did at the last two predictor steps, per time, and their impulse in the last step.
     friction: [Vector; 2],
     wall_impulse: Vector,
+    walls: Option<Box<Walls<D>>>,
 }
 
 /// Adams–Bashforth is used while a step is at most so many times longer than the last.
@@ -78,6 +80,7 @@ impl<const D: usize> Projection<D> {
             rest_pressure: Vec::new(),
             friction: [Vector::zeros(); 2],
             wall_impulse: Vector::zeros(),
+            walls: None,
             state,
         };
         if let Some(rhs) = flow.state.boundaries.given_pressures() {
@@ -189,6 +192,10 @@ impl<const D: usize> Projection<D> {
                 kernels::change(grid, 1.0, u, next);
             }
         }
+        if let Some(walls) = &mut self.walls {
+            let step = Step { dt, weights, viscosity: fluid.viscosity, density };
+            walls.hold(step, velocity, &mut self.next);
+        }
         std::mem::swap(velocity, &mut self.next);
         boundaries.advance_outlets(metrics, velocity, dt, fluid.viscosity)?;
         boundaries.advance_pressure_faces(metrics, [&self.next, velocity], pressure, *fluid, dt);
@@ -233,16 +240,32 @@ impl<const D: usize> Projection<D> {
     }
 
     fn project_here(&mut self, dt: f64) -> Result<(), FlowError> {
+        if let Some(walls) = &mut self.walls {
+            walls.show_fluxes(&mut self.state.velocity.components);
+        }
         self.state.fill_velocity();
         let FlowState { grid, metrics, boundaries, fluid, velocity, pressure, .. } = &mut self.state;
         let velocity = &mut velocity.components;
         let scale = fluid.density / dt;
-        let solved = self.pressure_solver.solve_rows(
-            // Called from code that is compiled for the processor at hand.
-            #[inline(always)]
-            |r, row: &mut [f64]| kernels::divergence_row(grid, metrics, r, velocity, scale, row),
-            &mut self.phi,
-        );
+        let solved = match &mut self.walls {
+            None => self.pressure_solver.solve_rows(
+                // Called from code that is compiled for the processor at hand.
+                #[inline(always)]
+                |r, row: &mut [f64]| kernels::divergence_row(grid, metrics, r, velocity, scale, row),
+                &mut self.phi,
+            ),
+            Some(walls) => {
+                let fluxes: &_ = velocity;
+                let solved = walls.pressure.solve(
+                    &mut self.pressure_solver,
+                    #[inline(always)]
+                    |r, row: &mut [f64]| kernels::divergence_row(grid, metrics, r, fluxes, scale, row),
+                    &mut self.phi,
+                );
+                walls.show_nodes(velocity);
+                solved
+            }
+        };
         match solved {
             Err(PoissonError::NonFinite { .. }) => return Err(self.state.diverged(dt)),
             other => other?,
@@ -253,6 +276,10 @@ impl<const D: usize> Projection<D> {
         }
         boundaries.correct(answer, &self.phi);
         kernels::add_dense(grid, &self.phi, pressure);
+        if let Some(walls) = &mut self.walls {
+            walls.hold_solid(fluid.density, velocity);
+            walls.pressure.smooth_orphans(pressure);
+        }
         let implicit = self.diffusion.last;
         if implicit.contains(&true) {
             let [_, nu] = self.diffusion.parts(implicit);
@@ -297,6 +324,48 @@ impl<const D: usize> Projection<D> {
         self.finish(dt)
     }
 
+    /// Puts immersed walls into the flow, or takes them out: the viscous terms go to the walls along cut links, the fluxes
+    /// through the open parts of the faces, and the pressure acts on those. Diffusion has to be explicit.
+    ///
+    /// Walls that are where the last ones were cost nothing; new ones take a solution of the pressure equation per cut face.
+    ///
+    /// # Errors
+    /// [`FlowError::Parameter`] for walls on another grid or implicit diffusion, [`FlowError::Walls`], and those of the
+    /// pressure solver.
+    pub fn set_walls(&mut self, walls: Option<CutWalls>) -> Result<(), FlowError> {
+        per_dimension!(self, Projection, set_walls_here(walls: Option<CutWalls>) -> Result<(), FlowError>)
+    }
+
+    fn set_walls_here(&mut self, walls: Option<CutWalls>) -> Result<(), FlowError> {
+        let Some(cuts) = walls else {
+            self.walls = None;
+            return Ok(());
+        };
+        // Cut links would couple the lines of an implicit axis.
+        match self.diffusion.mode {
+            Diffusion::Implicit => {
+                let range = "Explicit or Auto in a flow with immersed walls";
+                return Err(FlowError::Parameter { name: "Diffusion::Implicit", value: 1.0, range });
+            }
+            _ => self.diffusion.mode = Diffusion::Explicit,
+        }
+        let FlowState { grid, metrics, .. } = &self.state;
+        match &mut self.walls {
+            Some(walls) => walls.set(cuts, grid, metrics)?,
+            None => self.walls = Some(Box::new(Walls::new(cuts, grid, metrics)?)),
+        }
+        if let Some(walls) = &mut self.walls {
+            walls.pressure.prepare(&mut self.pressure_solver, &mut self.phi)?;
+            self.state.fill_walls(&walls.cuts);
+        }
+        Ok(())
+    }
+
+    /// Impulse of the fluid on each body of the walls in the last step \[N s, N m s\], about the body's centre of mass.
+    pub fn wall_impulses(&self) -> &[Wrench] {
+        self.walls.as_ref().map_or(&[], |walls| &walls.impulses)
+    }
+
     /// The longest step \[s\] for which Adams–Bashforth diffusion is stable along all axes: 1/(4ν Σ 1/h²) on a uniform periodic
     /// grid, 13 % less between walls (a quarter less if fewer than ten cells are).
     pub fn viscous_limit(&self) -> f64 {
@@ -322,7 +391,11 @@ impl<const D: usize> Projection<D> {
     }
     /// What the last pressure solution told: iterations, residual.
     pub fn pressure_info(&self) -> PoissonInfo {
-        self.pressure_solver.info()
+        let info = self.pressure_solver.info();
+        match &self.walls {
+            Some(walls) => PoissonInfo { iterations: walls.pressure.iterations, ..info },
+            None => info,
+        }
     }
     /// Net outflow \[m³/s\] that the outlets, or without any the inlets, were shifted by in the last step, so that what
     /// enters leaves.

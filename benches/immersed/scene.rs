@@ -1,0 +1,95 @@
+//! Bodies that stand still, or turn in themselves.
+use siltflow::interfaces::{
+    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Point, Pose, Solid, Twist, Vector,
+};
+
+/// Some solids, with their place and motion.
+#[derive(Default)]
+pub(crate) struct Scene {
+    solids: Vec<Box<dyn Solid>>,
+    poses: Vec<Pose>,
+    twists: Vec<Twist>,
+}
+
+impl Scene {
+    /// The same with one more.
+    pub(crate) fn with(mut self, solid: impl Solid + 'static, at: [f64; 3], turning: f64) -> Self {
+        self.solids.push(Box::new(solid));
+        self.poses.push(Pose::at(at));
+        self.twists.push(Twist { linear: Vector::zeros(), angular: Vector::new(0.0, 0.0, turning) });
+        self
+    }
+}
+
+impl Kinematics for Scene {
+    fn n_bodies(&self) -> usize {
+        self.solids.len()
+    }
+    fn pose(&self, b: BodyId) -> Pose {
+        self.poses[b.0]
+    }
+    fn twist(&self, b: BodyId) -> Twist {
+        self.twists[b.0]
+    }
+}
+
+impl Bodies for Scene {
+    fn solid(&self, b: BodyId) -> &dyn Solid {
+        &*self.solids[b.0]
+    }
+    fn inertia(&self, _: BodyId) -> Inertia {
+        Inertia { mass: 1.0, volume: 1.0, tensor: nalgebra::Matrix3::identity() }
+    }
+    fn freedom(&self, _: BodyId) -> Freedom {
+        Freedom::NONE
+    }
+}
+
+/// All that is not within `radius` of the axis z.
+pub(crate) struct Bore {
+    pub(crate) radius: f64,
+    /// Half-widths of the box it fills.
+    pub(crate) half: [f64; 2],
+}
+
+impl Solid for Bore {
+    fn signed_distance(&self, x: Point, _: f64) -> f64 {
+        self.radius - x.x.hypot(x.y)
+    }
+    fn aabb(&self) -> Aabb {
+        Aabb::around(Point::origin(), Vector::new(self.half[0], self.half[1], 0.0))
+    }
+}
+
+/// All of a doubly periodic box but a channel along its diagonal and the channel's images.
+pub(crate) struct Banks {
+    /// Edge lengths of the box.
+    pub(crate) lengths: [f64; 2],
+    /// Width of the channel.
+    pub(crate) width: f64,
+}
+
+impl Banks {
+    /// Unit vectors along the channel and across.
+    pub(crate) fn axes(&self) -> [[f64; 2]; 2] {
+        let [x, y] = self.lengths;
+        let l = x.hypot(y);
+        [[x / l, y / l], [-y / l, x / l]]
+    }
+    /// Signed distance from the channel's middle line.
+    pub(crate) fn across(&self, x: [f64; 2]) -> f64 {
+        let [_, n] = self.axes();
+        let period = self.lengths[0] * n[0].abs();
+        let d = n[0] * x[0] + n[1] * x[1];
+        d - period * (d / period).round()
+    }
+}
+
+impl Solid for Banks {
+    fn signed_distance(&self, x: Point, _: f64) -> f64 {
+        0.5 * self.width - self.across([x.x, x.y]).abs()
+    }
+    fn aabb(&self) -> Aabb {
+        Aabb::around(Point::origin(), Vector::new(0.5 * self.lengths[0], 0.5 * self.lengths[1], 0.0))
+    }
+}

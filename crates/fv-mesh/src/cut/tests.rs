@@ -1,0 +1,268 @@
+use super::*;
+use crate::boundary::Boundaries;
+use crate::flow_state::each_cell;
+use crate::pressure::{Pressure, PressureSolver};
+use crate::{Diffusion, Fluid, Projection, Side, Sides};
+use interfaces::{Checkpoint, CutComponent, CutFace, CutNode, Link, SolidPoint, Vector, VelocityField};
+use proptest::prelude::*;
+use std::collections::HashMap;
+
+/// A face with this share open.
+fn face(index: usize, open: f64) -> CutFace {
+    CutFace { index, open, constant: 0.0, terms: [(index, 0.0); 5] }
+}
+
+/// All between the lower side and `height` solid, the wall moving along x; cells are 1/`n` wide.
+fn bed(flow: &Projection<2>, height: f64, n: usize, speed: f64) -> CutWalls {
+    let h = 1.0 / n as f64;
+    let mut walls = CutWalls { n_bodies: 1, ..CutWalls::default() };
+    for c in 0..2 {
+        let lattice = flow.velocity().lattice(c);
+        let [nx, ny, _] = lattice.shape();
+        let CutComponent { solid, links, faces } = &mut walls.components[c];
+        for at in (0..nx * ny).map(|i| [(i % nx) as isize, (i / nx) as isize, 0]) {
+            let (y, index) = (lattice.position(at)[1], lattice.index(at).unwrap());
+            let (body, arm, velocity) = (0, Vector::zeros(), if c == 0 { speed } else { 0.0 });
+            if y <= height {
+                solid.push(SolidPoint { index, velocity, body, arm });
+            } else if y - height < h {
+                let mut node = CutNode { index, body, arm, links: [[None; 2]; 3] };
+                node.links[1][0] = Some(Link { fraction: (y - height) / h, velocity });
+                links.push(node);
+            }
+            let open = if c == 0 {
+                ((y - height) / h + 0.5).clamp(0.0, 1.0)
+            } else {
+                f64::from(u8::from(y > height))
+            };
+            if open < 1.0 {
+                // Along x the flow is the same everywhere: only what differs from face to face counts.
+                faces.push(face(index, open));
+            }
+        }
+    }
+    walls
+}
+
+fn channel(n: usize, height: f64, speed: f64) -> Projection<2> {
+    let grid = CartesianGrid::new([4, n], [4.0 / n as f64, 1.0]).unwrap();
+    // The side below moves with the bed.
+    let sides = [Side::Periodic.both(), [Side::Wall([speed, 0.0, 0.0]), Side::WALL]];
+    let mut flow = Projection::new(grid, sides, Fluid { density: 2.0, viscosity: 0.5 }).unwrap();
+    let walls = bed(&flow, height, n, speed);
+    flow.set_walls(Some(walls)).unwrap();
+    flow
+}
+
+/// The parabola between a wall inside the cells and the side is exact wherever the wall is, and the wall bears its share.
+#[test]
+fn flow_over_a_bed_is_exact() {
+    for (height, speed) in [(0.23, 0.0), (0.3, 0.0), (0.317, 0.4), (0.2001, -0.3)] {
+        let mut flow = channel(10, height, speed);
+        let force = 1.5;
+        for _ in 0..1500 {
+            flow.advance(0.9 * flow.viscous_limit(), [force, 0.0]).unwrap();
+        }
+        let gap = 1.0 - height;
+        let lattice = flow.velocity().lattice(0);
+        for at in (0..10).map(|j| [1, j, 0]) {
+            let s = (lattice.position(at)[1] - height) / gap;
+            let wanted = if s <= 0.0 { speed } else { speed * (1.0 - s) + force * gap * gap * s * (1.0 - s) };
+            let found = flow.velocity().component(0)[lattice.index(at).unwrap()];
+            assert!((found - wanted).abs() < 1e-9, "{height} {at:?} {found} {wanted}");
+        }
+        // The momentum balance, and the shear on the side above.
+        let impulse = flow.wall_impulses()[0].force / flow.last_dt();
+        let side = flow.wall_impulse() / flow.last_dt();
+        let total = 2.0 * force * flow.grid().volume();
+        assert!((impulse.x - side.x - total).abs() < 1e-9 * total, "{impulse} {side} {total}");
+        let shear = 0.5 * 2.0 * (force * gap + speed / gap) * 0.4;
+        assert!((-side.x - shear).abs() < 1e-8, "{side} {shear}");
+    }
+}
+
+#[test]
+fn walls_are_restarted_bit_for_bit() {
+    let step = |flow: &mut Projection<2>, n: usize| {
+        for _ in 0..n {
+            flow.advance(1e-3, [0.3, 0.1]).unwrap();
+        }
+    };
+    let mut whole = channel(10, 0.27, 0.2);
+    step(&mut whole, 9);
+    let mut first = channel(10, 0.27, 0.2);
+    step(&mut first, 4);
+    let mut saved = HashMap::new();
+    first.save(&mut |name, values| drop(saved.insert(name.to_string(), values.to_vec())));
+    let mut second = channel(10, 0.27, 0.2);
+    second.restore(&|name| saved.get(name).map(Vec::as_slice)).unwrap();
+    step(&mut second, 5);
+    for c in 0..2 {
+        assert_eq!(whole.velocity().component(c), second.velocity().component(c));
+    }
+    assert_eq!(whole.pressure().data(), second.pressure().data());
+}
+
+#[test]
+fn impossible_walls_are_errors() {
+    let mut flow = channel(10, 0.27, 0.0);
+    let mut far = CutWalls { n_bodies: 1, ..CutWalls::default() };
+    far.components[1].faces.push(face(1 << 40, 0.5));
+    assert!(matches!(flow.set_walls(Some(far)), Err(FlowError::Parameter { .. })));
+    let grid = CartesianGrid::new([4, 10], [0.4, 1.0]).unwrap();
+    let sides = [Side::Periodic.both(), Side::WALL.both()];
+    let fluid = Fluid { density: 1.0, viscosity: 1.0 };
+    let mut implicit = Projection::new(grid, sides, fluid).unwrap().with_diffusion(Diffusion::Implicit);
+    let walls = bed(&implicit, 0.3, 10, 0.0);
+    assert!(matches!(implicit.set_walls(Some(walls)), Err(FlowError::Parameter { .. })));
+}
+
+/// Same walls: what was prepared is kept.
+#[test]
+fn walls_that_stay_cost_nothing() {
+    let mut flow = channel(10, 0.27, 0.0);
+    let moved = bed(&flow, 0.27, 10, 1.0);
+    let other = bed(&flow, 0.28, 10, 1.0);
+    assert!(moved.same_shape(&bed(&flow, 0.27, 10, 0.0)) && !moved.same_shape(&other));
+    flow.set_walls(Some(moved)).unwrap();
+    flow.advance(1e-3, [0.0; 2]).unwrap();
+    let lattice = flow.velocity().lattice(0);
+    assert_eq!(flow.velocity().component(0)[lattice.index([0, 0, 0]).unwrap()], 1.0);
+    flow.set_walls(None).unwrap();
+    assert!(flow.wall_impulses().is_empty());
+}
+
+/// Solves with random faces cut, then applies the operator: the largest residual over the largest term.
+fn largest_residual<const D: usize>(
+    sides: [[Side; 2]; D],
+    cells: [usize; D],
+    opens: &[f64],
+    dense: bool,
+) -> f64 {
+    let grid = CartesianGrid::new(cells, [1.0; D]).unwrap();
+    let sides = Sides::new(sides).unwrap();
+    let metrics = Metrics::new(&grid, std::array::from_fn(|a| sides.periodic(a)));
+    let boundaries = Boundaries::new(&grid, sides, &metrics).unwrap();
+    let mut solver = Pressure::new(&grid, &boundaries, PressureSolver::Auto).unwrap();
+    let mut walls = CutWalls { n_bodies: 1, ..CutWalls::default() };
+    let mut shares: [HashMap<usize, f64>; D] = std::array::from_fn(|_| HashMap::new());
+    let mut opens = opens.iter().cycle();
+    for c in 0..D {
+        each_cell(&grid, |index, cell| {
+            let inside = metrics.periodic[c] || cell[c] > 0;
+            let open = *opens.next().unwrap();
+            if inside && open < 1.0 {
+                walls.components[c].faces.push(face(index, open));
+                shares[c].insert(index, open);
+            }
+        });
+    }
+    let mut pressure = CutPressure::new(&walls, &grid, &metrics);
+    let mut phi = vec![0.0; grid.n_cells()];
+    if dense {
+        pressure.prepare(&mut solver, &mut phi).unwrap();
+    }
+    // Sources without a sum.
+    let mut f: Vec<f64> = (0..phi.len()).map(|i| ((i * 7919) % 101) as f64 / 50.0 - 1.0).collect();
+    let mean = f.iter().sum::<f64>() / f.len() as f64;
+    f.iter_mut().for_each(|f| *f -= mean);
+    let n = cells[0];
+    pressure
+        .solve(&mut solver, |r, row: &mut [f64]| row.copy_from_slice(&f[r * n..][..n]), &mut phi)
+        .unwrap();
+    let (mut worst, mut scale) = (0.0_f64, 0.0_f64);
+    each_cell(&grid, |index, cell| {
+        let (mut sum, here) = (0.0, grid.index(cell));
+        for a in 0..D {
+            for up in [false, true] {
+                let mut next = cell;
+                let last = cells[a] - 1;
+                next[a] = match (up, cell[a], metrics.periodic[a]) {
+                    (true, i, false) if i == last => continue,
+                    (false, 0, false) => continue,
+                    (true, i, _) => {
+                        if i == last {
+                            0
+                        } else {
+                            i + 1
+                        }
+                    }
+                    (false, i, _) => {
+                        if i == 0 {
+                            last
+                        } else {
+                            i - 1
+                        }
+                    }
+                };
+                let upper = if up { next } else { cell };
+                let stride = grid.stride();
+                let at = grid.base() + (0..D).map(|b| upper[b] * stride[b]).sum::<usize>();
+                let share = shares[a].get(&at).copied().unwrap_or(1.0);
+                let h = 1.0 / cells[a] as f64;
+                let flux = (phi[grid.index(next)] - phi[here]) / (h * h);
+                sum += share * flux;
+                scale = scale.max(flux.abs());
+            }
+        }
+        assert!(index < grid.storage());
+        worst = worst.max((sum - f[here]).abs());
+    });
+    worst / scale
+}
+
+proptest! {
+    /// Both ways of solving solve the equation of the open parts.
+    #[test]
+    fn the_pressure_acts_on_what_is_open(opens in proptest::collection::vec(0.01..1.6_f64, 60..90), seed in 0..3_usize) {
+        let sides = [
+            [Side::Periodic.both(), Side::Periodic.both()],
+            [Side::Periodic.both(), Side::WALL.both()],
+            [Side::WALL.both(), Side::WALL.both()],
+        ];
+        for dense in [true, false] {
+            let worst = largest_residual(sides[seed].clone(), [7, 6], &opens, dense);
+            // Faces of which 1 % is open: a condition number of 10⁴ or so.
+            prop_assert!(worst < if dense { 1e-8 } else { 1e-6 }, "{worst}");
+        }
+        let worst = largest_residual([Side::Periodic.both(), Side::WALL.both(), Side::WALL.both()], [4, 5, 3], &opens, true);
+        prop_assert!(worst < 1e-8, "{worst}");
+    }
+}
+
+/// A region that walls close in has the pressure that its own sources make, and passes nothing on.
+#[test]
+fn closed_regions_do_not_leak() {
+    let n = 6;
+    let mut flow = {
+        let grid = CartesianGrid::new([n, n], [1.0; 2]).unwrap();
+        Projection::new(grid, Side::Periodic.everywhere(), Fluid { density: 1.0, viscosity: 0.1 }).unwrap()
+    };
+    // A box of 3 × 3 cells with closed faces all round.
+    let mut walls = CutWalls { n_bodies: 1, ..CutWalls::default() };
+    for c in 0..2 {
+        let lattice = flow.velocity().lattice(c);
+        for (k, i) in [(1, 1), (1, 2), (1, 3), (4, 1), (4, 2), (4, 3)] {
+            let at = if c == 0 { [k, i, 0] } else { [i, k, 0] };
+            let index = lattice.index(at).unwrap();
+            walls.components[c].solid.push(SolidPoint {
+                index,
+                velocity: 0.0,
+                body: 0,
+                arm: Vector::zeros(),
+            });
+            walls.components[c].faces.push(face(index, 0.0));
+        }
+    }
+    flow.set_walls(Some(walls)).unwrap();
+    flow.set_velocity(|x| [(7.0 * x[1]).sin() + x[0], (5.0 * x[0]).cos()]);
+    flow.advance(1e-3, [0.0; 2]).unwrap();
+    for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i as isize, j as isize))) {
+        let u = |c: usize, at: [isize; 2]| {
+            let lattice = flow.velocity().lattice(c);
+            flow.velocity().component(c)[lattice.index([at[0], at[1], 0]).unwrap()]
+        };
+        let divergence = u(0, [i + 1, j]) - u(0, [i, j]) + u(1, [i, j + 1]) - u(1, [i, j]);
+        assert!(divergence.abs() < 1e-12, "{i} {j} {divergence}");
+    }
+}

@@ -1,0 +1,153 @@
+//! Signed distances on the nodes of a grid.
+use interfaces::{Bodies, BodyId, Nodes, Point, Vector};
+
+/// The places of nodes along one axis.
+#[derive(Clone, Debug)]
+pub(crate) struct Ticks {
+    places: Vec<f64>,
+    period: Option<f64>,
+}
+
+impl Ticks {
+    /// The nodes themselves.
+    pub(crate) fn nodes(nodes: &Nodes) -> Self {
+        let places = (0..nodes.len() as isize).map(|i| nodes.place(i)).collect();
+        Self { places, period: nodes.period() }
+    }
+    /// With those on the sides of a bounded axis.
+    pub(crate) fn faces(nodes: &Nodes) -> Self {
+        let outside = isize::from(!nodes.is_periodic());
+        let places = (-outside..nodes.len() as isize + outside).map(|i| nodes.place(i)).collect();
+        Self { places, period: nodes.period() }
+    }
+    pub(crate) fn len(&self) -> usize {
+        self.places.len()
+    }
+    /// Largest distance of neighbours.
+    fn widest(&self) -> f64 {
+        let gaps = self.places.windows(2).map(|w| w[1] - w[0]);
+        let wrap = self.period.map(|period| self.places[0] + period - self.places[self.len() - 1]);
+        gaps.chain(wrap).fold(0.0, f64::max)
+    }
+    /// The nodes that lie in [low, high], wrapped, and their places, not wrapped.
+    fn within(&self, low: f64, high: f64) -> Vec<(usize, f64)> {
+        let turns = match self.period {
+            None => 0..=0,
+            Some(period) => {
+                let turn = |x: f64| ((x - self.places[0]) / period).floor() as isize;
+                turn(low)..=turn(high)
+            }
+        };
+        let mut out = Vec::new();
+        for turn in turns {
+            let shift = turn as f64 * self.period.unwrap_or(0.0);
+            let first = self.places.partition_point(|&x| x + shift < low);
+            let end = self.places.partition_point(|&x| x + shift <= high);
+            out.extend((first..end).map(|i| (i, self.places[i] + shift)));
+        }
+        out
+    }
+}
+
+/// What is known of a node near a surface, or inside one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Near {
+    /// Its number along each axis.
+    pub(crate) node: [usize; 3],
+    /// Signed distance to the nearest body (only its sign is exact beyond the band).
+    pub(crate) distance: f64,
+    /// That body.
+    pub(crate) body: usize,
+    /// From that body's centre of mass \[m\].
+    pub(crate) arm: Vector,
+}
+
+/// Signed distances to the nearest body, on a product of axes.
+pub(crate) struct Distances {
+    shape: [usize; 3],
+    periodic: [bool; 3],
+    /// Per node, x fastest: its place in `near`, or `FAR`.
+    slots: Vec<u32>,
+    /// The nodes within reach of a body, in order of their numbers.
+    pub(crate) near: Vec<Near>,
+    /// Distances below this are exact \[m\].
+    pub(crate) band: f64,
+}
+
+const FAR: u32 = u32::MAX;
+
+impl Distances {
+    pub(crate) fn new<B: Bodies + ?Sized>(axes: [Ticks; 3], dim: usize, bodies: &B) -> Self {
+        let shape = axes.each_ref().map(Ticks::len);
+        let widest = Vector::from_fn(|a, _| if a < dim { axes[a].widest() } else { 0.0 });
+        let band = 2.0 * widest.norm();
+        let mut slots = vec![FAR; shape.iter().product()];
+        let mut near: Vec<Near> = Vec::new();
+        let (mut points, mut found) = (Vec::new(), Vec::new());
+        for b in 0..bodies.n_bodies() {
+            let (pose, solid, bounds) =
+                (bodies.pose(BodyId(b)), bodies.solid(BodyId(b)), bodies.aabb(BodyId(b)));
+            let columns = [0, 1, 2].map(|a| match a < dim {
+                true => axes[a].within(bounds.min[a] - band, bounds.max[a] + band),
+                false => vec![(0, pose.position[a])],
+            });
+            for &(k, z) in &columns[2] {
+                for &(j, y) in &columns[1] {
+                    points.clear();
+                    points.extend(columns[0].iter().map(|&(_, x)| pose.to_body(Point::new(x, y, z))));
+                    found.resize(points.len(), 0.0);
+                    solid.signed_distances(&points, band, &mut found);
+                    for (&(i, x), &distance) in columns[0].iter().zip(&found) {
+                        if distance >= band {
+                            continue;
+                        }
+                        let arm = Point::new(x, y, z) - pose.position;
+                        let this = Near { node: [i, j, k], distance, body: b, arm };
+                        let slot = &mut slots[i + shape[0] * (j + shape[1] * k)];
+                        match *slot {
+                            FAR => {
+                                *slot = near.len() as u32;
+                                near.push(this);
+                            }
+                            at if near[at as usize].distance > distance => near[at as usize] = this,
+                            _ => {}
+                        }
+                    }
+                }
+            }
+        }
+        let mut out =
+            Self { shape, periodic: axes.each_ref().map(|axis| axis.period.is_some()), slots, near, band };
+        out.sort();
+        out
+    }
+
+    /// Puts `near` in order, whatever the order of the bodies.
+    fn sort(&mut self) {
+        let shape = self.shape;
+        let number = |node: [usize; 3]| node[0] + shape[0] * (node[1] + shape[1] * node[2]);
+        self.near.sort_by_key(|near| number(near.node));
+        for (slot, near) in self.near.iter().enumerate() {
+            self.slots[number(near.node)] = slot as u32;
+        }
+    }
+
+    /// What is known of this node, wrapped along periodic axes; `None` outside and far from all bodies.
+    pub(crate) fn at(&self, node: [isize; 3]) -> Option<&Near> {
+        let mut number = 0;
+        for a in (0..3).rev() {
+            let n = self.shape[a] as isize;
+            let i = if self.periodic[a] { node[a].rem_euclid(n) } else { node[a] };
+            if !(0..n).contains(&i) {
+                return None;
+            }
+            number = number * self.shape[a] + i as usize;
+        }
+        self.near.get(self.slots[number] as usize)
+    }
+
+    /// Is this node inside a body?
+    pub(crate) fn solid(&self, node: [isize; 3]) -> Option<&Near> {
+        self.at(node).filter(|near| near.distance <= 0.0)
+    }
+}

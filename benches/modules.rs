@@ -2,10 +2,7 @@
 //!
 //! Per cell and step, in nanoseconds of wall time: the median of five runs of 200 steps each, with output once in
 //! 20 steps; the plain flow loop and the paper's forcing beside it.
-#[path = "../examples/falling_discs/scene.rs"]
-mod scene;
-
-use scene::{FLUID, Scene};
+use example_support::scene::{FLUID, Scene};
 use siltflow::coupling::{FileOutput, Module, Observer, StepInfo};
 use siltflow::ibm::{Forcing, Hfdib, SmoothForcing};
 use std::error::Error;

@@ -4,7 +4,7 @@
 //! [`SmoothForcing`] on uniform cells, with the cylinder's centre on the corner of a cell as the benchmark has it, and with the grid
 //! moved by a part of a cell along x. Beside them body-fitted simpleFoam on a machine like this one (relative error of Cd).
 use crate::{Outcome, Point, Runs, Table};
-use cpu_time::ProcessTime;
+use example_support::cpu::Stopwatch;
 use siltflow::dem::{Disc, Material, RigidBodies};
 use siltflow::flow::{CartesianGrid, Diffusion, Fluid, Profile, Projection, Side};
 use siltflow::ibm::{Forcing, SmoothForcing};
@@ -40,7 +40,7 @@ struct Found {
 
 /// `cells` per diameter, the grid moved by `shift` cells along x.
 fn run(cells: usize, shift: f64) -> Outcome<Found> {
-    let start = ProcessTime::now();
+    let watch = Stopwatch::start();
     let h = DIAMETER / cells as f64;
     let count = [22 * cells, (HEIGHT / h).round() as usize];
     let grid = CartesianGrid::new(count, [2.2, HEIGHT])?.with_origin([-shift * h, 0.0])?;
@@ -70,7 +70,7 @@ fn run(cells: usize, shift: f64) -> Outcome<Found> {
         let steady = (force.x / last - 1.0).abs() < STEADY;
         if steady || flow.time() > MOST {
             let (time, steps) = (flow.time(), flow.steps());
-            let cpu = start.elapsed().as_secs_f64();
+            let cpu = watch.elapsed().cpu;
             return Ok(Found { cells, drag: force.x, lift: force.y, time, steps, cpu });
         }
         (last, next) = (force.x, flow.time() + 1.0);

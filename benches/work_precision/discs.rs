@@ -4,7 +4,8 @@
 //! 2. Speeds at 0.2 s on 10, 15, 20 and 30 cells per diameter against 60 (takes about two minutes), and the order.
 //! 3. Half and double the time step at 15 cells per diameter.
 use crate::Outcome;
-use crate::scene::{FLUID, Scene};
+use example_support::cpu::Stopwatch;
+use example_support::scene::{FLUID, Scene};
 use siltflow::coupling::{self, Schedule};
 use siltflow::ibm::{Forcing, Hfdib, SmoothForcing};
 use siltflow::interfaces::{BodyId, Kinematics};
@@ -17,7 +18,7 @@ fn speeds(
     dt: Option<f64>,
     forcing: impl Forcing,
 ) -> Outcome<(Vec<[f64; 2]>, u64, f64)> {
-    let start = cpu_time::ProcessTime::now();
+    let watch = Stopwatch::start();
     let mut simulation = scene.build(forcing)?;
     let mut speeds = Vec::new();
     for &end in times {
@@ -27,7 +28,7 @@ fn speeds(
         let bodies = &simulation.particles.bodies;
         speeds.push([0, 1].map(|b| bodies.twist(BodyId(b)).linear.norm()));
     }
-    Ok((speeds, simulation.flow.steps(), start.elapsed().as_secs_f64()))
+    Ok((speeds, simulation.flow.steps(), watch.elapsed().cpu))
 }
 
 fn theory(time: f64) -> Outcome<[f64; 2]> {

@@ -6,7 +6,7 @@
 //!    the finest grid.
 //! 3. The cavity at Re 400, t 4, against the finest grid; with the lid gathering the cells too.
 use crate::{Outcome, Point, Runs, Table};
-use cpu_time::ProcessTime;
+use example_support::cpu::Stopwatch;
 use siltflow::flow::{
     Axis, CartesianGrid, Cluster, FlowError, Fluid, GridMismatch, Integrals, Projection, Sampler, Side,
 };
@@ -22,14 +22,14 @@ fn error(flow: &Projection<2>, exact: impl Fn([f64; 2]) -> [f64; 2]) -> Result<f
 
 /// Runs to `end` at the given Courant number; CPU seconds with set-up.
 fn timed(make: impl FnOnce() -> Result<Projection<2>, FlowError>, end: f64, courant: f64) -> Run {
-    let start = ProcessTime::now();
+    let watch = Stopwatch::start();
     let mut flow = make()?;
     while flow.time() < end - 1e-12 {
         let left = end - flow.time();
         let steps = (left / flow.stable_dt(courant)).ceil();
         flow.advance(left / steps, [0.0; 2])?;
     }
-    Ok((flow, start.elapsed().as_secs_f64()))
+    Ok((flow, watch.elapsed().cpu))
 }
 
 fn taylor_green(n: usize) -> Outcome<Point> {

@@ -10,14 +10,10 @@
 mod cylinder;
 mod discs;
 mod flows;
-#[path = "../../examples/falling_discs/scene.rs"]
-mod scene;
-#[path = "../../examples/support/mod.rs"]
-mod support;
 
+use example_support::picture::plot::{self, Panel, Series};
 use std::error::Error;
 use std::path::Path;
-use support::picture::plot::{self, Panel, Series};
 
 pub(crate) type Outcome<T> = Result<T, Box<dyn Error + Send + Sync>>;
 

@@ -15,19 +15,17 @@
 //! cargo run --release --example falling_discs -- --forcing hfdib      # the paper's forcing
 //! ```
 //!
-//! The flags (cli.rs) become a scene (scene.rs); `coupling::run` makes the steps and calls the observers: files,
-//! ledger, progress, pictures, saved state (observers.rs); what came out is drawn and told (report.rs).
+//! The flags (cli.rs) become a scene (examples/support/src/scene.rs); `coupling::run` makes the steps and calls the
+//! observers: files, ledger, progress, pictures, saved state (observers.rs); what came out is drawn and told (report.rs).
 mod cli;
 mod observers;
 mod report;
-mod scene;
-#[path = "../support/mod.rs"]
-mod support;
 
 use clap::Parser;
 use cli::{BalanceChoice, Cli, ForcingChoice};
+use example_support::cpu::Stopwatch;
+use example_support::scene::{FLUID, Scene};
 use observers::{History, Pictures, Resumable, Save, Show};
-use scene::{FLUID, Scene};
 use siltflow::coupling::{self, FileOutput, Ledger, Schedule, WeightBalance};
 use siltflow::ibm::{Forcing, Hfdib, SmoothForcing};
 use std::error::Error;
@@ -107,7 +105,7 @@ fn fall<F: Forcing>(
     forcing: F,
     stop: &AtomicBool,
 ) -> Result<Ending, Box<dyn Error + Send + Sync>> {
-    let watch = support::cpu::Stopwatch::start();
+    let watch = Stopwatch::start();
     let mut simulation = scene.build(forcing)?;
     let state = cli.out.join("state.bin");
     let setup = setup(cli, scene, schedule);

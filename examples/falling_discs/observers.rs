@@ -1,9 +1,9 @@
 //! Who looks on while the discs fall.
-use crate::scene::{BOX, FLUID, GRAVITY, Scene};
-use crate::support::picture::summary::{Moment, Summary, Track};
-use crate::support::picture::{Disc, Domain, Frames, Scalar};
-use crate::support::progress::{Progress, Status};
-use crate::support::startup_theory;
+use example_support::picture::summary::{Moment, Summary, Track};
+use example_support::picture::{Disc, Domain, Frames, Scalar};
+use example_support::progress::{Progress, Status};
+use example_support::scene::{BOX, FLUID, GRAVITY, Scene};
+use example_support::startup_theory;
 use siltflow::coupling::{
     self, CouplingError, Observer, Particles, Schedule, Simulation, StepInfo, WeightBalance,
 };

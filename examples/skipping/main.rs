@@ -6,10 +6,7 @@
 //! 2. `hooks`: the same through `Projection::advance_with` and empty `Hooks`: no body force, forcing, closure, scalar.
 //! 3. `nobody`: `Simulation<2, ()>`, the coupled loop with nothing immersed.
 //! 4. `fixed`: one disc at rest. 5. `moving`: one free disc. 6. `apart`: two free discs far apart.
-#[path = "../falling_discs/scene.rs"]
-mod scene;
-
-use scene::Scene;
+use example_support::scene::{FLUID, Scene};
 use siltflow::coupling::{Simulation, WeightBalance};
 use siltflow::flow::Hooks;
 use siltflow::ibm::SmoothForcing;
@@ -49,7 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "fixed" | "moving" | "apart" => {
             scene.bodies = if mode == "apart" { 2 } else { 1 };
             scene.freedom = if mode == "fixed" { Freedom::NONE } else { Freedom::PLANAR };
-            let mut simulation = scene.build(SmoothForcing::new(scene::FLUID.density))?;
+            let mut simulation = scene.build(SmoothForcing::new(FLUID.density))?;
             simulation.flow.set_velocity(swirl);
             for _ in 0..steps {
                 simulation.step(DT)?;

@@ -1,5 +1,5 @@
 //! Bad input is told which value, why, and what to do.
-use crate::scene::{FLUID, Scene, SceneError};
+use example_support::scene::{FLUID, Scene, SceneError};
 use siltflow::coupling::{self, CouplingError, FileOutput, Particles, Schedule, Simulation, WeightBalance};
 use siltflow::dem::{DemError, Disc, Material, RigidBodies};
 use siltflow::ibm::{IbmError, SmoothForcing};

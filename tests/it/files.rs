@@ -1,6 +1,6 @@
 //! What is on disk after a run, and after one that was cut short.
-use crate::scene::{FLUID, Scene};
 use crate::with_threads;
+use example_support::scene::{FLUID, Scene};
 use siltflow::coupling::{self, CouplingError, FileOutput, Observer, Schedule, StepInfo};
 use siltflow::ibm::SmoothForcing;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,6 @@
 //! What every later part relies on: no allocation in a step, the same numbers for any number of threads.
-use crate::scene::{FLUID, Scene};
 use crate::with_threads;
+use example_support::scene::{FLUID, Scene};
 use siltflow::coupling::{Ledger, Observer, StepInfo};
 use siltflow::ibm::{Forcing, Hfdib, SmoothForcing};
 use siltflow::interfaces::{BodyId, Kinematics};

@@ -1,4 +1,4 @@
-//! Tests across crates, in one binary. Their scene is that of the example `falling_discs`.
+//! Tests across crates, in one binary. Their scene is that of the example `falling_discs` (crate `example-support`).
 mod bad_input;
 mod edges;
 mod files;
@@ -8,11 +8,6 @@ mod restart;
 mod skipping;
 mod stretched;
 mod walls;
-
-#[path = "../../benches/immersed/scene.rs"]
-mod immersed;
-#[path = "../../examples/falling_discs/scene.rs"]
-mod scene;
 
 /// Runs `f` where the examples run: inside a pool of so many threads.
 fn with_threads<R: Send>(threads: usize, f: impl FnOnce() -> R + Send) -> R {

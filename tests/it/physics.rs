@@ -1,6 +1,6 @@
 //! The coupled scene against theory and conservation laws. The full tables are in docs/results.md.
-use crate::scene::{FLUID, GRAVITY, Scene};
 use crate::with_threads;
+use example_support::scene::{FLUID, GRAVITY, Scene};
 use siltflow::coupling::{self, Ledger, LedgerReport, Schedule};
 use siltflow::ibm::{Forcing, Hfdib, SmoothForcing};
 use siltflow::interfaces::{BodyId, Kinematics};
@@ -189,7 +189,7 @@ fn a_disc_lands_and_stays() {
         let bodies = &simulation.particles.bodies;
         let (pose, twist) = (bodies.pose(BodyId(0)), bodies.twist(BodyId(0)));
         // Sunk in by what bears its weight: Y V/L_c with V = (4/3)√(2r) δ^1.5 for small δ, L_c = 4r.
-        let material = crate::scene::MATERIAL;
+        let material = example_support::scene::MATERIAL;
         let stiffness = material.youngs_modulus / (2.0 * (1.0 - material.poisson_ratio.powi(2)));
         let (r, area) = (0.5e-3_f64, std::f64::consts::PI * 0.25e-6);
         let weight = 7000.0 * area * GRAVITY;

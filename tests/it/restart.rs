@@ -1,6 +1,6 @@
 //! A run that is stopped goes on as if it had not been.
-use crate::scene::{FLUID, Scene};
 use crate::with_threads;
+use example_support::scene::{FLUID, Scene};
 use siltflow::coupling::{self, CheckpointError, Particles, Schedule, Simulation};
 use siltflow::dem::RigidBodies;
 use siltflow::ibm::SmoothForcing;

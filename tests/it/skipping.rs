@@ -1,5 +1,5 @@
 //! What a scene does not need costs nothing. Instructions are counted by docs/skipping.sh.
-use crate::scene::{FLUID, Scene};
+use example_support::scene::{FLUID, Scene};
 use siltflow::coupling::{Simulation, WeightBalance};
 use siltflow::flow::Projection;
 use siltflow::ibm::{Hfdib, SmoothForcing};

@@ -1,6 +1,6 @@
 //! Bodies on grids that are stretched away from them.
-use crate::scene::{BOX, FLUID, GRAVITY, MATERIAL};
 use crate::with_threads;
+use example_support::scene::{BOX, FLUID, GRAVITY, MATERIAL};
 use siltflow::coupling::{CouplingError, Particles, Simulation, WeightBalance};
 use siltflow::dem::{Disc, Material, RigidBodies};
 use siltflow::flow::{Axis, CartesianGrid, Diffusion, Projection, Side};

@@ -20,9 +20,21 @@ pub struct Reconstruction {
     given: Given,
     bodies: Vec<Rows>,
     covered: Vec<bool>,
-    /// Boxes now, boxes that were left or entered, bodies to work on and bodies those may see.
-    scratch: (Vec<Aabb>, Vec<Aabb>, Vec<usize>, Vec<usize>),
+    scratch: Scratch,
     lowered: u64,
+}
+
+/// Lists that a placement makes, kept so that the next one allocates nothing.
+#[derive(Clone, Debug, Default)]
+struct Scratch {
+    /// Boxes of all bodies where they are now.
+    now: Vec<Aabb>,
+    /// Boxes that were left or entered.
+    changed: Vec<Aabb>,
+    /// Bodies to work on.
+    work: Vec<usize>,
+    /// Bodies that those may see.
+    seen: Vec<usize>,
 }
 
 /// What is known of one body.
@@ -101,7 +113,7 @@ impl Reconstruction {
         let n = fraction.n_bodies();
         self.covered.resize(storage, false);
         let mut scratch = std::mem::take(&mut self.scratch);
-        let (now, changed, work, seen) = &mut scratch;
+        let Scratch { now, changed, work, seen } = &mut scratch;
         // Boxes that were left or entered, those of bodies that are gone first.
         changed.clear();
         changed.extend(self.bodies.drain(n.min(self.bodies.len())..).filter_map(|rows| rows.bounds));

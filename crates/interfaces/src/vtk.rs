@@ -1,6 +1,6 @@
 //! The container of VTK's XML files: a header of named arrays, then their bytes, raw and
-//! appended. `fv-mesh` writes grids (`.vti`, `.vtr`, `.vtu`) with it, `dem` bodies (`.vtp`), anyone a series
-//! (`.pvd`). Format: *The VTK User's Guide*, "XML file formats".
+//! appended. `fv-mesh` writes grids (`.vti`, `.vtr`, `.vtu`) with it, `dem` bodies (`.vtp`).
+//! Format: *The VTK User's Guide*, "XML file formats".
 use std::borrow::Cow;
 use std::io::{self, Write};
 
@@ -101,32 +101,9 @@ pub fn write(
 }
 
 /// `text` as the value of an attribute.
-fn escaped(text: &str) -> Cow<'_, str> {
+pub fn escaped(text: &str) -> Cow<'_, str> {
     if !text.contains(['&', '<', '>', '"']) {
         return text.into();
     }
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;").into()
-}
-
-/// Writes a `.pvd` series: (time \[s\], part, file) for each entry.
-///
-/// # Errors
-/// What the writer answers.
-pub fn write_series(out: &mut impl Write, entries: &[(f64, usize, String)]) -> io::Result<()> {
-    writeln!(out, "<?xml version=\"1.0\"?>")?;
-    writeln!(out, "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>")?;
-    for (time, part, file) in entries {
-        writeln!(out, "<DataSet timestep=\"{time:.9e}\" part=\"{part}\" file=\"{}\"/>", escaped(file))?;
-    }
-    writeln!(out, "</Collection>\n</VTKFile>")
-}
-
-/// The entries of a `.pvd` series that [`write_series`] wrote; lines that are none are skipped.
-pub fn read_series(text: &str) -> Vec<(f64, usize, String)> {
-    let entry = |line: &str| {
-        let value = |key: &str| line.split_once(key)?.1.split('"').nth(1);
-        let file = value("file=")?.replace("&lt;", "<").replace("&gt;", ">").replace("&quot;", "\"");
-        Some((value("timestep=")?.parse().ok()?, value("part=")?.parse().ok()?, file.replace("&amp;", "&")))
-    };
-    text.lines().filter_map(entry).collect()
 }

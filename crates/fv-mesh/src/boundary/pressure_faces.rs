@@ -126,3 +126,67 @@ impl PressureFace {
         if self.upper { self.index } else { self.index + stride[self.axis] }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::operators::tests::exact;
+    use crate::{CartesianGrid, Side, Sides};
+
+    const DT: f64 = 0.1;
+    const WIDTH: f64 = 0.25;
+
+    /// The velocity through the faces x = −1 and 1 at `given` pressure, after a step in which it was `start(x)` and the one
+    /// inside went from `old(x)` to `new(x)` under `pressure(x)`.
+    fn advanced(
+        start: impl Fn(f64) -> f64,
+        [old, new]: [&dyn Fn(f64) -> f64; 2],
+        (pressure, given): (impl Fn(f64) -> f64, f64),
+        fluid: Fluid,
+    ) -> Vec<f64> {
+        let grid = CartesianGrid::new([8, 2], [2.0, 1.0]).unwrap().with_origin([-1.0, 0.0]).unwrap();
+        let sides = Sides::new([Side::PressureOutlet(given).both(), Side::Periodic.both()]).unwrap();
+        let metrics = Metrics::new(&grid, [false, true]);
+        let mut boundaries = Boundaries::new(&grid, sides, &metrics).unwrap();
+        boundaries.start(&metrics, |x| [start(x[0]), 0.0]);
+        let velocity =
+            |u: &dyn Fn(f64) -> f64| [exact(&grid, &metrics, Some(0), |x| u(x[0])), Field::zeros(&grid)];
+        let mut p = exact(&grid, &metrics, None, |x| pressure(x[0]));
+        boundaries.fill_pressure(&mut p);
+        boundaries.advance_pressure_faces(&metrics, [&velocity(old), &velocity(new)], &p, fluid, DT);
+        let mut found = Vec::new();
+        boundaries.each_pressure_face(|_, normal| found.push(*normal));
+        found
+    }
+
+    /// u = βx with p = −ρβ²x²/2 is steady without viscosity: u u′ = β²x balances the pressure, but for the gradient at the face,
+    /// which the line to the given value takes a quarter of a cell inside: β²w/4 too little.
+    #[test]
+    fn flow_that_parts_before_two_pressures_is_steady() {
+        let (rate, density) = (0.8, 1.7);
+        let u = |x: f64| rate * x;
+        let p = |x: f64| -0.5 * density * (rate * x).powi(2);
+        let found = advanced(u, [&u, &u], (p, p(1.0)), Fluid { density, viscosity: 0.0 });
+        let change = -DT * rate * rate * WIDTH / 4.0 / (1.0 + DT * rate / WIDTH);
+        assert_eq!(found.len(), 4);
+        for (found, side) in found.iter().zip([-1.0, -1.0, 1.0, 1.0]) {
+            assert!((found - side * (rate + change)).abs() < 1e-14, "{found} at {side}, change {change}");
+        }
+    }
+
+    /// Under a uniform pressure a face follows the acceleration inside, and what it is ahead by decays at (|u| + 2ν/w)/w.
+    #[test]
+    fn a_face_follows_the_flow_inside() {
+        let (ahead, viscosity) = (0.3, 0.05);
+        let found = advanced(
+            |_| 1.0 + ahead,
+            [&|_| 1.0, &|_| 1.2],
+            (|_| 4.0, 4.0),
+            Fluid { density: 1.7, viscosity },
+        );
+        let decay = 1.0 + DT / WIDTH * (1.0 + ahead + 2.0 * viscosity / WIDTH);
+        for found in found {
+            assert!((found - 1.2 - ahead / decay).abs() < 1e-14, "{found}");
+        }
+    }
+}

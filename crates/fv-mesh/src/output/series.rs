@@ -1,15 +1,18 @@
 //! Series of files over time.
 use super::OutputError;
-use interfaces::vtk;
+use interfaces::vtk::escaped;
 use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+
+/// Time \[s\] and file.
+type Entry = (f64, String);
 
 /// A `.pvd` collection: the files of a run and their times, which ParaView plays as one.
 #[derive(Clone, Debug)]
 pub struct TimeSeries {
     path: PathBuf,
-    entries: Vec<(f64, usize, String)>,
+    entries: Vec<Entry>,
 }
 
 impl TimeSeries {
@@ -24,9 +27,9 @@ impl TimeSeries {
     /// [`OutputError::Io`] if there is none or it cannot be read.
     pub fn resume(path: impl Into<PathBuf>, time: f64) -> Result<Self, OutputError> {
         let path = path.into();
-        let mut entries = vtk::read_series(&std::fs::read_to_string(&path)?);
+        let mut entries = read(&std::fs::read_to_string(&path)?);
         // Times are written with ten digits.
-        entries.retain(|(t, ..)| *t <= time * (1.0 + 1e-9));
+        entries.retain(|(t, _)| *t <= time * (1.0 + 1e-9));
         Ok(Self { path, entries })
     }
 
@@ -39,7 +42,7 @@ impl TimeSeries {
         if !(time.is_finite() && time >= last) {
             return Err(OutputError::Time { time, last });
         }
-        self.entries.push((time, 0, name.into()));
+        self.entries.push((time, name.into()));
         Ok(())
     }
 
@@ -62,7 +65,7 @@ impl TimeSeries {
         let mut part = self.path.clone().into_os_string();
         part.push(".part");
         let mut file = BufWriter::new(File::create(&part)?);
-        vtk::write_series(&mut file, &self.entries)?;
+        write(&mut file, &self.entries)?;
         file.flush()?;
         std::fs::rename(&part, &self.path)?;
         Ok(())
@@ -74,6 +77,26 @@ impl TimeSeries {
     }
     /// Time \[s\] and file of each entry.
     pub fn entries(&self) -> impl Iterator<Item = (f64, &str)> {
-        self.entries.iter().map(|(time, _, name)| (*time, name.as_str()))
+        self.entries.iter().map(|(time, name)| (*time, name.as_str()))
     }
+}
+
+/// Writes the collection with one part per entry.
+fn write(out: &mut impl Write, entries: &[Entry]) -> io::Result<()> {
+    writeln!(out, "<?xml version=\"1.0\"?>")?;
+    writeln!(out, "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>")?;
+    for (time, file) in entries {
+        writeln!(out, "<DataSet timestep=\"{time:.9e}\" part=\"0\" file=\"{}\"/>", escaped(file))?;
+    }
+    writeln!(out, "</Collection>\n</VTKFile>")
+}
+
+/// The entries that [`write`] wrote; lines that are none are skipped.
+fn read(text: &str) -> Vec<Entry> {
+    let entry = |line: &str| {
+        let value = |key: &str| line.split_once(key)?.1.split('"').nth(1);
+        let file = value("file=")?.replace("&lt;", "<").replace("&gt;", ">").replace("&quot;", "\"");
+        Some((value("timestep=")?.parse().ok()?, file.replace("&amp;", "&")))
+    };
+    text.lines().filter_map(entry).collect()
 }

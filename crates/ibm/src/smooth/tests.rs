@@ -104,3 +104,34 @@ fn too_coarse_a_grid_is_refused() {
     let error = SmoothForcing::new(1.0).place(&velocity, &bodies).unwrap_err();
     assert!(matches!(error, IbmError::TooCoarse { .. }), "{error}");
 }
+
+/// Cells of 0.05 up to 1.5, of 0.1 beyond: a body is refused as soon as its markers, which read two nodes to each side, reach
+/// the node at 1.55, which is 0.075 from the one before.
+#[test]
+fn unequal_cells_around_a_body_are_refused() {
+    let faces: Vec<f64> =
+        (0..30).map(|i| 0.05 * f64::from(i)).chain((15..=30).map(|i| 0.1 * f64::from(i))).collect();
+    for axis in [0, 1] {
+        let nodes = |a: usize| {
+            if a == axis { Nodes::centres(&faces, true) } else { Nodes::uniform(0.025, 0.05, 60, true) }
+        };
+        let axes = [nodes(0), nodes(1)];
+        let stride = axes[0].len();
+        let velocity = Collocated::new(Lattice::new(axes, 0, [1, stride]), |_| [0.0; 3]);
+        let place = |at: f64| {
+            let mut centre = [1.5, 1.5, 0.0];
+            centre[axis] = at;
+            SmoothForcing::new(1.0).place(&velocity, &Balls::new(2, 0.3, vec![centre]))
+        };
+        assert_eq!(place(1.05), Ok(()));
+        for (at, widest) in [(1.1, 0.075), (1.5, 0.1)] {
+            let Err(IbmError::Stretched { body: BodyId(0), axis: found, least, most }) = place(at) else {
+                panic!("a body at {at} was placed");
+            };
+            assert!(
+                found == axis && (least - 0.05).abs() < 1e-12 && (most - widest).abs() < 1e-12,
+                "{least} {most}"
+            );
+        }
+    }
+}

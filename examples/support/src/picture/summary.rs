@@ -11,47 +11,47 @@ use super::{Disc, Domain, Scalar, paint};
 
 /// The fields at one time.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Moment<'a> {
+pub struct Moment<'a> {
     /// Time in seconds.
-    pub(crate) time: f64,
+    pub time: f64,
     /// Solid fraction.
-    pub(crate) lambda: Scalar<'a>,
+    pub lambda: Scalar<'a>,
     /// Speed of fluid and solid in m/s.
-    pub(crate) speed: Scalar<'a>,
+    pub speed: Scalar<'a>,
     /// The bodies.
-    pub(crate) discs: &'a [Disc],
+    pub discs: &'a [Disc],
 }
 
 /// The history of one body.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Track<'a> {
+pub struct Track<'a> {
     /// What the legend calls it.
-    pub(crate) label: &'a str,
+    pub label: &'a str,
     /// Radius in metres.
-    pub(crate) radius: f64,
+    pub radius: f64,
     /// Times in seconds; as long as the three that follow.
-    pub(crate) times: &'a [f64],
+    pub times: &'a [f64],
     /// Centre in metres, running on across periodic borders.
-    pub(crate) x: &'a [f64],
+    pub x: &'a [f64],
     /// Centre in metres, running on across periodic borders.
-    pub(crate) y: &'a [f64],
+    pub y: &'a [f64],
     /// Speed in m/s.
-    pub(crate) speed: &'a [f64],
+    pub speed: &'a [f64],
     /// Theory to compare with, as (time, speed); may be empty.
-    pub(crate) theory: &'a [(f64, f64)],
+    pub theory: &'a [(f64, f64)],
 }
 
 /// What the figure shows.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Summary<'a> {
+pub struct Summary<'a> {
     /// The rectangle.
-    pub(crate) domain: Domain,
+    pub domain: Domain,
     /// Columns of fields from left to right; three make a balanced figure.
-    pub(crate) moments: &'a [Moment<'a>],
+    pub moments: &'a [Moment<'a>],
     /// The bodies.
-    pub(crate) tracks: &'a [Track<'a>],
+    pub tracks: &'a [Track<'a>],
     /// What the legend calls the theory.
-    pub(crate) theory: &'a str,
+    pub theory: &'a str,
 }
 
 const LOOK: Look = Look { font: 21.0, line: 2.0 };
@@ -72,7 +72,7 @@ const STROKE: f64 = 3.0;
 
 impl Summary<'_> {
     /// Writes the figure.
-    pub(crate) fn draw(&self, path: &Path) -> io::Result<()> {
+    pub fn draw(&self, path: &Path) -> io::Result<()> {
         let fit = |width: f64, height: f64| {
             let scale = (width / self.domain.width).min(height / self.domain.height);
             ((scale * self.domain.width).round(), (scale * self.domain.height).round())
@@ -203,7 +203,6 @@ impl Summary<'_> {
         self.legend(canvas, rect, theory);
     }
 
-    /// Names of the lines: at the lower right, or with the theory at the upper left, where start-up leaves room.
     /// The labels, each once: bodies of one label share a colour.
     fn kinds(&self) -> Vec<&str> {
         let mut kinds: Vec<&str> = Vec::new();
@@ -220,6 +219,7 @@ impl Summary<'_> {
         colour::line(self.kinds().iter().position(|k| *k == track.label).unwrap_or(0))
     }
 
+    /// Names of the lines: at the lower right, or with the theory at the upper left, where start-up leaves room.
     fn legend(&self, canvas: &mut Canvas, rect: Rect, theory: bool) {
         let (pad, key, line) = (14.0, 46.0, 1.5 * LOOK.font);
         let kinds = self.kinds();
@@ -266,9 +266,10 @@ fn periods(path: &[f64], length: f64, periodic: bool) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
+
     #[test]
     fn a_path_shows_in_every_period_it_visits() {
-        use super::*;
         assert_eq!(periods(&[0.5, -0.2, -1.4], 1.0, true), [-2.0, -1.0, 0.0]);
         assert_eq!(periods(&[0.5, -0.2], 1.0, false), [0.0]);
         assert!(periods(&[], 1.0, true).is_empty());

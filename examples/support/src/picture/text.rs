@@ -9,7 +9,8 @@ use super::canvas::{Canvas, Pixel};
 use super::colour::{Colour, INK};
 
 static FONT: LazyLock<FontRef<'static>> = LazyLock::new(|| {
-    FontRef::try_from_slice(include_bytes!("../DejaVuSans-subset.ttf")).expect("the embedded font is sound")
+    FontRef::try_from_slice(include_bytes!("../../DejaVuSans-subset.ttf"))
+        .expect("the embedded font is sound")
 });
 
 /// Height of a capital letter over the font size.

@@ -194,9 +194,10 @@ impl Ticks {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
+
     #[test]
     fn ticks_are_round_and_inside() {
-        use super::*;
         let labels = |low, high, wanted| {
             let ticks = Ticks::new((low, high), wanted);
             ticks.places.iter().map(|&t| ticks.label(t)).collect::<Vec<_>>().join(" ")

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::cpu::readable;
+use crate::cpu::readable;
 
 /// Steps between two looks at the clock.
 const STRIDE: u64 = 4;
@@ -18,19 +18,19 @@ const TICKS: f64 = 10_000.0;
 
 /// What one update shows.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Status {
+pub struct Status {
     /// Simulated time in seconds.
-    pub(crate) time: f64,
+    pub time: f64,
     /// Time step in seconds.
-    pub(crate) dt: f64,
+    pub dt: f64,
     /// Courant number.
-    pub(crate) courant: f64,
+    pub courant: f64,
     /// What is left of the divergence.
-    pub(crate) divergence: f64,
+    pub divergence: f64,
 }
 
 /// The progress of a run from its first instant to its last.
-pub(crate) struct Progress {
+pub struct Progress {
     bar: Option<ProgressBar>,
     begin: f64,
     end: f64,
@@ -46,7 +46,7 @@ pub(crate) struct Progress {
 
 impl Progress {
     /// Begins at simulated time `begin`; the run is over at `end`.
-    pub(crate) fn new(begin: f64, end: f64) -> Self {
+    pub fn new(begin: f64, end: f64) -> Self {
         let bar = stderr().is_terminal().then(|| {
             let bar =
                 ProgressBar::with_draw_target(Some(TICKS as u64), ProgressDrawTarget::stderr_with_hz(60));
@@ -71,7 +71,7 @@ impl Progress {
     /// To be called after every step with the count of steps done; `status` is asked only when something is
     /// shown, at most ten times a second.
     #[inline]
-    pub(crate) fn step(&mut self, step: u64, status: impl FnOnce() -> Status) {
+    pub fn step(&mut self, step: u64, status: impl FnOnce() -> Status) {
         if step.is_multiple_of(STRIDE) {
             let now = Instant::now();
             if now.duration_since(self.shown) >= PAUSE {
@@ -118,18 +118,8 @@ impl Progress {
         }
     }
 
-    /// A line of its own, above the bar if there is one.
-    pub(crate) fn say(&self, line: &str) {
-        match &self.bar {
-            Some(bar) => bar.println(line),
-            None => {
-                let _ = writeln!(stderr(), "{line}");
-            }
-        }
-    }
-
     /// Takes the bar away and leaves one line behind: how many steps, how long, and `message`.
-    pub(crate) fn finish(self, steps: u64, message: &str) {
+    pub fn finish(self, steps: u64, message: &str) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
@@ -142,9 +132,10 @@ impl Progress {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
+
     #[test]
     fn status_is_asked_seldom() {
-        use super::*;
         let mut progress = Progress::new(0.0, 1.0);
         let mut asked = 0;
         let started = Instant::now();

@@ -18,39 +18,34 @@ use num_complex::Complex64;
 
 /// The fluid at rest; gravity points along −y.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Fluid {
+pub struct Fluid {
     /// kg/m³.
-    pub(crate) density: f64,
+    pub density: f64,
     /// Kinematic viscosity in m²/s.
-    pub(crate) viscosity: f64,
+    pub viscosity: f64,
     /// m/s².
-    pub(crate) gravity: f64,
+    pub gravity: f64,
 }
 
 /// A disc released at time zero.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Released {
+pub struct Released {
     /// Centre in metres.
-    pub(crate) centre: [f64; 2],
+    pub centre: [f64; 2],
     /// Metres.
-    pub(crate) radius: f64,
+    pub radius: f64,
     /// kg/m³.
-    pub(crate) density: f64,
+    pub density: f64,
 }
 
 /// Speeds in m/s at time `t` after the release, in the doubly periodic box of the given sides or, without one,
 /// in unbounded fluid.
-pub(crate) fn startup_speed(t: f64, discs: &[Released], fluid: &Fluid, sides: Option<[f64; 2]>) -> Vec<f64> {
+pub fn startup_speed(t: f64, discs: &[Released], fluid: &Fluid, sides: Option<[f64; 2]>) -> Vec<f64> {
     startup_velocity(t, discs, fluid, sides).into_iter().map(|[u, v]| u.hypot(v)).collect()
 }
 
 /// Velocities in m/s; see [`startup_speed`].
-pub(crate) fn startup_velocity(
-    t: f64,
-    discs: &[Released],
-    fluid: &Fluid,
-    sides: Option<[f64; 2]>,
-) -> Vec<[f64; 2]> {
+fn startup_velocity(t: f64, discs: &[Released], fluid: &Fluid, sides: Option<[f64; 2]>) -> Vec<[f64; 2]> {
     /// Points of the quadrature: the error falls as 3.9^(−points), rounding grows as e^(0.17 points).
     const POINTS: usize = 28;
     let mut velocities = vec![[0.0; 2]; discs.len()];
@@ -241,7 +236,7 @@ mod tests {
 
     #[test]
     fn the_table_of_the_box_is_met() {
-        let table = include_str!("../../tests/data/startup_two_discs.csv");
+        let table = include_str!("../../../tests/data/startup_two_discs.csv");
         let rows = table.lines().filter(|line| line.starts_with("0."));
         let rows: Vec<Vec<f64>> = rows.map(|l| l.split(',').map(|v| v.parse().unwrap()).collect()).collect();
         assert_eq!(rows.len(), 30);

@@ -16,36 +16,36 @@ enum Part {
 
 /// Sections of `key  value unit` rows and small matrices, aligned over the whole table when it is shown.
 #[derive(Default)]
-pub(crate) struct Table {
+pub struct Table {
     parts: Vec<Part>,
 }
 
 impl Table {
     /// An empty table.
-    pub(crate) fn new() -> Self {
+    pub fn new() -> Self {
         Self::default()
     }
 
     /// Starts a section under a ruled title.
-    pub(crate) fn section(&mut self, title: &str) -> &mut Self {
+    pub fn section(&mut self, title: &str) -> &mut Self {
         self.parts.push(Part::Section(title.into()));
         self
     }
 
     /// One quantity. Numbers may be handed over as they are, or written by [`number`] and [`grouped`].
-    pub(crate) fn row(&mut self, key: &str, value: impl Display, unit: &str) -> &mut Self {
+    pub fn row(&mut self, key: &str, value: impl Display, unit: &str) -> &mut Self {
         self.parts.push(Part::Row { key: key.into(), value: value.to_string(), unit: unit.into() });
         self
     }
 
     /// A small matrix: the first column is text and reads from the left, the others are numbers.
-    pub(crate) fn matrix(&mut self, header: &[&str], rows: Vec<Vec<String>>) -> &mut Self {
+    pub fn matrix(&mut self, header: &[&str], rows: Vec<Vec<String>>) -> &mut Self {
         self.parts.push(Part::Matrix { header: header.iter().map(|&h| h.into()).collect(), rows });
         self
     }
 
     /// A line of prose.
-    pub(crate) fn note(&mut self, text: &str) -> &mut Self {
+    pub fn note(&mut self, text: &str) -> &mut Self {
         self.parts.push(Part::Note(text.into()));
         self
     }
@@ -101,7 +101,7 @@ fn write_matrix(f: &mut fmt::Formatter<'_>, header: &[String], rows: &[Vec<Strin
 }
 
 /// A number to four significant digits: plain between 10⁻³ and 10⁶, otherwise with a power of ten.
-pub(crate) fn number(value: f64) -> String {
+pub fn number(value: f64) -> String {
     let size = value.abs();
     if value == 0.0 {
         "0".into()
@@ -116,7 +116,7 @@ pub(crate) fn number(value: f64) -> String {
 }
 
 /// A count with its thousands set apart: `45 000`.
-pub(crate) fn grouped(count: u64) -> String {
+pub fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);
     for (place, digit) in digits.chars().enumerate() {
@@ -129,7 +129,7 @@ pub(crate) fn grouped(count: u64) -> String {
 }
 
 /// Writes a JSON value indented, with a closing newline. A number that is not finite becomes `null`.
-pub(crate) fn write_json(path: &Path, value: &Value) -> io::Result<()> {
+pub fn write_json(path: &Path, value: &Value) -> io::Result<()> {
     let mut text = serde_json::to_string_pretty(value).map_err(io::Error::other)?;
     text.push('\n');
     fs::write(path, text)
@@ -137,9 +137,10 @@ pub(crate) fn write_json(path: &Path, value: &Value) -> io::Result<()> {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
+
     #[test]
     fn rows_line_up() {
-        use super::*;
         let mut table = Table::new();
         table.section("Run").row("cells", grouped(45_000), "").row("step Δt", number(2e-4), "s");
         table.matrix(&["body", "x"], vec![vec!["heavy".into(), "1".into()]]);
@@ -151,7 +152,6 @@ mod tests {
 
     #[test]
     fn numbers_keep_four_digits() {
-        use super::*;
         let expected =
             [(0.0, "0"), (1.0, "1.000"), (-12.3456, "-12.35"), (99_999.0, "99999"), (2.5e-7, "2.500e-7")];
         for (value, text) in expected {

@@ -1,43 +1,46 @@
-//! The scene as data, and its parts put together; tests and benches use it too.
-// Not every user of this file needs all of it.
-#![allow(dead_code)]
-
-use siltflow::coupling::{CouplingError, Particles, Simulation, WeightBalance};
-use siltflow::dem::{DemError, Disc, HalfSpace, Material, RigidBodies};
-use siltflow::flow::{CartesianGrid, Diffusion, FlowError, Fluid, Projection, Side};
-use siltflow::ibm::Forcing;
-use siltflow::interfaces::{Freedom, Periods, Point, Pose, Twist, Vector};
+//! The falling discs (see examples/falling_discs): the scene as data, and its parts put together.
+use coupling::{CouplingError, Particles, Simulation, WeightBalance};
+use dem::{DemError, Disc, HalfSpace, Material, RigidBodies};
+use fv_mesh::{CartesianGrid, Diffusion, FlowError, Fluid, Projection, Side};
+use ibm::Forcing;
+use interfaces::{Freedom, Periods, Point, Pose, Twist, Vector};
 
 /// Box \[m\]: 10 × 20 of the paper's diameters.
-pub(crate) const BOX: [f64; 2] = [10e-3, 20e-3];
+pub const BOX: [f64; 2] = [10e-3, 20e-3];
 /// The fluid is water.
-pub(crate) const FLUID: Fluid = Fluid { density: 1000.0, viscosity: 1e-6 };
+pub const FLUID: Fluid = Fluid { density: 1000.0, viscosity: 1e-6 };
 /// Gravity \[m/s²\], along −y.
-pub(crate) const GRAVITY: f64 = 9.81;
+pub const GRAVITY: f64 = 9.81;
 /// What discs and floor are made of: soft enough for the contact to be cheap, hard enough for the discs to sink
 /// less than a thousandth of their radius into the floor under their own weight, damped like a wet contact.
-pub(crate) const MATERIAL: Material =
+pub const MATERIAL: Material =
     Material { density: 1000.0, youngs_modulus: 1e6, poisson_ratio: 0.3, damping: 4.0, friction: 0.3 };
 /// Fewer cells across a disc cannot hold its markers.
-pub(crate) const LEAST_CELLS: usize = 4;
-
+const LEAST_CELLS: usize = 4;
 /// About a hundred bytes each.
-pub(crate) const MOST_CELLS: usize = 200_000_000;
+const MOST_CELLS: usize = 200_000_000;
 
 /// What may vary.
 #[derive(Clone, Debug)]
-pub(crate) struct Scene {
-    pub(crate) cells_per_diameter: usize,
-    pub(crate) bodies: usize,
-    pub(crate) densities: Vec<f64>,
-    pub(crate) diameter: f64,
-    pub(crate) floor: bool,
-    pub(crate) balance: WeightBalance,
-    pub(crate) freedom: Freedom,
+pub struct Scene {
+    /// Cells across a disc.
+    pub cells_per_diameter: usize,
+    /// How many discs.
+    pub bodies: usize,
+    /// Densities of the discs \[kg/m³\], repeated as needed.
+    pub densities: Vec<f64>,
+    /// Diameter of the discs \[m\].
+    pub diameter: f64,
+    /// Walls below and above instead of a periodic box.
+    pub floor: bool,
+    /// What holds up the discs' net weight in the periodic box.
+    pub balance: WeightBalance,
+    /// How the discs may move.
+    pub freedom: Freedom,
     /// Virtual mass of the coupling in displaced masses, if not the coupling's own choice.
-    pub(crate) virtual_mass: Option<f64>,
+    pub virtual_mass: Option<f64>,
     /// Moves everything by this much \[m\] against the grid.
-    pub(crate) shift: [f64; 2],
+    pub shift: [f64; 2],
 }
 
 impl Default for Scene {
@@ -58,35 +61,57 @@ impl Default for Scene {
 
 /// Why the scene cannot be built.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum SceneError {
+pub enum SceneError {
+    /// The grid or the flow.
     #[error(transparent)]
     Flow(#[from] FlowError),
+    /// The discs or the floor.
     #[error(transparent)]
     Bodies(#[from] DemError),
+    /// Both together.
     #[error(transparent)]
     Coupling(#[from] CouplingError),
+    /// The grid cannot hold the discs' markers.
     #[error(
         "{found} cells across a disc; at least {LEAST_CELLS} are needed, and 10 or more are advised: raise --cells-per-diameter"
     )]
-    TooCoarse { found: usize },
+    TooCoarse {
+        /// Cells across a disc.
+        found: usize,
+    },
+    /// The grid needs too much memory.
     #[error("{} × {} cells would need more than {:.0} GB; lower --cells-per-diameter or raise --diameter", cells[0], cells[1], MOST_CELLS as f64 * 100e-9)]
-    TooFine { cells: [usize; 2] },
+    TooFine {
+        /// Cells along x and y.
+        cells: [usize; 2],
+    },
+    /// No body, or more than there is room for.
     #[error("{found} bodies; give between 1 and {most}: what fits into the box in rows two diameters apart")]
-    Count { found: usize, most: usize },
+    Count {
+        /// How many.
+        found: usize,
+        /// How many there is room for.
+        most: usize,
+    },
+    /// No density was given.
     #[error("no densities were given; give at least one, as in --densities 1060,1030")]
     NoDensity,
+    /// A diameter that is not a length.
     #[error("a diameter of {found} m; give a positive one")]
-    Diameter { found: f64 },
+    Diameter {
+        /// The diameter \[m\].
+        found: f64,
+    },
 }
 
 impl Scene {
-    /// Cells along x and y: the cell size is that of the paper's disc, 1 mm.
-    pub(crate) fn cells(&self) -> [usize; 2] {
+    /// Cells along x and y, so many to a diameter.
+    pub fn cells(&self) -> [usize; 2] {
         BOX.map(|l| (l / self.diameter * self.cells_per_diameter as f64).round().max(1.0) as usize)
     }
 
     /// Where the discs start: the paper's two, further ones in rows from the top.
-    pub(crate) fn centres(&self) -> Result<Vec<[f64; 2]>, SceneError> {
+    pub fn centres(&self) -> Result<Vec<[f64; 2]>, SceneError> {
         let d = self.diameter;
         let mut all = vec![[5e-3, 16e-3], [5.05e-3, 13.5e-3]];
         let per_row = ((BOX[0] / (2.0 * d)).floor() as usize).min(1000);
@@ -103,7 +128,7 @@ impl Scene {
     }
 
     /// The fluid alone.
-    pub(crate) fn flow(&self) -> Result<Projection<2>, SceneError> {
+    pub fn flow(&self) -> Result<Projection<2>, SceneError> {
         if !(self.diameter.is_finite() && self.diameter > 0.0) {
             return Err(SceneError::Diameter { found: self.diameter });
         }
@@ -122,7 +147,7 @@ impl Scene {
     }
 
     /// The discs alone, without fluid.
-    pub(crate) fn discs(&self) -> Result<RigidBodies, SceneError> {
+    pub fn discs(&self) -> Result<RigidBodies, SceneError> {
         let periods = Periods::new([Some(BOX[0]), (!self.floor).then_some(BOX[1]), None]);
         let mut bodies = RigidBodies::new(periods);
         if self.densities.is_empty() {
@@ -147,7 +172,7 @@ impl Scene {
     }
 
     /// Everything.
-    pub(crate) fn build<F: Forcing>(
+    pub fn build<F: Forcing>(
         &self,
         forcing: F,
     ) -> Result<Simulation<2, Particles<F, RigidBodies>>, SceneError> {

@@ -10,22 +10,26 @@ use super::text::Type;
 
 /// Points of one kind.
 #[derive(Clone, Debug)]
-pub(crate) struct Series {
+pub struct Series {
     /// What the legend calls it.
-    pub(crate) label: String,
+    pub label: String,
     /// x, y, and what is written beside the point.
-    pub(crate) points: Vec<(f64, f64, String)>,
+    pub points: Vec<(f64, f64, String)>,
     /// Filled points joined by a line, else rings.
-    pub(crate) ours: bool,
+    pub ours: bool,
 }
 
 /// One plot.
 #[derive(Clone, Debug)]
-pub(crate) struct Panel {
-    pub(crate) title: String,
-    pub(crate) x: String,
-    pub(crate) y: String,
-    pub(crate) series: Vec<Series>,
+pub struct Panel {
+    /// Stands above the plot.
+    pub title: String,
+    /// Label of the lower axis.
+    pub x: String,
+    /// Label of the left axis.
+    pub y: String,
+    /// Kinds of points, in the order of their colours.
+    pub series: Vec<Series>,
 }
 
 const LOOK: Look = Look { font: 17.0, line: 2.0 };
@@ -39,7 +43,7 @@ const TITLE: f64 = 52.0;
 const COLUMNS: usize = 2;
 
 /// Writes the panels side by side, two in a row.
-pub(crate) fn draw(path: &Path, panels: &[Panel]) -> io::Result<()> {
+pub fn draw(path: &Path, panels: &[Panel]) -> io::Result<()> {
     let rows: Vec<&[Panel]> = panels.chunks(COLUMNS).collect();
     let head = |row: &[Panel]| TITLE + ROW * row.iter().map(|p| p.series.len()).max().unwrap_or(0) as f64;
     let width = COLUMNS as f64 * (LEFT + PLOT.0 + RIGHT);
@@ -125,9 +129,10 @@ fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
+
     #[test]
     fn ranges_hold_all_points_and_a_power_of_ten() {
-        use super::*;
         let (low, high) = range([1e-3, 0.0, 2e-6, f64::NAN].into_iter());
         assert!(low < 2e-6_f64.log10() && high > -3.0 && low > -7.0 && high < -2.0);
         let (low, high) = range([3.0, 3.0].into_iter());
@@ -137,7 +142,6 @@ mod tests {
 
     #[test]
     fn a_figure_is_a_picture() {
-        use super::*;
         let series = Series {
             label: "a".into(),
             points: vec![(1e-3, 1e-2, "8²".into()), (1.0, 1e-4, "16²".into())],

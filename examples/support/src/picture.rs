@@ -8,8 +8,8 @@ use std::path::Path;
 mod axes;
 mod canvas;
 mod colour;
-pub(crate) mod plot;
-pub(crate) mod summary;
+pub mod plot;
+pub mod summary;
 mod text;
 
 use axes::{Axes, Look, colour_bar};
@@ -19,37 +19,37 @@ use text::Type;
 
 /// A field at the cell centres of a uniform grid over the [`Domain`]: x runs fastest, y upwards.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Scalar<'a> {
+pub struct Scalar<'a> {
     /// Cells along x.
-    pub(crate) nx: usize,
+    pub nx: usize,
     /// Cells along y.
-    pub(crate) ny: usize,
+    pub ny: usize,
     /// One value per cell.
-    pub(crate) values: &'a [f64],
+    pub values: &'a [f64],
 }
 
 /// A round body as a picture shows it. In a periodic direction the centre may lie outside the domain.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Disc {
+pub struct Disc {
     /// Centre in metres.
-    pub(crate) x: f64,
+    pub x: f64,
     /// Centre in metres.
-    pub(crate) y: f64,
+    pub y: f64,
     /// Radius in metres.
-    pub(crate) radius: f64,
+    pub radius: f64,
     /// Angle turned since the start, in radians: shown by a mark from the centre to the rim.
-    pub(crate) angle: f64,
+    pub angle: f64,
 }
 
 /// The rectangle all pictures of a run are taken of.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Domain {
+pub struct Domain {
     /// Extent along x in metres.
-    pub(crate) width: f64,
+    pub width: f64,
     /// Extent along y in metres.
-    pub(crate) height: f64,
+    pub height: f64,
     /// Which directions wrap around.
-    pub(crate) periodic: [bool; 2],
+    pub periodic: [bool; 2],
 }
 
 impl Domain {
@@ -132,7 +132,7 @@ fn paint<const N: usize>(
 
 /// The frames of a run: everything that stays is drawn once, so a frame takes a few milliseconds.
 /// Frames may be drawn from several threads at a time.
-pub(crate) struct Frames {
+pub struct Frames {
     domain: Domain,
     ground: Canvas,
     plot: Rect,
@@ -144,7 +144,7 @@ const FRAME: Look = Look { font: 15.0, line: 1.0 };
 
 impl Frames {
     /// Colours run from rest to `max_speed` (m/s); what is faster takes the last colour.
-    pub(crate) fn new(domain: Domain, max_speed: f64) -> Self {
+    pub fn new(domain: Domain, max_speed: f64) -> Self {
         let scale = (880.0 / domain.height).min(1200.0 / domain.width);
         // Even numbers, as video encoders ask for.
         let (width, height) = ((scale * domain.width / 2.0).round() * 2.0, scale * domain.height);
@@ -161,7 +161,7 @@ impl Frames {
     }
 
     /// Writes one frame: the speed of fluid and solid, the solid (λ) lightened, the bodies outlined.
-    pub(crate) fn draw(
+    pub fn draw(
         &self,
         path: &Path,
         speed: &Scalar<'_>,
@@ -182,9 +182,10 @@ impl Frames {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
+
     #[test]
     fn a_disc_on_a_corner_has_four_images() {
-        use super::*;
         let domain = Domain { width: 1.0, height: 2.0, periodic: [true, true] };
         let disc = |x, y| Disc { x, y, radius: 0.1, angle: 0.0 };
         assert_eq!(domain.images(&disc(0.95, 4.02)).len(), 4);
@@ -195,7 +196,6 @@ mod tests {
 
     #[test]
     fn pixels_wrap_in_a_periodic_direction_only() {
-        use super::*;
         assert_eq!(lattice(4, 2, true, false)[0], (1, 0, 0.75));
         assert_eq!(lattice(4, 2, false, false)[0], (0, 0, 0.75));
         assert_eq!(lattice(4, 2, true, true)[0], lattice(4, 2, true, false)[3]);

@@ -1,5 +1,5 @@
 //! Immersed walls at rest: exact and published values. `benches/immersed` has the orders and the costs.
-use crate::immersed::{Banks, Bore, Scene};
+use example_support::still_bodies::{Banks, Bore, StillBodies};
 use siltflow::coupling::{Particles, Simulation, WeightBalance};
 use siltflow::dem::{Disc, Material, RigidBodies, Sphere};
 use siltflow::flow::{CartesianGrid, Fluid, Projection, Side};
@@ -38,7 +38,7 @@ fn flow_between_cylinders() {
     let grid = CartesianGrid::new([cells + 4; 2], [2.0 * half; 2]).unwrap();
     let grid = grid.with_origin([-half + 0.01, -half + 0.007]).unwrap();
     let mut flow = Projection::new(grid, Side::WALL.everywhere(), Fluid { density: 1.0, viscosity }).unwrap();
-    let bodies = Scene::default().with(Disc::new(0.25).unwrap(), [0.0; 3], 1.0).with(
+    let bodies = StillBodies::default().with(Disc::new(0.25).unwrap(), [0.0; 3], 1.0).with(
         Bore { radius: 0.5, half: [2.0 * half; 2] },
         [0.0; 3],
         0.0,
@@ -84,7 +84,7 @@ fn flow_in_a_turned_channel() {
     let banks = Banks { lengths, width };
     let [along, _] = banks.axes();
     let length = lengths[0].hypot(lengths[1]);
-    let bodies = Scene::default().with(banks, [0.012, 0.037, 0.0], 0.0);
+    let bodies = StillBodies::default().with(banks, [0.012, 0.037, 0.0], 0.0);
     let walls = cut_walls(flow.velocity(), &bodies).unwrap();
     flow.set_walls(Some(walls)).unwrap();
     let rate = |flow: &mut Projection<2>| {
@@ -103,7 +103,7 @@ fn flow_through_an_array_of_spheres() {
     let grid = CartesianGrid::new([14; 3], [1.0; 3]).unwrap();
     let fluid = Fluid { density: 1.0, viscosity: 1.0 };
     let mut flow = Projection::new(grid, Side::Periodic.everywhere(), fluid).unwrap();
-    let bodies = Scene::default().with(Sphere::new(radius).unwrap(), [0.513, 0.487, 0.505], 0.0);
+    let bodies = StillBodies::default().with(Sphere::new(radius).unwrap(), [0.513, 0.487, 0.505], 0.0);
     let walls = cut_walls(flow.velocity(), &bodies).unwrap();
     flow.set_walls(Some(walls)).unwrap();
     let force = 1e-3;
@@ -121,7 +121,7 @@ fn walls_and_moving_bodies_meet_in_one_flow() {
     let fluid = Fluid { density: 1000.0, viscosity: 1e-5 };
     let grid = CartesianGrid::new([60, 60], [6e-3, 6e-3]).unwrap();
     let mut flow = Projection::new(grid, Side::WALL.everywhere(), fluid).unwrap();
-    let post = Scene::default().with(Disc::new(0.7e-3).unwrap(), [2.2e-3, 1.8e-3, 0.0], 0.0);
+    let post = StillBodies::default().with(Disc::new(0.7e-3).unwrap(), [2.2e-3, 1.8e-3, 0.0], 0.0);
     let walls = cut_walls(flow.velocity(), &post).unwrap();
     flow.set_walls(Some(walls)).unwrap();
     let mut bodies = RigidBodies::new(Periods::new([None; 3]));

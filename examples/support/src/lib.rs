@@ -1,9 +1,10 @@
-//! What the examples, benches and tests share and what is no part of the library: the scene of the falling discs; pictures,
-//! progress, tables, time and memory of the process; the start-up theory the runs are held against.
+//! What the examples, benches and tests share and what is no part of the library: the scene of the falling discs, bodies that
+//! stand still; pictures, progress, tables, time and memory of the process; the start-up theory the runs are held against.
 
 pub mod cpu;
 pub mod picture;
 pub mod progress;
 pub mod scene;
 pub mod startup_theory;
+pub mod still_bodies;
 pub mod table;

@@ -1,19 +1,18 @@
 //! Bodies that stand still, or turn in themselves.
-use siltflow::interfaces::{
-    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Point, Pose, Solid, Twist, Vector,
-};
+use interfaces::{Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Point, Pose, Solid, Twist, Vector};
 
 /// Some solids, with their place and motion.
 #[derive(Default)]
-pub(crate) struct Scene {
+pub struct StillBodies {
     solids: Vec<Box<dyn Solid>>,
     poses: Vec<Pose>,
     twists: Vec<Twist>,
 }
 
-impl Scene {
-    /// The same with one more.
-    pub(crate) fn with(mut self, solid: impl Solid + 'static, at: [f64; 3], turning: f64) -> Self {
+impl StillBodies {
+    /// The same with one more, `turning` \[rad/s\] about the axis z.
+    #[must_use]
+    pub fn with(mut self, solid: impl Solid + 'static, at: [f64; 3], turning: f64) -> Self {
         self.solids.push(Box::new(solid));
         self.poses.push(Pose::at(at));
         self.twists.push(Twist { linear: Vector::zeros(), angular: Vector::new(0.0, 0.0, turning) });
@@ -21,7 +20,7 @@ impl Scene {
     }
 }
 
-impl Kinematics for Scene {
+impl Kinematics for StillBodies {
     fn n_bodies(&self) -> usize {
         self.solids.len()
     }
@@ -33,7 +32,7 @@ impl Kinematics for Scene {
     }
 }
 
-impl Bodies for Scene {
+impl Bodies for StillBodies {
     fn solid(&self, b: BodyId) -> &dyn Solid {
         &*self.solids[b.0]
     }
@@ -46,10 +45,11 @@ impl Bodies for Scene {
 }
 
 /// All that is not within `radius` of the axis z.
-pub(crate) struct Bore {
-    pub(crate) radius: f64,
-    /// Half-widths of the box it fills.
-    pub(crate) half: [f64; 2],
+pub struct Bore {
+    /// Radius of the bore \[m\].
+    pub radius: f64,
+    /// Half-widths of the box it fills \[m\].
+    pub half: [f64; 2],
 }
 
 impl Solid for Bore {
@@ -62,22 +62,22 @@ impl Solid for Bore {
 }
 
 /// All of a doubly periodic box but a channel along its diagonal and the channel's images.
-pub(crate) struct Banks {
-    /// Edge lengths of the box.
-    pub(crate) lengths: [f64; 2],
-    /// Width of the channel.
-    pub(crate) width: f64,
+pub struct Banks {
+    /// Edge lengths of the box \[m\].
+    pub lengths: [f64; 2],
+    /// Width of the channel \[m\].
+    pub width: f64,
 }
 
 impl Banks {
     /// Unit vectors along the channel and across.
-    pub(crate) fn axes(&self) -> [[f64; 2]; 2] {
+    pub fn axes(&self) -> [[f64; 2]; 2] {
         let [x, y] = self.lengths;
         let l = x.hypot(y);
         [[x / l, y / l], [-y / l, x / l]]
     }
-    /// Signed distance from the channel's middle line.
-    pub(crate) fn across(&self, x: [f64; 2]) -> f64 {
+    /// Signed distance from the channel's middle line \[m\].
+    pub fn across(&self, x: [f64; 2]) -> f64 {
         let [_, n] = self.axes();
         let period = self.lengths[0] * n[0].abs();
         let d = n[0] * x[0] + n[1] * x[1];

@@ -1,4 +1,5 @@
 //! Immersed walls at rest: exact and published values. `benches/immersed` has the orders and the costs.
+use crate::with_threads;
 use example_support::still_bodies::{Banks, Bore, StillBodies};
 use siltflow::coupling::{Particles, Simulation, WeightBalance};
 use siltflow::dem::{Disc, Material, RigidBodies, Sphere};
@@ -113,6 +114,33 @@ fn flow_through_an_array_of_spheres() {
     // The sphere bears the force on the box.
     let impulse = flow.wall_impulses()[0].force / flow.last_dt();
     assert!((impulse.x / force - 1.0).abs() < 1e-3 && impulse.yz().norm() < 1e-3 * force, "{impulse}");
+}
+
+/// Two channels' worth of cut faces, one solved by a dense product and one by conjugate gradients: neither allocates, and the
+/// number of threads changes no bit.
+#[test]
+fn steps_beside_walls_allocate_nothing() {
+    for radius in [0.1, 0.45] {
+        let run = |threads: usize| {
+            with_threads(threads, || {
+                let grid = CartesianGrid::new([40, 40], [1.0, 1.0]).unwrap();
+                let fluid = Fluid { density: 1.0, viscosity: 0.01 };
+                let mut flow = Projection::new(grid, Side::Periodic.everywhere(), fluid).unwrap();
+                let bodies = StillBodies::default().with(Disc::new(radius).unwrap(), [0.5, 0.5, 0.0], 0.3);
+                let walls = cut_walls(flow.velocity(), &bodies).unwrap();
+                flow.set_walls(Some(walls)).unwrap();
+                let mut steps = |n| (0..n).for_each(|_| flow.advance(5e-3, [0.1, 0.02]).unwrap());
+                steps(10);
+                let count = allocation_counter::measure(|| steps(10)).count_total;
+                assert_eq!(flow.pressure_info().iterations > 0, radius > 0.3);
+                let bits: Vec<u64> = flow.velocity().component(0).iter().map(|u| u.to_bits()).collect();
+                (count, bits)
+            })
+        };
+        let [(one, first), (two, second)] = [run(1), run(2)];
+        assert_eq!((one, two), (0, 0), "radius {radius}");
+        assert!(first == second, "radius {radius}");
+    }
 }
 
 /// A wall at rest and a body that moves in one scene: the body falls, the wall stands and feels it.

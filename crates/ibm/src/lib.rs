@@ -7,6 +7,9 @@
 //!   (figure 3);
 //! * [`SmoothForcing`]: forces on surface markers spread by a smooth kernel: for bodies that move.
 //!
+//! Bodies at rest may be walls of the flow itself instead: [`cut_walls`] tells where they cut links and faces of the grid, and
+//! a flow that takes [`interfaces::CutWalls`] is of second order up to them.
+//!
 //! [`Reconstruction`] does the same for any scalar with values or gradients given, [`Pockets`] finds fluid that bodies
 //! have closed in, and with the feature `mesh` closed triangle meshes are bodies (`TriangleMesh`).
 //!

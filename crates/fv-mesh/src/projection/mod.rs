@@ -325,7 +325,8 @@ impl<const D: usize> Projection<D> {
     }
 
     /// Puts immersed walls into the flow, or takes them out: the viscous terms go to the walls along cut links, the fluxes
-    /// through the open parts of the faces, and the pressure acts on those. Diffusion has to be explicit.
+    /// through the open parts of the faces, and the pressure acts on those. Diffusion has to be explicit, and the pressure solver
+    /// should be the direct one: an iterative one has to be as exact as the faces' equation is to be solved.
     ///
     /// Walls that are where the last ones were cost nothing; new ones take a solution of the pressure equation per cut face.
     ///

@@ -13,7 +13,8 @@ type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
 
 fn main() -> Outcome<()> {
     let wanted: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
-    let cases: [(&str, fn() -> Outcome<()>); 4] = [
+    type Case = (&'static str, fn() -> Outcome<()>);
+    let cases: [Case; 4] = [
         ("channel", channel::table),
         ("couette", couette::table),
         ("spheres", spheres::table),

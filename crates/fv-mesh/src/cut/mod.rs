@@ -1,6 +1,7 @@
 //! Immersed walls that cut the cells.
 mod links;
 mod pressure;
+mod regions;
 
 #[cfg(test)]
 mod tests;
@@ -8,7 +9,7 @@ mod tests;
 use crate::flow_state::{FlowState, restore_list};
 use crate::metrics::Metrics;
 use crate::{CartesianGrid, Field, FlowError};
-use interfaces::{CutWalls, RestartError, Wrench};
+use interfaces::{CutComponent, CutWalls, RestartError, Wrench};
 use links::Links;
 pub(crate) use pressure::CutPressure;
 
@@ -31,7 +32,7 @@ impl<const D: usize> Walls<D> {
         grid: &CartesianGrid<D>,
         metrics: &Metrics<D>,
     ) -> Result<Self, FlowError> {
-        check(&cuts, grid)?;
+        check(&cuts, grid, metrics)?;
         Ok(Self {
             links: std::array::from_fn(|c| Links::new(&cuts.components[c], grid, metrics, c)),
             pressure: CutPressure::new(&cuts, grid, metrics),
@@ -86,23 +87,42 @@ impl<const D: usize> Walls<D> {
     }
 }
 
-fn check<const D: usize>(cuts: &CutWalls, grid: &CartesianGrid<D>) -> Result<(), FlowError> {
-    let storage = grid.storage();
+/// Are these walls of this grid?
+fn check<const D: usize>(
+    cuts: &CutWalls,
+    grid: &CartesianGrid<D>,
+    metrics: &Metrics<D>,
+) -> Result<(), FlowError> {
+    let fail = |name, value, range| Err(FlowError::Parameter { name, value, range });
     for (c, component) in cuts.components.iter().enumerate() {
-        let indices =
-            component.solid.iter().map(|s| s.index).chain(component.links.iter().map(|n| n.index)).chain(
-                component
-                    .faces
+        let CutComponent { solid, links, faces } = component;
+        let terms = faces.iter().flat_map(|face| face.terms.iter().map(|term| term.0));
+        let nodes = solid.iter().map(|point| point.index).chain(links.iter().map(|node| node.index));
+        // A node of a bounded axis is no face of its sides.
+        let inside = |index: usize| {
+            c < D
+                && (grid.base()..grid.storage()).contains(&index)
+                && cell(grid, index)
                     .iter()
-                    .flat_map(|f| std::iter::once(f.index).chain(f.terms.iter().map(|t| t.0))),
-            );
-        let largest = indices.max();
-        if largest.is_some_and(|index| index >= storage || c >= D) {
-            return Err(FlowError::Parameter {
-                name: "the storage index of a cut wall",
-                value: largest.unwrap_or(0) as f64,
-                range: "one of the flow's own velocity lattices: make the walls from its `velocity()`",
-            });
+                    .zip(grid.cells())
+                    .enumerate()
+                    .all(|(a, (&i, n))| i < n && (i > 0 || a != c || metrics.periodic[a]))
+        };
+        let all = nodes.chain(faces.iter().map(|face| face.index)).chain(terms);
+        if let Some(index) = all.into_iter().find(|&index| !inside(index)) {
+            let range = "one of the flow's own velocity lattices: make the walls from its `velocity()`";
+            return fail("a storage index of immersed walls", index as f64, range);
+        }
+        if let Some(face) = faces.iter().find(|face| !(0.0..1.0).contains(&face.open)) {
+            return fail("the open share of a face that a wall cuts", face.open, "from 0 to less than 1");
+        }
+        let mut fractions = links.iter().flat_map(|node| node.links.iter().flatten().flatten());
+        if let Some(link) = fractions.find(|link| !(link.fraction > 0.0 && link.fraction <= 1.0)) {
+            return fail("the share of a link before a wall", link.fraction, "above 0 and at most 1");
+        }
+        let mut bodies = solid.iter().map(|point| point.body).chain(links.iter().map(|node| node.body));
+        if let Some(body) = bodies.find(|&body| body >= cuts.n_bodies) {
+            return fail("a body's number in immersed walls", body as f64, "less than the number of bodies");
         }
     }
     Ok(())

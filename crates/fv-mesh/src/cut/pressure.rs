@@ -1,6 +1,5 @@
 //! The pressure equation of cells that walls cut.
-use super::cell;
-use crate::grid::GHOSTS;
+use super::regions::{Orphan, Regions};
 use crate::metrics::Metrics;
 use crate::poisson::PoissonError;
 use crate::pressure::Pressure;
@@ -9,7 +8,6 @@ use faer::linalg::solvers::DenseSolveCore;
 use faer::{Mat, Side};
 use interfaces::CutWalls;
 use rayon::prelude::*;
-use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Σ_f open_f A_f (φ_N − φ_P)/d_f = V f, by the solver of the box and a system of the cut faces.
 ///
@@ -43,8 +41,8 @@ pub(crate) struct CutPressure {
     product: Vec<f64>,
     /// Of conjugate gradients in the last solution.
     pub(crate) iterations: usize,
-    /// Cells of which no velocity is computed, in order: their storage index and the neighbours' with weights.
-    orphans: Vec<(usize, Vec<(usize, f64)>)>,
+    /// Cells of which no velocity is computed.
+    orphans: Vec<Orphan>,
 }
 
 /// How M y = b is solved.
@@ -82,39 +80,9 @@ impl CutPressure {
         grid: &CartesianGrid<D>,
         metrics: &Metrics<D>,
     ) -> Self {
+        let Regions { cut, orphans } = Regions::new(cuts, grid, metrics);
         let n = grid.cells();
         let volume = |index: usize| grid.cell_volume(grid.cell(index));
-        let mut cut = Vec::new();
-        // Closed faces of every cell.
-        let mut closed = vec![0; grid.n_cells()];
-        for (c, component) in cuts.components.iter().enumerate().take(D) {
-            for face in &component.faces {
-                let above = cell(grid, face.index);
-                let mut below = above;
-                below[c] = if above[c] == 0 { n[c] - 1 } else { above[c] - 1 };
-                let area: f64 =
-                    (0..D).filter(|&a| a != c).map(|a| metrics.axes[a].width[GHOSTS + above[a]]).product();
-                let cells = [grid.index(below), grid.index(above)];
-                if face.open == 0.0 {
-                    cells.iter().for_each(|&cell| closed[cell] += 1);
-                }
-                cut.push(Cut {
-                    axis: c,
-                    cells,
-                    open: face.open,
-                    conductance: area / metrics.axes[c].faces.volume[GHOSTS + above[c]],
-                });
-            }
-        }
-        let inner_faces = |index: usize| -> usize {
-            let cell = grid.cell(index);
-            let sides = |a: usize| usize::from(cell[a] == 0) + usize::from(cell[a] + 1 == n[a]);
-            (0..D).map(|a| 2 - if metrics.periodic[a] { 0 } else { sides(a) }).sum()
-        };
-        let solid = |index: usize| closed[index] > 0 && closed[index] == inner_faces(index);
-        let orphans = orphans(cuts, grid, metrics, &mut cut);
-        cut.retain(|face| !face.cells.iter().all(|&cell| solid(cell)));
-        hang_regions(&mut cut, grid, metrics);
         let faces: Vec<Face> = cut
             .iter()
             .map(|face| Face { cells: face.cells, resistance: 1.0 / ((1.0 - face.open) * face.conductance) })
@@ -157,12 +125,19 @@ impl CutPressure {
         let m = self.faces.len();
         match self.method {
             Method::Unprepared if m * m > DENSE * phi.len() => self.method = Method::Iterative,
-            Method::Unprepared => {}
-            _ => return Ok(()),
+            Method::Unprepared => self.invert(solver, phi)?,
+            Method::Inverse(_) | Method::Iterative => {}
         }
-        if matches!(self.method, Method::Iterative) {
-            return Ok(());
-        }
+        Ok(())
+    }
+
+    /// Makes M⁻¹.
+    pub(super) fn invert<const D: usize>(
+        &mut self,
+        solver: &mut Pressure<D>,
+        phi: &mut [f64],
+    ) -> Result<(), FlowError> {
+        let m = self.faces.len();
         let mut matrix = Mat::<f64>::zeros(m, m);
         for j in 0..m {
             self.direction.fill(0.0);
@@ -303,7 +278,7 @@ impl CutPressure {
     /// Gives the cells of which no velocity is computed the mean pressure of their neighbours.
     pub(crate) fn smooth_orphans<const D: usize>(&self, pressure: &mut Field<D>) {
         let p = pressure.data_mut();
-        for (cell, neighbours) in &self.orphans {
+        for Orphan { cell, neighbours } in &self.orphans {
             p[*cell] = neighbours.iter().map(|&(at, weight)| weight * p[at]).sum();
         }
     }
@@ -312,112 +287,5 @@ impl CutPressure {
 impl Face {
     fn jump(&self, phi: &[f64]) -> f64 {
         phi[self.cells[1]] - phi[self.cells[0]]
-    }
-}
-
-/// A face that is not wholly open.
-struct Cut {
-    axis: usize,
-    /// Dense numbers of the cells below and above.
-    cells: [usize; 2],
-    open: f64,
-    /// Its area over the distance of the cells' centres.
-    conductance: f64,
-}
-
-/// The cells with no velocity node in the fluid, and where their pressure comes from. What passes through them passes on to
-/// neighbours in the same step, however narrow their openings are: those are widened until the widest of a cell is a whole face.
-fn orphans<const D: usize>(
-    cuts: &CutWalls,
-    grid: &CartesianGrid<D>,
-    metrics: &Metrics<D>,
-    cut: &mut Vec<Cut>,
-) -> Vec<(usize, Vec<(usize, f64)>)> {
-    let solid: [HashSet<usize>; D] =
-        std::array::from_fn(|c| cuts.components[c].solid.iter().map(|point| point.index).collect());
-    let (n, stride) = (grid.cells(), grid.stride());
-    let place = |index: usize| {
-        let cell = grid.cell(index);
-        grid.base() + (0..D).map(|a| cell[a] * stride[a]).sum::<usize>()
-    };
-    let orphan = |index: usize| {
-        let (cell, at) = (grid.cell(index), place(index));
-        (0..D).all(|a| {
-            let upper = if metrics.periodic[a] && cell[a] + 1 == n[a] {
-                at + stride[a] - n[a] * stride[a]
-            } else {
-                at + stride[a]
-            };
-            let bounded = |end: usize| !metrics.periodic[a] && cell[a] == end;
-            (bounded(0) || solid[a].contains(&at)) && (bounded(n[a] - 1) || solid[a].contains(&upper))
-        })
-    };
-    let mut sources: BTreeMap<usize, Vec<(usize, f64)>> = BTreeMap::new();
-    for face in cut.iter().filter(|face| face.open > 0.0) {
-        for [cell, neighbour] in [face.cells, [face.cells[1], face.cells[0]]] {
-            if orphan(cell) {
-                sources.entry(cell).or_default().push((place(neighbour), face.open * face.conductance));
-            }
-        }
-    }
-    let mut widest: HashMap<usize, f64> = HashMap::new();
-    for face in cut.iter() {
-        for cell in face.cells.iter().filter(|cell| sources.contains_key(cell)) {
-            let widest = widest.entry(*cell).or_default();
-            *widest = widest.max(face.open);
-        }
-    }
-    for face in cut.iter_mut() {
-        let factor = |cell: &usize| widest.get(cell).map_or(1.0, |widest| 1.0 / widest);
-        face.open *= face.cells.iter().map(factor).fold(1.0, f64::max);
-    }
-    cut.retain(|face| face.open < 1.0);
-    let mean = |(cell, mut neighbours): (usize, Vec<(usize, f64)>)| {
-        let sum: f64 = neighbours.iter().map(|n| n.1).sum();
-        neighbours.iter_mut().for_each(|n| n.1 /= sum);
-        (place(cell), neighbours)
-    };
-    sources.into_iter().map(mean).collect()
-}
-
-/// Opens one closed face per region that the walls separate from the rest.
-fn hang_regions<const D: usize>(cut: &mut Vec<Cut>, grid: &CartesianGrid<D>, metrics: &Metrics<D>) {
-    let n = grid.cells();
-    let mut regions = Regions((0..grid.n_cells()).collect());
-    let closed: HashSet<(usize, usize)> =
-        cut.iter().filter(|face| face.open == 0.0).map(|face| (face.axis, face.cells[1])).collect();
-    for above in 0..grid.n_cells() {
-        let cell = grid.cell(above);
-        for a in 0..D {
-            let mut below = cell;
-            below[a] = match (cell[a], metrics.periodic[a]) {
-                (0, false) => continue,
-                (0, true) => n[a] - 1,
-                (i, _) => i - 1,
-            };
-            if !closed.contains(&(a, above)) {
-                regions.join(grid.index(below), above);
-            }
-        }
-    }
-    cut.retain(|face| face.open > 0.0 || !regions.join(face.cells[0], face.cells[1]));
-}
-
-/// Disjoint sets of cells.
-struct Regions(Vec<usize>);
-
-impl Regions {
-    fn find(&mut self, mut i: usize) -> usize {
-        while self.0[i] != i {
-            self.0[i] = self.0[self.0[i]];
-            i = self.0[i];
-        }
-        i
-    }
-    /// Makes one set of two; were they two?
-    fn join(&mut self, a: usize, b: usize) -> bool {
-        let (a, b) = (self.find(a), self.find(b));
-        self.0[a.max(b)] = a.min(b);
-        a != b
     }
 }

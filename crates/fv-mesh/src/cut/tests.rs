@@ -106,9 +106,31 @@ fn walls_are_restarted_bit_for_bit() {
 #[test]
 fn impossible_walls_are_errors() {
     let mut flow = channel(10, 0.27, 0.0);
-    let mut far = CutWalls { n_bodies: 1, ..CutWalls::default() };
-    far.components[1].faces.push(face(1 << 40, 0.5));
-    assert!(matches!(flow.set_walls(Some(far)), Err(FlowError::Parameter { .. })));
+    let lattice = flow.velocity().lattice(1);
+    // The lowest faces along y are a side of the box.
+    let (node, side) = (lattice.base, lattice.base - lattice.stride[1]);
+    let mut refused = |change: &dyn Fn(&mut CutWalls), what: &str| {
+        let mut walls = CutWalls { n_bodies: 1, ..CutWalls::default() };
+        change(&mut walls);
+        match flow.set_walls(Some(walls)) {
+            Err(FlowError::Parameter { name, .. }) => assert!(name.contains(what), "{name}"),
+            other => panic!("{what}: {other:?}"),
+        }
+    };
+    for index in [0, side, 1 << 40] {
+        refused(&|walls| walls.components[1].faces.push(face(index, 0.5)), "storage index");
+    }
+    for open in [-0.1, 1.0, f64::NAN] {
+        refused(&|walls| walls.components[1].faces.push(face(node, open)), "open share");
+    }
+    let point = |body| SolidPoint { index: node, velocity: 0.0, body, arm: Vector::zeros() };
+    refused(&|walls| walls.components[1].solid.push(point(1)), "body");
+    refused(&|walls| walls.components[2].solid.push(point(0)), "storage index");
+    for fraction in [0.0, 1.1, f64::NAN] {
+        let mut cut = CutNode { index: node, body: 0, arm: Vector::zeros(), links: [[None; 2]; 3] };
+        cut.links[0][1] = Some(Link { fraction, velocity: 0.0 });
+        refused(&|walls| walls.components[1].links.push(cut), "link");
+    }
     let grid = CartesianGrid::new([4, 10], [0.4, 1.0]).unwrap();
     let sides = [Side::Periodic.both(), Side::WALL.both()];
     let fluid = Fluid { density: 1.0, viscosity: 1.0 };
@@ -160,7 +182,7 @@ fn largest_residual<const D: usize>(
     let mut pressure = CutPressure::new(&walls, &grid, &metrics);
     let mut phi = vec![0.0; grid.n_cells()];
     if dense {
-        pressure.prepare(&mut solver, &mut phi).unwrap();
+        pressure.invert(&mut solver, &mut phi).unwrap();
     }
     // Sources without a sum.
     let mut f: Vec<f64> = (0..phi.len()).map(|i| ((i * 7919) % 101) as f64 / 50.0 - 1.0).collect();
@@ -214,7 +236,7 @@ fn largest_residual<const D: usize>(
 proptest! {
     /// Both ways of solving solve the equation of the open parts.
     #[test]
-    fn the_pressure_acts_on_what_is_open(opens in proptest::collection::vec(0.01..1.6_f64, 60..90), seed in 0..3_usize) {
+    fn the_pressure_acts_on_what_is_open(opens in proptest::collection::vec(0.1..1.6_f64, 60..90), seed in 0..3_usize) {
         let sides = [
             [Side::Periodic.both(), Side::Periodic.both()],
             [Side::Periodic.both(), Side::WALL.both()],
@@ -222,11 +244,11 @@ proptest! {
         ];
         for dense in [true, false] {
             let worst = largest_residual(sides[seed].clone(), [7, 6], &opens, dense);
-            // Faces of which 1 % is open: a condition number of 10⁴ or so.
-            prop_assert!(worst < if dense { 1e-8 } else { 1e-6 }, "{worst}");
+            // All faces may be open by a tenth only: a condition number of some thousands.
+            prop_assert!(worst < if dense { 1e-11 } else { 1e-6 }, "{worst}");
         }
         let worst = largest_residual([Side::Periodic.both(), Side::WALL.both(), Side::WALL.both()], [4, 5, 3], &opens, true);
-        prop_assert!(worst < 1e-8, "{worst}");
+        prop_assert!(worst < 1e-11, "{worst}");
     }
 }
 

@@ -1,7 +1,8 @@
 //! Immersed walls against exact and published values: plane Poiseuille flow turned against the grid, Taylor–Couette flow,
-//! simple-cubic arrays of spheres, the cylinder of Schäfer & Turek. `cargo bench --bench immersed`, or with the names of cases
+//! simple-cubic arrays of spheres, the cylinder of Schäfer & Turek; and what walls cost. `cargo bench --bench immersed`, or with the names of cases
 //! after `--`.
 mod channel;
+mod cost;
 mod couette;
 mod cylinder;
 mod spheres;
@@ -14,11 +15,12 @@ type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
 fn main() -> Outcome<()> {
     let wanted: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
     type Case = (&'static str, fn() -> Outcome<()>);
-    let cases: [Case; 4] = [
+    let cases: [Case; 5] = [
         ("channel", channel::table),
         ("couette", couette::table),
         ("spheres", spheres::table),
         ("cylinder", cylinder::table),
+        ("cost", cost::table),
     ];
     for (name, table) in cases {
         if wanted.is_empty() || wanted.iter().any(|w| w == name) {

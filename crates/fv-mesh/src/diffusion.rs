@@ -25,6 +25,8 @@ const MARGIN: f64 = 0.9;
 #[derive(Clone, Debug)]
 pub(crate) struct SplitDiffusion<const D: usize> {
     pub(crate) mode: Diffusion,
+    /// Must it be explicit, as beside immersed walls, whose cut links would couple the lines of an implicit axis?
+    pub(crate) walled: bool,
     /// Γ or ν \[m²/s\].
     diffusivity: f64,
     /// Half the largest sum of coefficients of the second difference along each axis \[1/m²\].
@@ -35,7 +37,22 @@ pub(crate) struct SplitDiffusion<const D: usize> {
 
 impl<const D: usize> SplitDiffusion<D> {
     pub(crate) fn new(diffusivity: f64, stiffness: [f64; D]) -> Self {
-        Self { mode: Diffusion::Auto, diffusivity, stiffness, last: [false; D] }
+        Self { mode: Diffusion::Auto, walled: false, diffusivity, stiffness, last: [false; D] }
+    }
+
+    /// The mode that is in force.
+    ///
+    /// # Errors
+    /// [`FlowError::Parameter`] for implicit diffusion beside immersed walls.
+    pub(crate) fn mode(&self) -> Result<Diffusion, FlowError> {
+        match self.mode {
+            Diffusion::Implicit if self.walled => {
+                let range = "Explicit or Auto in a flow with immersed walls";
+                Err(FlowError::Parameter { name: "Diffusion::Implicit", value: 1.0, range })
+            }
+            Diffusion::Auto if self.walled => Ok(Diffusion::Explicit),
+            mode => Ok(mode),
+        }
     }
 
     /// The longest step \[s\] for which Adams–Bashforth is stable if the axes of `implicit` are taken out of it;
@@ -48,9 +65,9 @@ impl<const D: usize> SplitDiffusion<D> {
     /// The axes that have to be implicit in a step of `dt`.
     ///
     /// # Errors
-    /// [`FlowError::Unstable`] if what is explicit does not allow it.
+    /// [`FlowError::Unstable`] if what is explicit does not allow it, and those of [`mode`](Self::mode).
     pub(crate) fn choose(&self, dt: f64, extra: f64) -> Result<[bool; D], FlowError> {
-        let chosen = match self.mode {
+        let chosen = match self.mode()? {
             Diffusion::Implicit => [self.diffusivity > 0.0; D],
             Diffusion::Explicit => [false; D],
             Diffusion::Auto => {
@@ -85,8 +102,8 @@ impl<const D: usize> SplitDiffusion<D> {
     /// diffusion.
     pub(crate) fn longest_step(&self, extra: f64) -> f64 {
         let explicit = self.limit(extra, &[false; D]);
-        match self.mode {
-            Diffusion::Explicit => MARGIN * explicit,
+        match self.mode() {
+            Ok(Diffusion::Explicit) => MARGIN * explicit,
             _ => (IMPLICIT_GAIN * explicit).min(MARGIN * self.limit(extra, &[true; D])),
         }
     }

@@ -187,9 +187,8 @@ pub(crate) fn each_node<const D: usize>(
 
 /// Calls `f` with the storage index and the place of every cell.
 pub(crate) fn each_cell<const D: usize>(grid: &CartesianGrid<D>, mut f: impl FnMut(usize, [usize; D])) {
-    let (base, s) = (grid.base(), grid.stride());
     for cell in (0..grid.n_cells()).map(|i| grid.cell(i)) {
-        f(base + (0..D).map(|a| cell[a] * s[a]).sum::<usize>(), cell);
+        f(grid.place(cell), cell);
     }
 }
 

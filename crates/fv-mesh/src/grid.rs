@@ -147,6 +147,20 @@ impl<const D: usize> CartesianGrid<D> {
     pub(crate) fn base(&self) -> usize {
         self.stride().iter().map(|s| s * GHOSTS).sum()
     }
+    /// Storage index of cell (i, j, k), which is also that of its lower faces.
+    pub(crate) fn place(&self, cell: [usize; D]) -> usize {
+        let s = self.stride();
+        self.base() + (0..D).map(|a| cell[a] * s[a]).sum::<usize>()
+    }
+    /// The cell with this storage index; `None` for a ghost.
+    pub(crate) fn cell_at(&self, place: usize) -> Option<[usize; D]> {
+        let (mut rest, mut cell, s, n) = (place, [0; D], self.stride(), self.cells());
+        for a in (0..D).rev() {
+            cell[a] = (rest / s[a]).checked_sub(GHOSTS).filter(|&i| i < n[a])?;
+            rest %= s[a];
+        }
+        Some(cell)
+    }
     /// Rows along x in one layer of the last axis.
     pub(crate) fn rows_per_layer(&self) -> usize {
         self.cells()[1..D - 1].iter().product()

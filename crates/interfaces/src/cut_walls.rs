@@ -74,7 +74,7 @@ pub struct CutFace {
     /// What the wall's velocity gives \[m/s\].
     pub constant: f64,
     /// Storage indices and weights of the velocities that give the rest.
-    pub terms: [(usize, f64); 5],
+    pub terms: [(usize, f64); 4],
 }
 
 impl CutFace {
@@ -86,15 +86,18 @@ impl CutFace {
 }
 
 impl CutWalls {
-    /// Are the cuts the same, whatever the walls' velocity is?
+    /// Are the cuts and the bodies they belong to the same, whatever the walls' velocity is?
     pub fn same_shape(&self, other: &Self) -> bool {
         let same = |a: &CutComponent, b: &CutComponent| {
-            let links =
-                |n: &CutNode| (n.index, n.links.map(|side| side.map(|link| link.map(|l| l.fraction))));
-            a.solid.iter().map(|s| s.index).eq(b.solid.iter().map(|s| s.index))
+            let links = |n: &CutNode| {
+                (n.index, n.body, n.links.map(|side| side.map(|link| link.map(|l| l.fraction))))
+            };
+            let solid = |s: &SolidPoint| (s.index, s.body);
+            a.solid.iter().map(solid).eq(b.solid.iter().map(solid))
                 && a.links.iter().map(links).eq(b.links.iter().map(links))
                 && a.faces.iter().map(|f| (f.index, f.open)).eq(b.faces.iter().map(|f| (f.index, f.open)))
         };
-        self.components.iter().zip(&other.components).all(|(a, b)| same(a, b))
+        self.n_bodies == other.n_bodies
+            && self.components.iter().zip(&other.components).all(|(a, b)| same(a, b))
     }
 }

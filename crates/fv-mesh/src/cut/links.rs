@@ -1,5 +1,5 @@
 //! Viscous terms along cut links.
-use super::{Step, cell};
+use super::Step;
 use crate::CartesianGrid;
 use crate::grid::GHOSTS;
 use crate::metrics::Metrics;
@@ -16,12 +16,14 @@ use interfaces::{CutComponent, Vector, Wrench};
 ///
 /// replaces the plain one: s of the old velocity, d of the new, however near the wall is.
 #[derive(Clone, Debug)]
-pub(crate) struct Links<const D: usize> {
+pub(super) struct Links<const D: usize> {
+    /// The component.
+    c: usize,
     nodes: Vec<Node>,
     /// Control volumes of the nodes inside.
     solid_volumes: Vec<f64>,
     /// ν times the plain second difference along cut axes in the last step, per node.
-    pub(crate) plain: Vec<f64>,
+    pub(super) plain: Vec<f64>,
     stride: [usize; D],
 }
 
@@ -43,18 +45,19 @@ struct AxisLinks {
 }
 
 impl<const D: usize> Links<D> {
-    pub(crate) fn new(
+    pub(super) fn new(
         component: &CutComponent,
         grid: &CartesianGrid<D>,
         metrics: &Metrics<D>,
         c: usize,
     ) -> Self {
+        let cell = |index: usize| grid.cell_at(index).unwrap_or([0; D]);
         let volume = |index: usize| -> f64 {
-            let cell = cell(grid, index);
+            let cell = cell(index);
             (0..D).map(|a| metrics.of(Some(c), a).volume[GHOSTS + cell[a]]).product()
         };
         let nodes = component.links.iter().map(|node| {
-            let cell = cell(grid, node.index);
+            let cell = cell(node.index);
             let cut_axes = (0..D).filter(|&a| node.links[a].iter().any(Option::is_some));
             let axes = cut_axes.map(|axis| {
                 let (m, j) = (metrics.of(Some(c), axis), GHOSTS + cell[axis]);
@@ -67,6 +70,7 @@ impl<const D: usize> Links<D> {
             Node { volume: volume(node.index), axes: axes.collect() }
         });
         Self {
+            c,
             nodes: nodes.collect(),
             solid_volumes: component.solid.iter().map(|point| volume(point.index)).collect(),
             plain: vec![0.0; component.links.len()],
@@ -75,9 +79,8 @@ impl<const D: usize> Links<D> {
     }
 
     /// See [`Walls::hold`](super::Walls::hold).
-    pub(crate) fn hold(
+    pub(super) fn hold(
         &mut self,
-        c: usize,
         component: &CutComponent,
         step: Step,
         old: &[f64],
@@ -101,16 +104,14 @@ impl<const D: usize> Links<D> {
             let explicit = next[o] - dt * (weights[0] * plain + weights[1] * *last);
             *last = plain;
             let new = (explicit + dt * viscosity * s) / (1.0 + dt * viscosity * d);
-            impulses[node.body] += along(c, density * own.volume * (next[o] - new), node.arm);
+            impulses[node.body] += along(self.c, density * own.volume * (next[o] - new), node.arm);
             next[o] = new;
         }
-        self.hold_solid(c, component, density, next, impulses);
     }
 
     /// See [`Walls::hold_solid`](super::Walls::hold_solid).
-    pub(crate) fn hold_solid(
+    pub(super) fn hold_solid(
         &self,
-        c: usize,
         component: &CutComponent,
         density: f64,
         u: &mut [f64],
@@ -118,7 +119,7 @@ impl<const D: usize> Links<D> {
     ) {
         for (point, volume) in component.solid.iter().zip(&self.solid_volumes) {
             let impulse = density * volume * (u[point.index] - point.velocity);
-            impulses[point.body] += along(c, impulse, point.arm);
+            impulses[point.body] += along(self.c, impulse, point.arm);
             u[point.index] = point.velocity;
         }
     }

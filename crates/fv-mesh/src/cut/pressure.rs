@@ -20,7 +20,7 @@ use rayon::prelude::*;
 ///
 /// (the capacitance matrix method: Buzbee, Dorr, George & Golub 1971). M is symmetric and positive definite and stays what
 /// it is while the walls stay where they are. Few faces: M⁻¹ is kept, and a solution takes two of the box's. Many: conjugate
-/// gradients from the last y, one of the box's each.
+/// gradients from the last y, one of the box's each, with the diagonal 1/((1 − open) g) as preconditioner.
 ///
 /// Regions that the walls separate (the inside of a body, a closed pocket of fluid) hang on one closed face each, through
 /// which nothing flows as long as what enters the region leaves it.
@@ -30,9 +30,10 @@ pub(crate) struct CutPressure {
     dipoles: Vec<(usize, usize, f64)>,
     /// Where each row's dipoles begin.
     row_starts: Vec<usize>,
-    method: Method,
+    /// M⁻¹, row after row, where it is kept.
+    inverse: Option<Vec<f64>>,
     /// y.
-    pub(crate) missing: Vec<f64>,
+    pub(super) missing: Vec<f64>,
     /// B L⁻¹ f + B L⁻¹ G y − y/((1 − open) g).
     residual: Vec<f64>,
     /// Correction of y, and the directions and products of conjugate gradients.
@@ -45,21 +46,11 @@ pub(crate) struct CutPressure {
     orphans: Vec<Orphan>,
 }
 
-/// How M y = b is solved.
-enum Method {
-    /// Not known yet.
-    Unprepared,
-    /// M⁻¹, row after row.
-    Inverse(Vec<f64>),
-    /// Conjugate gradients with the diagonal 1/((1 − open) g) as preconditioner.
-    Iterative,
-}
-
 /// M⁻¹ is kept if it has at most so many entries per cell of the grid: its product then costs less than a few of the box's
 /// solutions.
 const DENSE: usize = 40;
 
-/// Residuals of M y = b, over |B φ|, below which y is good …
+/// Residuals of M y = b, over its terms, below which y is good …
 const EXACT: f64 = 1e-11;
 /// … and those at which conjugate gradients stop, at the latest after so many iterations.
 const TOLERANCE: f64 = 1e-7;
@@ -75,7 +66,7 @@ struct Face {
 }
 
 impl CutPressure {
-    pub(crate) fn new<const D: usize>(
+    pub(super) fn new<const D: usize>(
         cuts: &CutWalls,
         grid: &CartesianGrid<D>,
         metrics: &Metrics<D>,
@@ -102,7 +93,7 @@ impl CutPressure {
             faces,
             dipoles,
             row_starts,
-            method: Method::Unprepared,
+            inverse: None,
             residual: vec![0.0; m],
             change: vec![0.0; m],
             direction: vec![0.0; m],
@@ -113,22 +104,17 @@ impl CutPressure {
         }
     }
 
-    /// Makes what solutions need, with the box's solver; `phi` is scratch.
+    /// Makes M⁻¹ with the box's solver if it is worth keeping; `phi` is scratch.
     ///
     /// # Errors
-    /// Those of the solver; [`FlowError::Walls`] if the matrix is not positive definite.
-    pub(crate) fn prepare<const D: usize>(
+    /// Those of the solver; [`FlowError::Walls`] if M is not positive definite.
+    pub(super) fn prepare<const D: usize>(
         &mut self,
         solver: &mut Pressure<D>,
         phi: &mut [f64],
     ) -> Result<(), FlowError> {
         let m = self.faces.len();
-        match self.method {
-            Method::Unprepared if m * m > DENSE * phi.len() => self.method = Method::Iterative,
-            Method::Unprepared => self.invert(solver, phi)?,
-            Method::Inverse(_) | Method::Iterative => {}
-        }
-        Ok(())
+        if m * m <= DENSE * phi.len() { self.invert(solver, phi) } else { Ok(()) }
     }
 
     /// Makes M⁻¹.
@@ -150,7 +136,7 @@ impl CutPressure {
         }
         phi.fill(0.0);
         let inverse = matrix.llt(Side::Lower).map_err(|_| FlowError::Walls { faces: m })?.inverse();
-        self.method = Method::Inverse((0..m * m).map(|k| inverse[(k / m, k % m)]).collect());
+        self.inverse = Some((0..m * m).map(|k| inverse[(k / m, k % m)]).collect());
         Ok(())
     }
 
@@ -199,7 +185,7 @@ impl CutPressure {
         for ((residual, face), y) in self.residual.iter_mut().zip(&self.faces).zip(&self.missing) {
             let jump = face.jump(phi);
             *residual = jump - face.resistance * y;
-            scale += jump * jump / face.resistance;
+            scale += jump * jump / face.resistance + face.resistance * y * y;
         }
         let goal = EXACT * EXACT * scale;
         self.iterations = 0;
@@ -207,7 +193,7 @@ impl CutPressure {
             return Ok(());
         }
         let m = self.faces.len();
-        if let Method::Inverse(inverse) = &self.method {
+        if let Some(inverse) = &self.inverse {
             let residual = &self.residual;
             self.change.par_iter_mut().zip(inverse.par_chunks_exact(m)).with_min_len(64).for_each(
                 |(y, row)| {

@@ -1,5 +1,4 @@
 //! What walls make of the cells: faces that are not wholly open, cells without a velocity, regions that are cut off.
-use super::cell;
 use crate::CartesianGrid;
 use crate::grid::GHOSTS;
 use crate::metrics::Metrics;
@@ -34,7 +33,7 @@ impl Regions {
         let mut closed = vec![0; grid.n_cells()];
         for (c, component) in cuts.components.iter().enumerate().take(D) {
             for face in &component.faces {
-                let above = cell(grid, face.index);
+                let Some(above) = grid.cell_at(face.index) else { continue };
                 let mut below = above;
                 below[c] = if above[c] == 0 { n[c] - 1 } else { above[c] - 1 };
                 let area: f64 =
@@ -84,21 +83,16 @@ fn orphans<const D: usize>(
 ) -> Vec<Orphan> {
     let solid: [HashSet<usize>; D] =
         std::array::from_fn(|c| cuts.components[c].solid.iter().map(|point| point.index).collect());
-    let (n, stride) = (grid.cells(), grid.stride());
-    let place = |index: usize| {
-        let cell = grid.cell(index);
-        grid.base() + (0..D).map(|a| cell[a] * stride[a]).sum::<usize>()
-    };
+    let n = grid.cells();
+    let place = |index: usize| grid.place(grid.cell(index));
     let orphan = |index: usize| {
-        let (cell, at) = (grid.cell(index), place(index));
+        let cell = grid.cell(index);
         (0..D).all(|a| {
-            let upper = if metrics.periodic[a] && cell[a] + 1 == n[a] {
-                at + stride[a] - n[a] * stride[a]
-            } else {
-                at + stride[a]
-            };
-            let bounded = |end: usize| !metrics.periodic[a] && cell[a] == end;
-            (bounded(0) || solid[a].contains(&at)) && (bounded(n[a] - 1) || solid[a].contains(&upper))
+            let mut above = cell;
+            above[a] = (cell[a] + 1) % n[a];
+            let side = |end: usize| !metrics.periodic[a] && cell[a] == end;
+            (side(0) || solid[a].contains(&grid.place(cell)))
+                && (side(n[a] - 1) || solid[a].contains(&grid.place(above)))
         })
     };
     let mut sources: BTreeMap<usize, Vec<(usize, f64)>> = BTreeMap::new();

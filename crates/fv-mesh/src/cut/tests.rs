@@ -9,7 +9,7 @@ use std::collections::HashMap;
 
 /// A face with this share open.
 fn face(index: usize, open: f64) -> CutFace {
-    CutFace { index, open, constant: 0.0, terms: [(index, 0.0); 5] }
+    CutFace { index, open, constant: 0.0, terms: [(index, 0.0); 4] }
 }
 
 /// All between the lower side and `height` solid, the wall moving along x; cells are 1/`n` wide.
@@ -137,6 +137,30 @@ fn impossible_walls_are_errors() {
     let mut implicit = Projection::new(grid, sides, fluid).unwrap().with_diffusion(Diffusion::Implicit);
     let walls = bed(&implicit, 0.3, 10, 0.0);
     assert!(matches!(implicit.set_walls(Some(walls)), Err(FlowError::Parameter { .. })));
+    implicit.advance(1e-3, [0.0; 2]).unwrap();
+    // The other way round.
+    let mut implicit = channel(10, 0.3, 0.0).with_diffusion(Diffusion::Implicit);
+    assert!(matches!(implicit.advance(1e-3, [0.0; 2]), Err(FlowError::Parameter { .. })));
+}
+
+/// Beside walls diffusion is explicit; without them it is what it was. Walls that are refused change nothing.
+#[test]
+fn walls_come_and_go() {
+    let mut flow = channel(10, 0.3, 0.0);
+    let walls = bed(&flow, 0.3, 10, 0.0);
+    let dt = 3.0 * flow.viscous_limit();
+    assert!(flow.stable_dt(1.0) < flow.viscous_limit());
+    assert!(matches!(flow.advance(dt, [1.0, 0.0]), Err(FlowError::Unstable { .. })));
+    let mut strange = walls.clone();
+    strange.components[0].links[0].body = 1;
+    assert!(matches!(flow.set_walls(Some(strange)), Err(FlowError::Parameter { .. })));
+    assert!(
+        matches!(flow.advance(dt, [1.0, 0.0]), Err(FlowError::Unstable { .. })),
+        "the walls are still there"
+    );
+    flow.set_walls(None).unwrap();
+    assert!(flow.stable_dt(1.0) > flow.viscous_limit());
+    flow.advance(dt, [1.0, 0.0]).unwrap();
 }
 
 /// Same walls: what was prepared is kept.
@@ -218,8 +242,7 @@ fn largest_residual<const D: usize>(
                     }
                 };
                 let upper = if up { next } else { cell };
-                let stride = grid.stride();
-                let at = grid.base() + (0..D).map(|b| upper[b] * stride[b]).sum::<usize>();
+                let at = grid.place(upper);
                 let share = shares[a].get(&at).copied().unwrap_or(1.0);
                 let h = 1.0 / cells[a] as f64;
                 let flux = (phi[grid.index(next)] - phi[here]) / (h * h);

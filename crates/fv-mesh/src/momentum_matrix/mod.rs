@@ -144,14 +144,8 @@ pub(crate) fn check_node<const D: usize>(
     if !value.is_finite() {
         return fail("the velocity of a node", value, "finite");
     }
-    let (n, s) = (grid.cells(), grid.stride());
-    let (mut rest, mut cell) = (index, [0; D]);
-    for a in (0..D).rev() {
-        let Some(i) = (rest / s[a]).checked_sub(GHOSTS).filter(|&i| i < n[a]) else {
-            return fail("the index of a node", index as f64, "that of a node, not of a ghost");
-        };
-        cell[a] = i;
-        rest %= s[a];
+    match grid.cell_at(index) {
+        Some(cell) => Ok(grid.index(cell)),
+        None => fail("the index of a node", index as f64, "that of a node, not of a ghost"),
     }
-    Ok(grid.index(cell))
 }

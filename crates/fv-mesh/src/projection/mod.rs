@@ -1,5 +1,6 @@
 //! The flow algorithm for time-accurate runs.
 mod checkpoint;
+mod immersed;
 mod sources;
 
 use crate::cut::{Step, Walls};
@@ -12,7 +13,7 @@ use crate::per_dimension::per_dimension;
 use crate::poisson::{PoissonError, PoissonInfo};
 use crate::pressure::{Pressure, PressureSolver};
 use crate::{CartesianGrid, Convection, Diffusion, Field, FlowError, Fluid, Side, walls};
-use interfaces::{CutWalls, Vector, Wrench};
+use interfaces::Vector;
 use sources::Sources;
 
 /// Incompressible flow by incremental pressure projection on a staggered grid:
@@ -322,49 +323,6 @@ impl<const D: usize> Projection<D> {
         self.predict(dt, force)?;
         self.project(dt)?;
         self.finish(dt)
-    }
-
-    /// Puts immersed walls into the flow, or takes them out: the viscous terms go to the walls along cut links, the fluxes
-    /// through the open parts of the faces, and the pressure acts on those. Diffusion has to be explicit, and the pressure solver
-    /// should be the direct one: an iterative one has to be as exact as the faces' equation is to be solved.
-    ///
-    /// Walls that are where the last ones were cost nothing; new ones take a solution of the pressure equation per cut face.
-    ///
-    /// # Errors
-    /// [`FlowError::Parameter`] for walls on another grid or implicit diffusion, [`FlowError::Walls`], and those of the
-    /// pressure solver.
-    pub fn set_walls(&mut self, walls: Option<CutWalls>) -> Result<(), FlowError> {
-        per_dimension!(self, Projection, set_walls_here(walls: Option<CutWalls>) -> Result<(), FlowError>)
-    }
-
-    fn set_walls_here(&mut self, walls: Option<CutWalls>) -> Result<(), FlowError> {
-        let Some(cuts) = walls else {
-            self.walls = None;
-            return Ok(());
-        };
-        // Cut links would couple the lines of an implicit axis.
-        match self.diffusion.mode {
-            Diffusion::Implicit => {
-                let range = "Explicit or Auto in a flow with immersed walls";
-                return Err(FlowError::Parameter { name: "Diffusion::Implicit", value: 1.0, range });
-            }
-            _ => self.diffusion.mode = Diffusion::Explicit,
-        }
-        let FlowState { grid, metrics, .. } = &self.state;
-        match &mut self.walls {
-            Some(walls) => walls.set(cuts, grid, metrics)?,
-            None => self.walls = Some(Box::new(Walls::new(cuts, grid, metrics)?)),
-        }
-        if let Some(walls) = &mut self.walls {
-            walls.pressure.prepare(&mut self.pressure_solver, &mut self.phi)?;
-            self.state.fill_walls(&walls.cuts);
-        }
-        Ok(())
-    }
-
-    /// Impulse of the fluid on each body of the walls in the last step \[N s, N m s\], about the body's centre of mass.
-    pub fn wall_impulses(&self) -> &[Wrench] {
-        self.walls.as_ref().map_or(&[], |walls| &walls.impulses)
     }
 
     /// The longest step \[s\] for which Adams–Bashforth diffusion is stable along all axes: 1/(4ν Σ 1/h²) on a uniform periodic

@@ -1,0 +1,58 @@
+//! Immersed walls in a flow.
+use super::Projection;
+use crate::FlowError;
+use crate::cut::{Walls, check};
+use crate::flow_state::FlowState;
+use crate::per_dimension::per_dimension;
+use interfaces::{CutWalls, Wrench};
+
+impl<const D: usize> Projection<D> {
+    /// Puts immersed walls into the flow, or takes them out: the viscous terms go to the walls along cut links, the fluxes
+    /// through the open parts of the faces, and the pressure acts on those. Diffusion is explicit then. Scalars and eddy
+    /// viscosities do not see the walls. The pressure solver should be the direct one: an iterative one has to be as exact as
+    /// the faces' equation is to be solved.
+    ///
+    /// Walls that are where the last ones were cost nothing; new ones take a solution of the pressure equation per cut face,
+    /// unless there are many.
+    ///
+    /// # Errors
+    /// [`FlowError::Parameter`] for walls on another grid and for [`Diffusion::Implicit`](crate::Diffusion::Implicit),
+    /// [`FlowError::Walls`], and those of the pressure solver. The walls are then what they were.
+    pub fn set_walls(&mut self, walls: Option<CutWalls>) -> Result<(), FlowError> {
+        per_dimension!(self, Projection, set_walls_here(walls: Option<CutWalls>) -> Result<(), FlowError>)
+    }
+
+    fn set_walls_here(&mut self, walls: Option<CutWalls>) -> Result<(), FlowError> {
+        let Some(cuts) = walls else {
+            (self.walls, self.diffusion.walled) = (None, false);
+            return Ok(());
+        };
+        self.diffusion.walled = true;
+        let placed = self.diffusion.mode().and_then(|_| self.place(cuts));
+        self.diffusion.walled = self.walls.is_some();
+        placed
+    }
+
+    fn place(&mut self, cuts: CutWalls) -> Result<(), FlowError> {
+        let FlowState { grid, metrics, velocity, .. } = &mut self.state;
+        check(&cuts, grid, metrics)?;
+        match &mut self.walls {
+            Some(walls) if walls.cuts.same_shape(&cuts) => walls.cuts = cuts,
+            walls => {
+                let made = Walls::new(cuts, grid, metrics, &mut self.pressure_solver, &mut self.phi)?;
+                *walls = Some(Box::new(made));
+            }
+        }
+        if let Some(walls) = &self.walls {
+            walls.start(&mut velocity.components);
+        }
+        self.state.fill_velocity();
+        self.state.measure_rates();
+        Ok(())
+    }
+
+    /// Impulse of the fluid on each body of the walls in the last step \[N s, N m s\], about the body's centre of mass.
+    pub fn wall_impulses(&self) -> &[Wrench] {
+        self.walls.as_ref().map_or(&[], |walls| &walls.impulses)
+    }
+}

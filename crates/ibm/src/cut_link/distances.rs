@@ -29,6 +29,11 @@ impl Ticks {
         let wrap = self.period.map(|period| self.places[0] + period - self.places[self.len() - 1]);
         gaps.chain(wrap).fold(0.0, f64::max)
     }
+    /// Does [low, high] reach between the nodes?
+    fn reaches(&self, low: f64, high: f64) -> bool {
+        let ends = self.places.first().zip(self.places.last());
+        self.period.is_some() || ends.is_some_and(|(&first, &last)| low < last && high > first)
+    }
     /// The nodes that lie in [low, high], wrapped, and their places, not wrapped.
     fn within(&self, low: f64, high: f64) -> Vec<(usize, f64)> {
         let turns = match self.period {
@@ -72,6 +77,8 @@ pub(crate) struct Distances {
     pub(crate) near: Vec<Near>,
     /// Distances below this are exact \[m\].
     pub(crate) band: f64,
+    /// Bodies that reach into the box but hold no node.
+    pub(crate) unseen: Vec<BodyId>,
 }
 
 const FAR: u32 = u32::MAX;
@@ -83,7 +90,7 @@ impl Distances {
         let band = 2.0 * widest.norm();
         let mut slots = vec![FAR; shape.iter().product()];
         let mut near: Vec<Near> = Vec::new();
-        let (mut points, mut found) = (Vec::new(), Vec::new());
+        let (mut points, mut found, mut unseen) = (Vec::new(), Vec::new(), Vec::new());
         for b in 0..bodies.n_bodies() {
             let (pose, solid, bounds) =
                 (bodies.pose(BodyId(b)), bodies.solid(BodyId(b)), bodies.aabb(BodyId(b)));
@@ -91,6 +98,8 @@ impl Distances {
                 true => axes[a].within(bounds.min[a] - band, bounds.max[a] + band),
                 false => vec![(0, pose.position[a])],
             });
+            let reaches = (0..dim).all(|a| axes[a].reaches(bounds.min[a], bounds.max[a]));
+            let mut seen = !reaches;
             for &(k, z) in &columns[2] {
                 for &(j, y) in &columns[1] {
                     points.clear();
@@ -101,6 +110,7 @@ impl Distances {
                         if distance >= band {
                             continue;
                         }
+                        seen |= distance <= 0.0;
                         let arm = Point::new(x, y, z) - pose.position;
                         let this = Near { node: [i, j, k], distance, body: b, arm };
                         let slot = &mut slots[i + shape[0] * (j + shape[1] * k)];
@@ -115,9 +125,12 @@ impl Distances {
                     }
                 }
             }
+            if !seen {
+                unseen.push(BodyId(b));
+            }
         }
-        let mut out =
-            Self { shape, periodic: axes.each_ref().map(|axis| axis.period.is_some()), slots, near, band };
+        let periodic = axes.each_ref().map(|axis| axis.period.is_some());
+        let mut out = Self { shape, periodic, slots, near, band, unseen };
         out.sort();
         out
     }

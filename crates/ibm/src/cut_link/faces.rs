@@ -1,6 +1,7 @@
 //! Faces of which the surface closes a part.
+use super::Cutter;
 use super::distances::Near;
-use super::{Cutter, Plane};
+use super::plane::Plane;
 use interfaces::{Bodies, CutFace, Vector};
 
 /// Smaller openings are closed: the flux that is lost goes with the square of this share.
@@ -40,7 +41,8 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
             }
             self.wall_velocity(near.body, arm)
         };
-        let taken: f64 = face.terms.iter().map(|&(index, weight)| weight * wall(index)).sum();
+        let terms = face.terms.iter().filter(|term| term.1 != 0.0);
+        let taken: f64 = terms.map(|&(index, weight)| weight * wall(index)).sum();
         CutFace { constant: wall(face.index) - taken, ..face }
     }
 
@@ -185,7 +187,7 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
 
 /// A face whose flux is the wall's.
 fn closed(index: usize) -> CutFace {
-    CutFace { index, open: 0.0, constant: 0.0, terms: [(index, 0.0); 5] }
+    CutFace { index, open: 0.0, constant: 0.0, terms: [(index, 0.0); 4] }
 }
 
 /// Adds what the curvature of the profile changes in a flux by straight pieces; `second` is the node after next on the open

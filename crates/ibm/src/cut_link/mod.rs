@@ -7,17 +7,17 @@ mod plane;
 use crate::IbmError;
 use distances::{Distances, Ticks};
 use interfaces::{Bodies, BodyId, CutComponent, CutWalls, Point, SolidPoint, Vector, VelocityField};
-use plane::Plane;
 
 /// How bodies at rest (or turning in themselves) cut a staggered grid: where links between velocity nodes meet the
 /// surface, and which part of every face is open. See [`CutWalls`] for what a flow does with it.
 ///
 /// The flux through a cut face follows from a velocity that is linear in the distance from the wall: between the wall and
-/// the node of the face, and between that node and its neighbour on the open side. That makes the fluxes second order.
+/// the node of the face, and between that node and its neighbour on the open side; in the plane the curvature of the
+/// profile is added. That makes the fluxes second order.
 ///
 /// # Errors
-/// [`IbmError::Lost`], [`IbmError::TooLarge`] and [`IbmError::Unseen`] for a body that no node of some velocity component
-/// is inside of.
+/// [`IbmError::Lost`], [`IbmError::TooLarge`] and [`IbmError::Unseen`] for a body in the box that no node of some velocity
+/// component is inside of.
 pub fn cut_walls<B: Bodies + ?Sized>(velocity: &dyn VelocityField, bodies: &B) -> Result<CutWalls, IbmError> {
     let dim = velocity.dim();
     for c in 0..dim {
@@ -27,29 +27,19 @@ pub fn cut_walls<B: Bodies + ?Sized>(velocity: &dyn VelocityField, bodies: &B) -
     }
     let vertices = Distances::new([0, 1, 2].map(|a| vertices(velocity, a)), dim, bodies);
     let mut walls = CutWalls { n_bodies: bodies.n_bodies(), ..CutWalls::default() };
-    let mut seen = vec![0; bodies.n_bodies()];
     for c in 0..dim {
         let lattice = velocity.lattice(c);
         let nodes = Distances::new([0, 1, 2].map(|a| Ticks::nodes(&lattice.axes[a])), dim, bodies);
-        let component = Cutter { velocity, bodies, c, dim, nodes: &nodes, vertices: &vertices };
-        let solid = component.solid();
-        let mut found = vec![false; bodies.n_bodies()];
-        solid.iter().for_each(|point| found[point.body] = true);
-        seen.iter_mut().zip(found).for_each(|(seen, found)| *seen += usize::from(found));
-        walls.components[c] = CutComponent { solid, links: component.links(), faces: component.faces() };
-    }
-    match seen.iter().position(|&components| components < dim) {
-        Some(b) => {
-            let extent = bodies.solid(BodyId(b)).aabb().extent();
+        if let Some(&body) = nodes.unseen.first() {
+            let extent = bodies.solid(body).aabb().extent();
             let size = extent.iter().take(dim).fold(f64::INFINITY, |m, &e| m.min(e));
-            Err(IbmError::Unseen {
-                body: BodyId(b),
-                size,
-                spacing: velocity.lattice(0).axes[0].mean_spacing(),
-            })
+            return Err(IbmError::Unseen { body, size, spacing: lattice.axes[0].mean_spacing() });
         }
-        None => Ok(walls),
+        let component = Cutter { velocity, bodies, c, dim, nodes: &nodes, vertices: &vertices };
+        let (solid, links, faces) = (component.solid(), component.links(), component.faces());
+        walls.components[c] = CutComponent { solid, links, faces };
     }
+    Ok(walls)
 }
 
 /// All faces of the cells along axis `a`.

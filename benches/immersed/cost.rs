@@ -1,5 +1,5 @@
 //! What walls cost: a step with a ball of 5 % of the box over one without, and what it takes to set it up.
-use crate::Outcome;
+use example_support::Outcome;
 use example_support::cpu::Stopwatch;
 use example_support::still_bodies::StillBodies;
 use siltflow::dem::{Disc, Sphere};
@@ -70,15 +70,11 @@ pub(crate) fn table() -> Outcome<()> {
         "{:>8} {:>8} {:>10} {:>8} {:>8} {:>7} {:>6} {:>9}",
         "cells", "faces", "ns/face", "plain ns", "walls ns", "ratio", "its", "set up s"
     );
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let rows = || -> Outcome<()> {
-        for cells in [128, 256, 512] {
-            row::<2>(cells, Disc::new((SHARE / PI).sqrt())?)?;
-        }
-        for cells in [32, 64, 128] {
-            row::<3>(cells, Sphere::new((SHARE * 0.75 / PI).cbrt())?)?;
-        }
-        Ok(())
-    };
-    Ok(pool.install(|| rows().map_err(|e| e.to_string()))?)
+    for cells in [128, 256, 512] {
+        row::<2>(cells, Disc::new((SHARE / PI).sqrt())?)?;
+    }
+    for cells in [32, 64] {
+        row::<3>(cells, Sphere::new((SHARE * 0.75 / PI).cbrt())?)?;
+    }
+    Ok(())
 }

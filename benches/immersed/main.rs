@@ -1,73 +1,146 @@
 //! Immersed walls against exact and published values: plane Poiseuille flow turned against the grid, Taylor–Couette flow,
-//! simple-cubic arrays of spheres, the cylinder of Schäfer & Turek; and what walls cost. `cargo bench --bench immersed`, or with the names of cases
-//! after `--`.
-mod channel;
+//! simple-cubic arrays of spheres, the cylinder of Schäfer & Turek; and what walls cost. On one thread: `cargo bench --bench
+//! immersed`, or with the names of cases after `--`.
 mod cost;
-mod couette;
-mod cylinder;
-mod spheres;
 
-use siltflow::flow::Projection;
-use siltflow::interfaces::VelocityField;
+use example_support::Outcome;
+use example_support::channel_cylinder::{self, Cells, DRAG, Found, LIFT, Way};
+use example_support::cpu::Stopwatch;
+use example_support::walled_flows::{
+    COUETTE_TORQUE, SphereArray, TurnedChannel, couette, couette_velocity, settle, velocity_errors,
+};
+use siltflow::flow::Convection;
 
-type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
+/// Flows are steady when they change by less than this part.
+const STEADY: f64 = 1e-6;
 
 fn main() -> Outcome<()> {
     let wanted: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
     type Case = (&'static str, fn() -> Outcome<()>);
     let cases: [Case; 5] = [
-        ("channel", channel::table),
-        ("couette", couette::table),
-        ("spheres", spheres::table),
-        ("cylinder", cylinder::table),
+        ("channel", channel),
+        ("couette", cylinders),
+        ("spheres", spheres),
+        ("cylinder", cylinder),
         ("cost", cost::table),
     ];
-    for (name, table) in cases {
-        if wanted.is_empty() || wanted.iter().any(|w| w == name) {
-            table()?;
+    rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(|| {
+        for (name, table) in cases {
+            if wanted.is_empty() || wanted.iter().any(|w| w == name) {
+                table()?;
+            }
+        }
+        Ok(())
+    })
+}
+
+fn channel() -> Outcome<()> {
+    println!(
+        "\nPlane Poiseuille flow turned against the grid: error of the flow rate, largest of the velocity over its maximum"
+    );
+    println!("{:>6} {:>6} {:>9} {:>9} {:>8} {:>7}", "angle", "cells", "flow", "velocity", "faces", "CPU s");
+    for degrees in [10.0, 20.0, 30.0, 40.0] {
+        for cells in [10, 20, 40] {
+            let watch = Stopwatch::start();
+            let mut channel = TurnedChannel::new(degrees, cells)?;
+            let mean = channel.mean(STEADY)?;
+            let [worst, _] = velocity_errors(&channel.flow, |x| channel.exact(x));
+            println!(
+                "{degrees:>6} {cells:>6} {:>8.3}% {:>8.3}% {:>8} {:>7.2}",
+                100.0 * (mean - 1.0),
+                100.0 * worst / 1.5,
+                channel.faces,
+                watch.elapsed().cpu
+            );
         }
     }
     Ok(())
 }
 
-/// Advances until nothing changes any more: the largest change of `value` over an interval, relative to its largest value.
-fn settle<const D: usize>(
-    flow: &mut Projection<D>,
-    force: [f64; D],
-    interval: f64,
-    mut value: impl FnMut(&mut Projection<D>, f64) -> f64,
-) -> Outcome<f64> {
-    let mut last = f64::INFINITY;
-    loop {
-        let end = flow.time() + interval;
-        let mut dt = 0.0;
-        while flow.time() < end {
-            dt = flow.stable_dt(0.4);
-            flow.advance(dt, force)?;
+fn cylinders() -> Outcome<()> {
+    println!("\nTaylor–Couette flow: largest and rms error of the velocity, error of the torques");
+    println!(
+        "{:>6} {:>6} {:>10} {:>10} {:>9} {:>9} {:>7}",
+        "cells", "moved", "max", "rms", "inner", "outer", "CPU s"
+    );
+    for shift in [0.0, 0.3] {
+        for cells in [32, 64, 128] {
+            let watch = Stopwatch::start();
+            let mut flow = couette(cells, [shift, 0.7 * shift])?;
+            let inner = settle(&mut flow, [0.0; 2], [0.05, STEADY], |flow| {
+                flow.wall_impulses()[0].torque.z / flow.last_dt()
+            })?;
+            let outer = flow.wall_impulses()[1].torque.z / flow.last_dt();
+            let [worst, rms] = velocity_errors(&flow, couette_velocity);
+            println!(
+                "{cells:>6} {shift:>6} {worst:>10.2e} {rms:>10.2e} {:>8.3}% {:>8.3}% {:>7.2}",
+                100.0 * (-inner / COUETTE_TORQUE - 1.0),
+                100.0 * (outer / COUETTE_TORQUE - 1.0),
+                watch.elapsed().cpu
+            );
         }
-        let now = value(flow, dt);
-        if (now - last).abs() < 1e-6 * now.abs() {
-            return Ok(now);
-        }
-        last = now;
     }
+    Ok(())
 }
 
-/// Largest difference of a velocity component from the exact one at the nodes where that is not zero.
-fn largest_error<const D: usize>(flow: &Projection<D>, exact: impl Fn([f64; D]) -> [f64; D]) -> f64 {
-    let mut worst = 0.0_f64;
-    for c in 0..D {
-        let lattice = flow.velocity().lattice(c);
-        let [nx, ny, nz] = lattice.shape();
-        for at in (0..nx * ny * nz).map(|i| [i % nx, i / nx % ny, i / (nx * ny)].map(|i| i as isize)) {
-            let x = lattice.position(at);
-            let wanted = exact(std::array::from_fn(|a| x[a]))[c];
-            if wanted != 0.0
-                && let Some(index) = lattice.index(at)
-            {
-                worst = worst.max((flow.velocity().component(c)[index] - wanted).abs());
+fn spheres() -> Outcome<()> {
+    println!("\nSimple-cubic arrays of spheres in Stokes flow: K = F/(6πμaU), against Zick & Homsy (1982)");
+    println!(
+        "{:>7} {:>8} {:>6} {:>8} {:>8} {:>9} {:>8} {:>7}",
+        "φ", "cells/D", "cells", "K", "theirs", "error", "faces", "CPU s"
+    );
+    for (fraction, theirs) in [(0.125, 4.292), (0.343, 15.4)] {
+        for per_diameter in [12.0, 24.0] {
+            let watch = Stopwatch::start();
+            let cells = (per_diameter / (2.0 * SphereArray::radius(fraction))).round() as usize;
+            let mut array = SphereArray::new(fraction, cells)?;
+            let k = array.drag_factor(STEADY)?;
+            println!(
+                "{fraction:>7} {:>8.1} {cells:>6} {k:>8.3} {theirs:>8} {:>8.2}% {:>8} {:>7.1}",
+                2.0 * array.radius * cells as f64,
+                100.0 * (k / theirs - 1.0),
+                array.faces,
+                watch.elapsed().cpu
+            );
+        }
+    }
+    Ok(())
+}
+
+fn cylinder() -> Outcome<()> {
+    println!("\nCylinder in a channel, Re 20: Cd {DRAG:.6} and Cl {LIFT:.6} wanted");
+    println!(
+        "{:>22} {:>15} {:>6} {:>7} {:>11} {:>9} {:>9} {:>10} {:>9} {:>9} {:>7} {:>8}",
+        "way", "cells", "per D", "number", "moved", "Cd", "error", "Cl", "error", "Δp", "steps", "CPU s"
+    );
+    let shifts = [[0.0, 0.0], [0.37, 0.3], [0.5, 0.5]];
+    let [central, quick] = [Convection::Central, Convection::Quick].map(Way::CutLinks);
+    let gathered = Cells::Gathered(1.05);
+    for (way, kind) in [
+        (central, gathered),
+        (quick, gathered),
+        (central, Cells::Equal),
+        (quick, Cells::Equal),
+        (Way::Smooth, Cells::Equal),
+        (Way::Hfdib, Cells::Equal),
+    ] {
+        for per_diameter in [10, 20, 40] {
+            // Fine grids of equal cells take minutes.
+            let few = per_diameter == 40 && matches!(kind, Cells::Equal);
+            for shift in &shifts[..if few { 1 } else { 3 }] {
+                let found = channel_cylinder::run(way, kind, per_diameter, *shift)?;
+                let Found { cells, errors, coefficients: [drag, lift], steps, cpu } = found;
+                let [drag_error, lift_error, drop_error] = errors.map(|e| 100.0 * e);
+                println!(
+                    "{:>22} {:>15} {per_diameter:>6} {cells:>7} {:>5.2} {:>5.2} {drag:>9.5} {drag_error:>8.3}% {lift:>10.6} \
+                     {lift_error:>8.1}% {drop_error:>8.2}% {steps:>7} {cpu:>8.2}",
+                    way.to_string(),
+                    format!("{kind:?}"),
+                    shift[0],
+                    shift[1]
+                );
             }
         }
     }
-    worst
+    Ok(())
 }

@@ -3,7 +3,7 @@
 //! 1. Speeds at 0.005 s and 0.03 s against unsteady Stokes theory (tests/data/startup_two_discs.csv).
 //! 2. Speeds at 0.2 s on 10, 15, 20 and 30 cells per diameter against 60 (takes about two minutes), and the order.
 //! 3. Half and double the time step at 15 cells per diameter.
-use crate::Outcome;
+use example_support::Outcome;
 use example_support::cpu::Stopwatch;
 use example_support::scene::{FLUID, Scene};
 use siltflow::coupling::{self, Schedule};

@@ -5,7 +5,8 @@
 //! 2. A doubly periodic shear layer (Minion & Brown 1997: u = tanh 30(¼ − |y − ½|), v = 0.05 sin 2πx, ν 5e-4) at t 0.8 against
 //!    the finest grid.
 //! 3. The cavity at Re 400, t 4, against the finest grid; with the lid gathering the cells too.
-use crate::{Outcome, Point, Runs, Table};
+use crate::{Point, Runs, Table};
+use example_support::Outcome;
 use example_support::cpu::Stopwatch;
 use siltflow::flow::{
     Axis, CartesianGrid, Cluster, FlowError, Fluid, GridMismatch, Integrals, Projection, Sampler, Side,

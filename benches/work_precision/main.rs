@@ -11,11 +11,9 @@ mod cylinder;
 mod discs;
 mod flows;
 
+use example_support::Outcome;
 use example_support::picture::plot::{self, Panel, Series};
-use std::error::Error;
 use std::path::Path;
-
-pub(crate) type Outcome<T> = Result<T, Box<dyn Error + Send + Sync>>;
 
 /// What a run costs and what it is worth.
 #[derive(Clone, Debug)]

@@ -1,5 +1,6 @@
 //! Bodies on grids that are stretched away from them.
 use crate::with_threads;
+use example_support::axes::gathered;
 use example_support::scene::{BOX, FLUID, GRAVITY, MATERIAL};
 use siltflow::coupling::{CouplingError, Particles, Simulation, WeightBalance};
 use siltflow::dem::{Disc, Material, RigidBodies};
@@ -12,26 +13,7 @@ const CELLS: f64 = 15.0;
 
 /// An axis from 0 to `length` with equal cells within `patch` that grow by `ratio` from cell to cell outside.
 fn axis(length: f64, patch: [f64; 2], ratio: f64) -> Axis {
-    let h = DIAMETER / CELLS;
-    let [from, to] = patch.map(|x| (x / h).round() as usize);
-    let grown = |room: f64| {
-        // So many cells, and the room shared among them in proportion.
-        let n = (1.0 + room / h * (ratio - 1.0)).ln() / ratio.ln();
-        let mut widths: Vec<f64> = (1..=n.round() as i32).map(|i| ratio.powi(i)).collect();
-        let sum: f64 = widths.iter().sum();
-        widths.iter_mut().for_each(|w| *w *= room / sum);
-        widths
-    };
-    let mut widths = grown(from as f64 * h);
-    widths.reverse();
-    widths.extend(std::iter::repeat_n(h, to - from));
-    widths.extend(grown(length - to as f64 * h));
-    let mut faces = vec![0.0];
-    faces.extend(widths.iter().scan(0.0, |x, w| {
-        *x += w;
-        Some(*x)
-    }));
-    Axis::from_faces(faces).unwrap()
+    gathered(length, DIAMETER / CELLS, patch, ratio, 0.0).unwrap()
 }
 
 fn simulation<F: Forcing>(

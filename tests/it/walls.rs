@@ -1,123 +1,78 @@
 //! Immersed walls at rest: exact and published values. `benches/immersed` has the orders and the costs.
 use crate::with_threads;
-use example_support::still_bodies::{Banks, Bore, StillBodies};
+use example_support::still_bodies::StillBodies;
+use example_support::walled_flows::{
+    COUETTE_TORQUE, SphereArray, TurnedChannel, couette, couette_velocity, put_walls, settle, velocity_errors,
+};
 use siltflow::coupling::{Particles, Simulation, WeightBalance};
-use siltflow::dem::{Disc, Material, RigidBodies, Sphere};
+use siltflow::dem::{Disc, Material, RigidBodies};
 use siltflow::flow::{CartesianGrid, Fluid, Projection, Side};
-use siltflow::ibm::{SmoothForcing, cut_walls};
+use siltflow::ibm::SmoothForcing;
 use siltflow::interfaces::{BodyId, Freedom, Kinematics, Periods, Pose, Twist, Vector, VelocityField};
-use std::f64::consts::PI;
 
-/// Steps until `value` of the flow and its step changes by less than 10⁻⁵ of itself over `interval` \[s\].
-fn settle<const D: usize>(
-    flow: &mut Projection<D>,
-    force: [f64; D],
-    interval: f64,
-    value: impl Fn(&mut Projection<D>) -> f64,
-) -> f64 {
-    let mut last = f64::INFINITY;
-    for _ in 0..1000 {
-        let end = flow.time() + interval;
-        while flow.time() < end {
-            let dt = flow.stable_dt(0.4);
-            flow.advance(dt, force).unwrap();
-        }
-        let now = value(flow);
-        if (now - last).abs() < 1e-5 * now.abs() {
-            return now;
-        }
-        last = now;
-    }
-    panic!("not steady: {last}");
-}
+/// Flows are steady when they change by less than this part.
+const STEADY: f64 = 1e-5;
 
-/// Taylor–Couette: u_θ = −r/3 + 1/(12 r) between R 0.25, which turns at 1, and R 0.5; torque 4πμ/12 on both.
+/// Taylor–Couette flow at 32 cells per unit of length. Measured: 0.02 % and 5e-4; the cut-cell code of the reference has 4.5e-3.
 #[test]
 fn flow_between_cylinders() {
-    let (cells, viscosity) = (32, 0.1);
-    let half = 0.5 + 2.0 / cells as f64;
-    let grid = CartesianGrid::new([cells + 4; 2], [2.0 * half; 2]).unwrap();
-    let grid = grid.with_origin([-half + 0.01, -half + 0.007]).unwrap();
-    let mut flow = Projection::new(grid, Side::WALL.everywhere(), Fluid { density: 1.0, viscosity }).unwrap();
-    let bodies = StillBodies::default().with(Disc::new(0.25).unwrap(), [0.0; 3], 1.0).with(
-        Bore { radius: 0.5, half: [2.0 * half; 2] },
-        [0.0; 3],
-        0.0,
-    );
-    let walls = cut_walls(flow.velocity(), &bodies).unwrap();
-    flow.set_walls(Some(walls)).unwrap();
+    let mut flow = couette(32, [0.083, 0.131]).unwrap();
     let torque = |flow: &mut Projection<2>| flow.wall_impulses()[0].torque.z / flow.last_dt();
-    let inner = settle(&mut flow, [0.0; 2], 0.2, torque);
+    let inner = settle(&mut flow, [0.0; 2], [0.2, STEADY], torque).unwrap();
     let outer = flow.wall_impulses()[1].torque.z / flow.last_dt();
-    let exact = 4.0 * PI * viscosity / 12.0;
-    assert!(
-        (inner / exact + 1.0).abs() < 1e-3 && (outer / exact - 1.0).abs() < 1e-3,
-        "{inner} {outer} {exact}"
-    );
-    let lattice = flow.velocity().lattice(0);
-    let mut worst = 0.0_f64;
-    for at in (0..lattice.shape()[0] * lattice.shape()[1])
-        .map(|i| [i % lattice.shape()[0], i / lattice.shape()[0], 0])
-    {
-        let at = at.map(|i| i as isize);
-        let [x, y, _] = lattice.position(at);
+    for error in [inner / COUETTE_TORQUE + 1.0, outer / COUETTE_TORQUE - 1.0] {
+        assert!(error.abs() < 5e-4, "{inner} {outer}");
+    }
+    let [worst, rms] = velocity_errors(&flow, couette_velocity);
+    assert!(worst < 7e-4 && rms < 2e-4, "{worst} {rms}");
+    // dp/dr = ρ u_θ²/r, a rise by 0.0136 Pa. Measured: 0.003 Pa where the centre of a cell is in the fluid. In slivers, where
+    // almost nothing flows, the pressure means little, but has to stay bounded (1.6 Pa if it is left to itself).
+    let grid = flow.grid();
+    let half = 0.5 * grid.spacing()[0];
+    let mut errors = Vec::new();
+    for (cell, p) in flow.pressure().values().enumerate() {
+        let [x, y] = grid.centre(grid.cell(cell));
         let r = x.hypot(y);
-        if (0.25..0.5).contains(&r) {
-            let wanted = -y * (-1.0 / 3.0 + 1.0 / (12.0 * r * r));
-            worst = worst.max((flow.velocity().component(0)[lattice.index(at).unwrap()] - wanted).abs());
+        let exact = r * r / 18.0 - r.ln() / 18.0 - 1.0 / (288.0 * r * r);
+        let corners = [[-half, -half], [half, -half], [-half, half], [half, half]];
+        if corners.iter().any(|c| in_the_gap((x + c[0]).hypot(y + c[1]))) {
+            errors.push((in_the_gap(r), p - exact));
         }
     }
-    // The cut-cell code of the reference has 4.5e-3 at this resolution.
-    assert!(worst < 1e-3, "{worst}");
+    let mean = errors.iter().map(|e| e.1).sum::<f64>() / errors.len() as f64;
+    let most =
+        |of: bool| errors.iter().filter(|e| e.0 == of).fold(0.0, |most: f64, e| most.max((e.1 - mean).abs()));
+    let [inside, slivers] = [most(true), most(false)];
+    assert!(inside < 5e-3 && slivers < 0.2, "{inside} {slivers}");
 }
 
-/// Plane Poiseuille flow at 20° to the grid, ten cells across.
+fn in_the_gap(r: f64) -> bool {
+    (0.25..0.5).contains(&r)
+}
+
+/// Plane Poiseuille flow at 20° to the grid, ten cells across, over periodic sides. Measured: 0.005 % and 0.64 %.
 #[test]
 fn flow_in_a_turned_channel() {
-    let (width, viscosity, h) = (1.0, 0.1, 0.1);
-    let slope = 20.0_f64.to_radians();
-    let count = [(2.0 / slope.sin() / h).round(), (2.0 / slope.cos() / h).round()];
-    let lengths = count.map(|n| n * h);
-    let grid = CartesianGrid::new(count.map(|n| n as usize), lengths).unwrap();
-    let grid = grid.with_origin(lengths.map(|l| -0.5 * l)).unwrap();
-    let fluid = Fluid { density: 1.0, viscosity };
-    let mut flow = Projection::new(grid, Side::Periodic.everywhere(), fluid).unwrap();
-    let banks = Banks { lengths, width };
-    let [along, _] = banks.axes();
-    let length = lengths[0].hypot(lengths[1]);
-    let bodies = StillBodies::default().with(banks, [0.012, 0.037, 0.0], 0.0);
-    let walls = cut_walls(flow.velocity(), &bodies).unwrap();
-    flow.set_walls(Some(walls)).unwrap();
-    let rate = |flow: &mut Projection<2>| {
-        let total = flow.statistics().volume_flow;
-        (total.x * along[0] + total.y * along[1]) / (width * length)
-    };
-    let force = along.map(|a| a * 12.0 * viscosity / (width * width));
-    let mean = settle(&mut flow, force, 0.5, rate);
-    assert!((mean - 1.0).abs() < 1e-3, "{mean}");
+    let mut channel = TurnedChannel::new(20.0, 10).unwrap();
+    let mean = channel.mean(STEADY).unwrap();
+    assert!((mean - 1.0).abs() < 2e-4, "{mean}");
+    let [worst, _] = velocity_errors(&channel.flow, |x| channel.exact(x));
+    assert!(worst / 1.5 < 0.01, "{worst}");
 }
 
-/// A simple-cubic array of spheres: K = F/(6πμaU) is 15.4 at φ 0.343 (Zick & Homsy 1982).
+/// A simple-cubic array of spheres: K is 15.4 at φ 0.343 (Zick & Homsy 1982). Measured: −0.99 % at 12 cells per diameter.
 #[test]
 fn flow_through_an_array_of_spheres() {
-    let radius = (0.343 * 3.0 / (4.0 * PI)).cbrt();
-    let grid = CartesianGrid::new([14; 3], [1.0; 3]).unwrap();
-    let fluid = Fluid { density: 1.0, viscosity: 1.0 };
-    let mut flow = Projection::new(grid, Side::Periodic.everywhere(), fluid).unwrap();
-    let bodies = StillBodies::default().with(Sphere::new(radius).unwrap(), [0.513, 0.487, 0.505], 0.0);
-    let walls = cut_walls(flow.velocity(), &bodies).unwrap();
-    flow.set_walls(Some(walls)).unwrap();
-    let force = 1e-3;
-    let speed = settle(&mut flow, [force, 0.0, 0.0], 0.01, |flow| flow.statistics().volume_flow.x);
-    let k = force / (6.0 * PI * radius * speed);
-    assert!((k / 15.4 - 1.0).abs() < 0.015, "{k}");
+    let mut array = SphereArray::new(0.343, 14).unwrap();
+    let k = array.drag_factor(STEADY).unwrap();
+    assert!((k / 15.4 - 1.0).abs() < 0.012, "{k}");
     // The sphere bears the force on the box.
-    let impulse = flow.wall_impulses()[0].force / flow.last_dt();
-    assert!((impulse.x / force - 1.0).abs() < 1e-3 && impulse.yz().norm() < 1e-3 * force, "{impulse}");
+    let impulse = array.flow.wall_impulses()[0].force / (SphereArray::FORCE * array.flow.last_dt());
+    assert!((impulse.x - 1.0).abs() < 1e-3 && impulse.yz().norm() < 1e-3, "{impulse}");
 }
 
-/// Two channels' worth of cut faces, one solved by a dense product and one by conjugate gradients: neither allocates, and the
-/// number of threads changes no bit.
+/// Few cut faces, solved by a dense product, and many, by conjugate gradients: neither allocates, and the number of threads
+/// changes no bit.
 #[test]
 fn steps_beside_walls_allocate_nothing() {
     for radius in [0.1, 0.45] {
@@ -127,8 +82,7 @@ fn steps_beside_walls_allocate_nothing() {
                 let fluid = Fluid { density: 1.0, viscosity: 0.01 };
                 let mut flow = Projection::new(grid, Side::Periodic.everywhere(), fluid).unwrap();
                 let bodies = StillBodies::default().with(Disc::new(radius).unwrap(), [0.5, 0.5, 0.0], 0.3);
-                let walls = cut_walls(flow.velocity(), &bodies).unwrap();
-                flow.set_walls(Some(walls)).unwrap();
+                put_walls(&mut flow, &bodies).unwrap();
                 let mut steps = |n| (0..n).for_each(|_| flow.advance(5e-3, [0.1, 0.02]).unwrap());
                 steps(10);
                 let count = allocation_counter::measure(|| steps(10)).count_total;
@@ -150,8 +104,7 @@ fn walls_and_moving_bodies_meet_in_one_flow() {
     let grid = CartesianGrid::new([60, 60], [6e-3, 6e-3]).unwrap();
     let mut flow = Projection::new(grid, Side::WALL.everywhere(), fluid).unwrap();
     let post = StillBodies::default().with(Disc::new(0.7e-3).unwrap(), [2.2e-3, 1.8e-3, 0.0], 0.0);
-    let walls = cut_walls(flow.velocity(), &post).unwrap();
-    flow.set_walls(Some(walls)).unwrap();
+    put_walls(&mut flow, &post).unwrap();
     let mut bodies = RigidBodies::new(Periods::new([None; 3]));
     let material =
         Material { density: 2000.0, youngs_modulus: 1e6, poisson_ratio: 0.3, damping: 1.0, friction: 0.0 };

@@ -45,6 +45,7 @@ impl Bodies for StillBodies {
 }
 
 /// All that is not within `radius` of the axis z.
+#[derive(Clone, Copy, Debug)]
 pub struct Bore {
     /// Radius of the bore \[m\].
     pub radius: f64,
@@ -62,6 +63,7 @@ impl Solid for Bore {
 }
 
 /// All of a doubly periodic box but a channel along its diagonal and the channel's images.
+#[derive(Clone, Copy, Debug)]
 pub struct Banks {
     /// Edge lengths of the box \[m\].
     pub lengths: [f64; 2],

@@ -1,0 +1,205 @@
+//! Steady flows beside immersed walls with exact or published answers.
+use crate::Outcome;
+use crate::still_bodies::{Banks, Bore, StillBodies};
+use dem::{Disc, Sphere};
+use fv_mesh::{CartesianGrid, Fluid, Projection, Side};
+use ibm::cut_walls;
+use interfaces::VelocityField;
+use std::f64::consts::PI;
+
+/// Kinematic viscosity of the plane flows \[m²/s\].
+const VISCOSITY: f64 = 0.1;
+
+/// Makes walls of `bodies`; tells how many faces they cut or close.
+///
+/// # Errors
+/// Those of the cuts and of the flow.
+pub fn put_walls<const D: usize>(flow: &mut Projection<D>, bodies: &StillBodies) -> Outcome<usize> {
+    let walls = cut_walls(flow.velocity(), bodies)?;
+    let faces = walls.components.iter().map(|component| component.faces.len()).sum();
+    flow.set_walls(Some(walls))?;
+    Ok(faces)
+}
+
+/// Advances at a Courant number of 0.4 until `value` changes by less than the part `tolerance` of itself within `interval` \[s\].
+///
+/// # Errors
+/// Those of the flow, and if that takes more than a thousand intervals.
+pub fn settle<const D: usize>(
+    flow: &mut Projection<D>,
+    force: [f64; D],
+    [interval, tolerance]: [f64; 2],
+    value: impl Fn(&mut Projection<D>) -> f64,
+) -> Outcome<f64> {
+    let mut last = f64::INFINITY;
+    for _ in 0..1000 {
+        let end = flow.time() + interval;
+        while flow.time() < end {
+            let dt = flow.stable_dt(0.4);
+            flow.advance(dt, force)?;
+        }
+        let now = value(flow);
+        if (now - last).abs() < tolerance * now.abs() {
+            return Ok(now);
+        }
+        last = now;
+    }
+    Err(format!("not steady after 1000 intervals of {interval} s: {last}").into())
+}
+
+/// Largest difference of a velocity component from the exact one, and root mean square of the vector's, at the nodes where the
+/// exact one is not zero.
+pub fn velocity_errors<const D: usize>(
+    flow: &Projection<D>,
+    exact: impl Fn([f64; D]) -> [f64; D],
+) -> [f64; 2] {
+    let (mut worst, mut sum, mut nodes) = (0.0_f64, 0.0, 0);
+    for c in 0..D {
+        let lattice = flow.velocity().lattice(c);
+        let [nx, ny, nz] = lattice.shape();
+        for at in (0..nx * ny * nz).map(|i| [i % nx, i / nx % ny, i / (nx * ny)].map(|i| i as isize)) {
+            let x = lattice.position(at);
+            let wanted = exact(std::array::from_fn(|a| x[a]))[c];
+            if wanted != 0.0
+                && let Some(index) = lattice.index(at)
+            {
+                let error = flow.velocity().component(c)[index] - wanted;
+                worst = worst.max(error.abs());
+                sum += error * error;
+                nodes += 1;
+            }
+        }
+    }
+    [worst, (D as f64 * sum / f64::from(nodes)).sqrt()]
+}
+
+/// Taylor–Couette flow: R 0.25 turns at 1 in R 0.5 at rest, `cells` per unit of length, moved by `shift` cells. It starts with
+/// the exact velocity; the body of the inner wall is number 0.
+///
+/// # Errors
+/// Those of the walls and of the flow.
+pub fn couette(cells: usize, shift: [f64; 2]) -> Outcome<Projection<2>> {
+    let h = 1.0 / cells as f64;
+    let half = 0.5 + 2.0 * h;
+    let grid =
+        CartesianGrid::new([cells + 4; 2], [2.0 * half; 2])?.with_origin(shift.map(|s| s * h - half))?;
+    let fluid = Fluid { density: 1.0, viscosity: VISCOSITY };
+    let mut flow = Projection::new(grid, Side::WALL.everywhere(), fluid)?;
+    let bodies = StillBodies::default();
+    let bodies = bodies.with(Disc::new(0.25)?, [0.0; 3], 1.0);
+    let bodies = bodies.with(Bore { radius: 0.5, half: [2.0 * half; 2] }, [0.0; 3], 0.0);
+    put_walls(&mut flow, &bodies)?;
+    flow.set_velocity(couette_velocity);
+    Ok(flow)
+}
+
+/// u_θ = −r/3 + 1/(12 r).
+pub fn couette_velocity(x: [f64; 2]) -> [f64; 2] {
+    let r = x[0].hypot(x[1]);
+    let turn = if (0.25..0.5).contains(&r) { -1.0 / 3.0 + 1.0 / (12.0 * r * r) } else { 0.0 };
+    [-turn * x[1], turn * x[0]]
+}
+
+/// Torque on the outer wall, 4πμ/12 \[N m per m\].
+pub const COUETTE_TORQUE: f64 = 4.0 * PI * VISCOSITY / 12.0;
+
+/// Plane Poiseuille flow in a channel that is turned against the grid, of width 1 and mean velocity 1.
+pub struct TurnedChannel {
+    /// The flow, which starts with the exact velocity.
+    pub flow: Projection<2>,
+    /// Faces that the walls cut or close.
+    pub faces: usize,
+    banks: Banks,
+    place: [f64; 2],
+}
+
+impl TurnedChannel {
+    /// Turned by about `degrees` (the box has whole cells), `cells` across, a little off the nodes of the grid.
+    ///
+    /// # Errors
+    /// Those of the walls and of the flow.
+    pub fn new(degrees: f64, cells: usize) -> Outcome<Self> {
+        let h = 1.0 / cells as f64;
+        let slope = degrees.to_radians();
+        let count = [2.0 / slope.sin(), 2.0 / slope.cos()].map(|length| (length / h).round());
+        let lengths = count.map(|n| n * h);
+        let grid = CartesianGrid::new(count.map(|n| n as usize), lengths)?;
+        let grid = grid.with_origin(lengths.map(|l| -0.5 * l))?;
+        let fluid = Fluid { density: 1.0, viscosity: VISCOSITY };
+        let flow = Projection::new(grid, Side::Periodic.everywhere(), fluid)?;
+        let banks = Banks { lengths, width: 1.0 };
+        let place = [0.0123 * h, 0.0371 * h];
+        let mut channel = Self { flow, faces: 0, banks, place };
+        let bodies = StillBodies::default().with(banks, [place[0], place[1], 0.0], 0.0);
+        channel.faces = put_walls(&mut channel.flow, &bodies)?;
+        channel.flow.set_velocity(|x| exact_in(&banks, place, x));
+        Ok(channel)
+    }
+    /// The force per mass that drives it \[m/s²\].
+    pub fn force(&self) -> [f64; 2] {
+        self.banks.axes()[0].map(|a| a * 12.0 * VISCOSITY)
+    }
+    /// The parabola, zero in the banks.
+    pub fn exact(&self, x: [f64; 2]) -> [f64; 2] {
+        exact_in(&self.banks, self.place, x)
+    }
+    /// Advances until the flow is steady; answers its mean velocity.
+    ///
+    /// # Errors
+    /// Those of [`settle`].
+    pub fn mean(&mut self, tolerance: f64) -> Outcome<f64> {
+        let ([along, _], lengths, force) = (self.banks.axes(), self.banks.lengths, self.force());
+        settle(&mut self.flow, force, [0.05 / VISCOSITY, tolerance], |flow| {
+            let total = flow.statistics().volume_flow;
+            (total.x * along[0] + total.y * along[1]) / lengths[0].hypot(lengths[1])
+        })
+    }
+}
+
+fn exact_in(banks: &Banks, place: [f64; 2], x: [f64; 2]) -> [f64; 2] {
+    let d = banks.across([x[0] - place[0], x[1] - place[1]]);
+    banks.axes()[0].map(|a| a * (6.0 * (0.25 - d * d)).max(0.0))
+}
+
+/// A simple-cubic array of spheres that fills the share `fraction` of a box of edge 1, in a fluid of density and viscosity 1.
+pub struct SphereArray {
+    /// The flow.
+    pub flow: Projection<3>,
+    /// Faces that the walls cut or close.
+    pub faces: usize,
+    /// Radius of the spheres \[m\].
+    pub radius: f64,
+}
+
+impl SphereArray {
+    /// The force on the box along x \[N\]: so small that inertia plays no part.
+    pub const FORCE: f64 = 1e-3;
+
+    /// Of `cells` along every axis.
+    ///
+    /// # Errors
+    /// Those of the walls and of the flow.
+    pub fn new(fraction: f64, cells: usize) -> Outcome<Self> {
+        let radius = Self::radius(fraction);
+        let grid = CartesianGrid::new([cells; 3], [1.0; 3])?;
+        let fluid = Fluid { density: 1.0, viscosity: 1.0 };
+        let mut flow = Projection::new(grid, Side::Periodic.everywhere(), fluid)?;
+        let bodies = StillBodies::default().with(Sphere::new(radius)?, [0.513, 0.487, 0.505], 0.0);
+        let faces = put_walls(&mut flow, &bodies)?;
+        Ok(Self { flow, faces, radius })
+    }
+    /// The radius that fills `fraction` \[m\].
+    pub fn radius(fraction: f64) -> f64 {
+        (fraction * 3.0 / (4.0 * PI)).cbrt()
+    }
+    /// Advances until the flow is steady; answers K = F/(6πμaU), U the mean velocity over box and spheres.
+    ///
+    /// # Errors
+    /// Those of [`settle`].
+    pub fn drag_factor(&mut self, tolerance: f64) -> Outcome<f64> {
+        let force = [Self::FORCE, 0.0, 0.0];
+        let mean = |flow: &mut Projection<3>| flow.statistics().volume_flow.x;
+        let speed = settle(&mut self.flow, force, [0.01, tolerance], mean)?;
+        Ok(Self::FORCE / (6.0 * PI * self.radius * speed))
+    }
+}

@@ -4,13 +4,16 @@ use interfaces::BodyId;
 /// Why bodies could not be put on a grid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum IbmError {
-    /// The shape offers no surface elements.
+    /// The shape has no surface where it is asked for.
     #[error(
-        "body {} offers no surface elements, which the smooth forcing needs; give its shape a `Solid::surface`, or use `Hfdib`", body.0
+        "body {} has no surface at signed distance {offset:.3e} m, where its markers are to be: refine the grid or take thicker bodies",
+        body.0
     )]
     NoSurface {
         /// The body.
         body: BodyId,
+        /// Signed distance from the surface \[m\].
+        offset: f64,
     },
     /// The body is too small for the grid.
     #[error(

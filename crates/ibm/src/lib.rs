@@ -31,6 +31,7 @@ mod reconstruction;
 mod smooth;
 mod solid_fraction;
 mod subcells;
+mod surface;
 #[cfg(test)]
 mod testing;
 
@@ -47,3 +48,4 @@ pub use profile::{Given, Profile, Weights};
 pub use reconstruction::{Reconstruction, SurfaceCell};
 pub use smooth::SmoothForcing;
 pub use solid_fraction::{FractionRule, SolidFraction, SolidNode};
+pub use surface::surface_elements;

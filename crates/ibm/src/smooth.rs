@@ -1,6 +1,6 @@
 //! Direct forcing at surface markers, spread by a smooth kernel.
 use crate::kernel::WIDEST;
-use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction};
+use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction, surface_elements};
 use interfaces::{Bodies, BodyId, Kinematics, Lattice, Pose, SurfaceElement, Vector, VelocityField, Wrench};
 
 /// Smooth direct forcing (Uhlmann 2005; several passes as in Wang et al. 2008; smoothed kernel of
@@ -157,11 +157,11 @@ impl SmoothForcing {
             if size < LEAST_CELLS * h {
                 return Err(IbmError::TooCoarse { body: b, size, spacing: h, least: LEAST_CELLS });
             }
-            markers.elements = bodies
-                .solid(b)
-                .surface(h, -self.kernel.retraction() * h)
-                .filter(|e| !e.is_empty())
-                .ok_or(IbmError::NoSurface { body: b })?;
+            let offset = -self.kernel.retraction() * h;
+            markers.elements = surface_elements(bodies.solid(b), h, offset);
+            if markers.elements.is_empty() {
+                return Err(IbmError::NoSurface { body: b, offset });
+            }
             let scale = self.density * h / self.kernel.self_overlap();
             markers.masses = markers.elements.iter().map(|e| e.area * scale).collect();
         }

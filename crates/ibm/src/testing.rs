@@ -7,8 +7,8 @@ use std::f64::consts::{PI, TAU};
 
 /// A disc (2D) or sphere (3D).
 pub(crate) struct Ball {
-    dim: usize,
-    radius: f64,
+    pub(crate) dim: usize,
+    pub(crate) radius: f64,
 }
 
 impl Solid for Ball {
@@ -28,6 +28,18 @@ impl Solid for Ball {
             SurfaceElement { point: Point::from(r * normal), normal, area: TAU * r / n as f64 }
         });
         (self.dim == 2).then(|| ring.collect())
+    }
+}
+
+/// A ball that tells its distances only.
+pub(crate) struct Plain(pub(crate) Ball);
+
+impl Solid for Plain {
+    fn signed_distance(&self, x: Point, band: f64) -> f64 {
+        self.0.signed_distance(x, band)
+    }
+    fn aabb(&self) -> Aabb {
+        self.0.aabb()
     }
 }
 
@@ -60,8 +72,11 @@ impl Balls {
         Self::of(Ball { dim, radius }, volume, centres.into_iter().map(Pose::at).collect())
     }
     pub(crate) fn of(solid: impl Solid + 'static, volume: f64, poses: Vec<Pose>) -> Self {
+        Self::boxed(Box::new(solid), volume, poses)
+    }
+    pub(crate) fn boxed(solid: Box<dyn Solid>, volume: f64, poses: Vec<Pose>) -> Self {
         let twists = vec![Twist::default(); poses.len()];
-        Self { solid: Box::new(solid), volume, poses, twists }
+        Self { solid, volume, poses, twists }
     }
     pub(crate) fn shift(&mut self, b: usize, by: Vector) {
         self.poses[b].position += by;

@@ -1,6 +1,6 @@
 use super::*;
-use crate::testing::{Balls, Collocated, lattice};
-use interfaces::{Nodes, Twist};
+use crate::testing::{Ball, Balls, Brick, Collocated, Plain, lattice};
+use interfaces::{Nodes, Pose, Solid, Twist};
 
 fn scene(u: impl Fn([f64; 3]) -> [f64; 3]) -> (Balls, Collocated, SmoothForcing) {
     let mut bodies = Balls::new(2, 0.5, vec![[0.1, 1.2, 0.0]]);
@@ -51,6 +51,34 @@ fn passes_remove_the_slip() {
     forcing.force(&mut velocity, &bodies);
     assert!(forcing.reaction(BodyId(0)).force.norm() < 1e-13);
     assert!(forcing.slip(&velocity, &bodies) < 1e-13);
+}
+
+/// Markers found from signed distances alone do what a shape's own, evenly spaced ones do; in space too, and on a brick.
+#[test]
+fn any_shape_has_markers() {
+    let forced = |dim: usize, solid: Box<dyn Solid>, passes: usize| {
+        let mut bodies =
+            Balls::boxed(solid, 1.0, vec![Pose::at([1.512, 1.483, if dim == 2 { 0.0 } else { 1.5 }])]);
+        bodies.twists[0].linear.x = 1.0;
+        bodies.twists[0].angular.z = 0.5;
+        let mut velocity = Collocated::new(lattice(dim, [0.1; 3], 3.0), |_| [0.0; 3]);
+        let mut forcing = SmoothForcing::new(1.0).with_passes(passes);
+        forcing.place(&velocity, &bodies).unwrap();
+        forcing.force(&mut velocity, &bodies);
+        (forcing.reaction(BodyId(0)), forcing.slip(&velocity, &bodies))
+    };
+    let ball = |dim| Ball { dim, radius: 0.5 };
+    let (even, smooth) = forced(2, Box::new(ball(2)), 3);
+    let (found, slip) = forced(2, Box::new(Plain(ball(2))), 3);
+    assert!((found.force - even.force).norm() < 0.01 * even.force.norm(), "{even:?} {found:?}");
+    assert!((found.torque.z / even.torque.z - 1.0).abs() < 0.02, "{even:?} {found:?}");
+    assert!(slip < 2.0 * smooth, "{slip} {smooth}");
+    let solids: [fn() -> Box<dyn Solid>; 2] =
+        [|| Box::new(Plain(Ball { dim: 3, radius: 0.5 })), || Box::new(Brick([0.5, 0.3, 0.4]))];
+    for solid in solids {
+        let slips = [1, 3, 10, 50].map(|passes| forced(3, solid(), passes).1);
+        assert!(slips.windows(2).all(|s| s[1] < 0.9 * s[0]), "{slips:?}");
+    }
 }
 
 /// A body cut by a bounded side: the stencils that are cut off too do not make passes diverge.

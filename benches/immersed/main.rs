@@ -7,7 +7,8 @@ use example_support::Outcome;
 use example_support::channel_cylinder::{self, Cells, DRAG, Found, LIFT, Way};
 use example_support::cpu::Stopwatch;
 use example_support::walled_flows::{
-    COUETTE_TORQUE, SphereArray, TurnedChannel, couette, couette_velocity, settle, velocity_errors,
+    COUETTE_TORQUE, SphereArray, TurnedChannel, couette, couette_velocity, settle, surface_loads,
+    velocity_errors,
 };
 use siltflow::flow::Convection;
 
@@ -58,24 +59,31 @@ fn channel() -> Outcome<()> {
 }
 
 fn cylinders() -> Outcome<()> {
-    println!("\nTaylor–Couette flow: largest and rms error of the velocity, error of the torques");
     println!(
-        "{:>6} {:>6} {:>10} {:>10} {:>9} {:>9} {:>7}",
-        "cells", "moved", "max", "rms", "inner", "outer", "CPU s"
+        "\nTaylor–Couette flow: largest and rms error of the velocity, error of the torques on inner and outer wall, by momentum \
+         and by the stress on their surfaces"
+    );
+    println!(
+        "{:>6} {:>6} {:>10} {:>10} {:>9} {:>9} {:>9} {:>9} {:>7}",
+        "cells", "moved", "max", "rms", "inner", "outer", "inner", "outer", "CPU s"
     );
     for shift in [0.0, 0.3] {
         for cells in [32, 64, 128] {
             let watch = Stopwatch::start();
-            let mut flow = couette(cells, [shift, 0.7 * shift])?;
+            let (mut flow, bodies) = couette(cells, [shift, 0.7 * shift])?;
             let inner = settle(&mut flow, [0.0; 2], [0.05, STEADY], |flow| {
                 flow.wall_impulses()[0].torque.z / flow.last_dt()
             })?;
             let outer = flow.wall_impulses()[1].torque.z / flow.last_dt();
             let [worst, rms] = velocity_errors(&flow, couette_velocity);
+            let surface = |b| -> Outcome<f64> { Ok(surface_loads(&flow, &bodies, b, 0.0)?.total().torque.z) };
+            let error = |torque: f64| 100.0 * (torque / COUETTE_TORQUE - 1.0);
             println!(
-                "{cells:>6} {shift:>6} {worst:>10.2e} {rms:>10.2e} {:>8.3}% {:>8.3}% {:>7.2}",
-                100.0 * (-inner / COUETTE_TORQUE - 1.0),
-                100.0 * (outer / COUETTE_TORQUE - 1.0),
+                "{cells:>6} {shift:>6} {worst:>10.2e} {rms:>10.2e} {:>8.3}% {:>8.3}% {:>8.3}% {:>8.3}% {:>7.2}",
+                error(-inner),
+                error(outer),
+                error(-surface(0)?),
+                error(surface(1)?),
                 watch.elapsed().cpu
             );
         }
@@ -84,10 +92,12 @@ fn cylinders() -> Outcome<()> {
 }
 
 fn spheres() -> Outcome<()> {
-    println!("\nSimple-cubic arrays of spheres in Stokes flow: K = F/(6πμaU), against Zick & Homsy (1982)");
     println!(
-        "{:>7} {:>8} {:>6} {:>8} {:>8} {:>9} {:>8} {:>7}",
-        "φ", "cells/D", "cells", "K", "theirs", "error", "faces", "CPU s"
+        "\nSimple-cubic arrays of spheres in Stokes flow: K = F/(6πμaU), against Zick & Homsy (1982); by the stress on the surface"
+    );
+    println!(
+        "{:>7} {:>8} {:>6} {:>8} {:>8} {:>9} {:>9} {:>8} {:>7}",
+        "φ", "cells/D", "cells", "K", "theirs", "error", "surface", "faces", "CPU s"
     );
     for (fraction, theirs) in [(0.125, 4.292), (0.343, 15.4)] {
         for per_diameter in [12.0, 24.0] {
@@ -95,10 +105,13 @@ fn spheres() -> Outcome<()> {
             let cells = (per_diameter / (2.0 * SphereArray::radius(fraction))).round() as usize;
             let mut array = SphereArray::new(fraction, cells)?;
             let k = array.drag_factor(STEADY)?;
+            let drag = surface_loads(&array.flow, &array.bodies, 0, 0.0)?.total().force.x;
             println!(
-                "{fraction:>7} {:>8.1} {cells:>6} {k:>8.3} {theirs:>8} {:>8.2}% {:>8} {:>7.1}",
+                "{fraction:>7} {:>8.1} {cells:>6} {k:>8.3} {theirs:>8} {:>8.2}% {:>8.2}% {:>8} {:>7.1}",
                 2.0 * array.radius * cells as f64,
                 100.0 * (k / theirs - 1.0),
+                // What of the force is spread over the sphere's volume does not pass its surface.
+                100.0 * (k * (drag / SphereArray::FORCE + fraction) / theirs - 1.0),
                 array.faces,
                 watch.elapsed().cpu
             );
@@ -110,8 +123,21 @@ fn spheres() -> Outcome<()> {
 fn cylinder() -> Outcome<()> {
     println!("\nCylinder in a channel, Re 20: Cd {DRAG:.6} and Cl {LIFT:.6} wanted");
     println!(
-        "{:>22} {:>15} {:>6} {:>7} {:>11} {:>9} {:>9} {:>10} {:>9} {:>9} {:>7} {:>8}",
-        "way", "cells", "per D", "number", "moved", "Cd", "error", "Cl", "error", "Δp", "steps", "CPU s"
+        "{:>22} {:>15} {:>6} {:>7} {:>11} {:>9} {:>9} {:>9} {:>10} {:>9} {:>9} {:>9} {:>7} {:>8}",
+        "way",
+        "cells",
+        "per D",
+        "number",
+        "moved",
+        "Cd",
+        "error",
+        "surface",
+        "Cl",
+        "error",
+        "surface",
+        "Δp",
+        "steps",
+        "CPU s"
     );
     let shifts = [[0.0, 0.0], [0.37, 0.3], [0.5, 0.5]];
     let [central, quick] = [Convection::Central, Convection::Quick].map(Way::CutLinks);
@@ -129,11 +155,12 @@ fn cylinder() -> Outcome<()> {
             let few = per_diameter == 40 && matches!(kind, Cells::Equal);
             for shift in &shifts[..if few { 1 } else { 3 }] {
                 let found = channel_cylinder::run(way, kind, per_diameter, *shift)?;
-                let Found { cells, errors, coefficients: [drag, lift], steps, cpu } = found;
+                let Found { cells, errors, coefficients: [drag, lift], surface, steps, cpu } = found;
+                let [drag_there, lift_there] = surface.map(|e| 100.0 * e);
                 let [drag_error, lift_error, drop_error] = errors.map(|e| 100.0 * e);
                 println!(
-                    "{:>22} {:>15} {per_diameter:>6} {cells:>7} {:>5.2} {:>5.2} {drag:>9.5} {drag_error:>8.3}% {lift:>10.6} \
-                     {lift_error:>8.1}% {drop_error:>8.2}% {steps:>7} {cpu:>8.2}",
+                    "{:>22} {:>15} {per_diameter:>6} {cells:>7} {:>5.2} {:>5.2} {drag:>9.5} {drag_error:>8.3}% \
+                     {drag_there:>8.2}% {lift:>10.6} {lift_error:>8.1}% {lift_there:>8.1}% {drop_error:>8.2}% {steps:>7} {cpu:>8.2}",
                     way.to_string(),
                     format!("{kind:?}"),
                     shift[0],

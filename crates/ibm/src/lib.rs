@@ -25,6 +25,7 @@ mod kernel;
 #[cfg(feature = "mesh")]
 mod mesh;
 mod pockets;
+mod polynomial;
 mod profile;
 mod projection;
 mod reconstruction;
@@ -32,6 +33,7 @@ mod smooth;
 mod solid_fraction;
 mod subcells;
 mod surface;
+mod surface_stress;
 #[cfg(test)]
 mod testing;
 
@@ -49,3 +51,4 @@ pub use reconstruction::{Reconstruction, SurfaceCell};
 pub use smooth::SmoothForcing;
 pub use solid_fraction::{FractionRule, SolidFraction, SolidNode};
 pub use surface::surface_elements;
+pub use surface_stress::{SurfaceLoads, SurfacePoint, SurfaceStress};

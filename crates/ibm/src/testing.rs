@@ -174,6 +174,12 @@ impl Staggered {
         };
         Self { lattices: (0..D).map(lattice).collect(), values: vec![vec![0.0; cells.iter().product()]; D] }
     }
+    /// The lattice of the cells' centres.
+    pub(crate) fn cells(&self) -> Lattice {
+        let mut cells = self.lattices[0].clone();
+        cells.axes[0] = self.lattices[1].axes[0].clone();
+        cells
+    }
     /// Sets every component to `u` at its nodes.
     pub(crate) fn set(&mut self, u: impl Fn([f64; 3]) -> [f64; 3]) {
         for (c, (lattice, values)) in self.lattices.iter().zip(&mut self.values).enumerate() {

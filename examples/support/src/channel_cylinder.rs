@@ -4,9 +4,9 @@ use crate::Outcome;
 use crate::axes::{gathered, moved};
 use crate::cpu::Stopwatch;
 use crate::still_bodies::StillBodies;
-use crate::walled_flows::put_walls;
+use crate::walled_flows::{put_walls, surface_loads};
 use dem::Disc;
-use fv_mesh::{CartesianGrid, Convection, Diffusion, Fluid, Profile, Projection, SampleError, Sampler, Side};
+use fv_mesh::{CartesianGrid, Convection, Diffusion, Fluid, Profile, Projection, Side};
 use ibm::{Forcing, Hfdib, SmoothForcing};
 use interfaces::{BodyId, Vector};
 use std::fmt;
@@ -55,10 +55,13 @@ pub enum Cells {
 pub struct Found {
     /// Cells of the grid.
     pub cells: usize,
-    /// Relative errors of the drag and lift coefficients and of the pressure drop.
+    /// Relative errors of the drag and lift coefficients, from the momentum that the walls or the forcing take, and of the
+    /// pressure drop.
     pub errors: [f64; 3],
     /// Drag and lift coefficient.
     pub coefficients: [f64; 2],
+    /// Relative errors of the drag and lift coefficients that pressure and friction on the surface give.
+    pub surface: [f64; 2],
     /// Steps made.
     pub steps: u64,
     /// CPU seconds, set-up included.
@@ -79,6 +82,14 @@ impl fmt::Display for Way {
 }
 
 impl Way {
+    /// Cells beside the surface whose values are not those of the fluid.
+    fn clearance(self) -> f64 {
+        match self {
+            Self::CutLinks(_) => 0.0,
+            Self::Hfdib => 1.0,
+            Self::Smooth => 2.0,
+        }
+    }
     fn step(self, flow: &mut Projection<2>, bodies: StillBodies) -> Outcome<Step> {
         Ok(match self {
             Self::Smooth => forced(SmoothForcing::new(FLUID.density), bodies),
@@ -132,7 +143,7 @@ pub fn run(way: Way, kind: Cells, per_diameter: usize, shift: [f64; 2]) -> Outco
     }
     flow.set_velocity(|x| [4.0 * PEAK * x[1] * (LENGTHS[1] - x[1]) / (LENGTHS[1] * LENGTHS[1]), 0.0]);
     let bodies = StillBodies::default().with(Disc::new(0.5 * DIAMETER)?, [0.2, 0.2, 0.0], 0.0);
-    let mut step = way.step(&mut flow, bodies)?;
+    let mut step = way.step(&mut flow, bodies.clone())?;
     let coefficient = 2.0 / (FLUID.density * MEAN * MEAN * DIAMETER);
     let (mut last, mut next) = (f64::INFINITY, LEAST);
     let force = loop {
@@ -146,17 +157,18 @@ pub fn run(way: Way, kind: Cells, per_diameter: usize, shift: [f64; 2]) -> Outco
         }
         (last, next) = (force.x, flow.time() + 1.0);
     };
-    // At the stagnation points, from one and two cells before and behind.
-    let sampler = Sampler::new(flow.grid(), flow.sides());
-    let pressure = |x: f64| sampler.at(flow.pressure(), [x, 0.2]);
-    let end = |x: f64, out: f64| -> Result<f64, SampleError> {
-        Ok(2.0 * pressure(x + out)? - pressure(x + 2.0 * out)?)
+    let loads = surface_loads(&flow, &bodies, 0, way.clearance())?;
+    let total = loads.total().force * coefficient;
+    // At the stagnation points.
+    let end = |sign: f64| {
+        let nearest = loads.points.iter().max_by(|p, q| (sign * p.normal.x).total_cmp(&(sign * q.normal.x)));
+        nearest.map_or(f64::NAN, |p| p.pressure)
     };
-    let drop = end(0.15, -h)? - end(0.25, h)?;
     Ok(Found {
         cells,
-        errors: [force.x / DRAG - 1.0, force.y / LIFT - 1.0, drop / DROP - 1.0],
+        errors: [force.x / DRAG - 1.0, force.y / LIFT - 1.0, (end(-1.0) - end(1.0)) / DROP - 1.0],
         coefficients: [force.x, force.y],
+        surface: [total.x / DRAG - 1.0, total.y / LIFT - 1.0],
         steps: flow.steps(),
         cpu: watch.elapsed().cpu,
     })

@@ -1,10 +1,11 @@
 //! Bodies that stand still, or turn in themselves.
 use interfaces::{Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Point, Pose, Solid, Twist, Vector};
+use std::sync::Arc;
 
 /// Some solids, with their place and motion.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct StillBodies {
-    solids: Vec<Box<dyn Solid>>,
+    solids: Vec<Arc<dyn Solid>>,
     poses: Vec<Pose>,
     twists: Vec<Twist>,
 }
@@ -13,7 +14,7 @@ impl StillBodies {
     /// The same with one more, `turning` \[rad/s\] about the axis z.
     #[must_use]
     pub fn with(mut self, solid: impl Solid + 'static, at: [f64; 3], turning: f64) -> Self {
-        self.solids.push(Box::new(solid));
+        self.solids.push(Arc::new(solid));
         self.poses.push(Pose::at(at));
         self.twists.push(Twist { linear: Vector::zeros(), angular: Vector::new(0.0, 0.0, turning) });
         self

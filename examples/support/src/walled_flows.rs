@@ -3,8 +3,8 @@ use crate::Outcome;
 use crate::still_bodies::{Banks, Bore, StillBodies};
 use dem::{Disc, Sphere};
 use fv_mesh::{CartesianGrid, Fluid, Projection, Side};
-use ibm::cut_walls;
-use interfaces::VelocityField;
+use ibm::{SurfaceLoads, SurfaceStress, cut_walls};
+use interfaces::{BodyId, VelocityField};
 use std::f64::consts::PI;
 
 /// Kinematic viscosity of the plane flows \[m²/s\].
@@ -19,6 +19,25 @@ pub fn put_walls<const D: usize>(flow: &mut Projection<D>, bodies: &StillBodies)
     let faces = walls.components.iter().map(|component| component.faces.len()).sum();
     flow.set_walls(Some(walls))?;
     Ok(faces)
+}
+
+/// Pressure and friction on body `b` from the fields beside it, at elements a cell apart; nodes nearer than `clearance` cells
+/// are left out.
+///
+/// # Errors
+/// Those of [`SurfaceStress::on`].
+pub fn surface_loads<const D: usize>(
+    flow: &Projection<D>,
+    bodies: &StillBodies,
+    b: usize,
+    clearance: f64,
+) -> Outcome<SurfaceLoads> {
+    let lattice = flow.grid().lattice(None, flow.sides());
+    let fluid = flow.fluid();
+    let spacing = flow.grid().spacing().into_iter().fold(f64::INFINITY, f64::min);
+    Ok(SurfaceStress::new(flow.velocity(), &lattice, flow.pressure().data(), fluid.density * fluid.viscosity)
+        .with_clearance(clearance)
+        .on(bodies, BodyId(b), spacing)?)
 }
 
 /// Advances at a Courant number of 0.4 until `value` changes by less than the part `tolerance` of itself within `interval` \[s\].
@@ -78,19 +97,18 @@ pub fn velocity_errors<const D: usize>(
 ///
 /// # Errors
 /// Those of the walls and of the flow.
-pub fn couette(cells: usize, shift: [f64; 2]) -> Outcome<Projection<2>> {
+pub fn couette(cells: usize, shift: [f64; 2]) -> Outcome<(Projection<2>, StillBodies)> {
     let h = 1.0 / cells as f64;
     let half = 0.5 + 2.0 * h;
     let grid =
         CartesianGrid::new([cells + 4; 2], [2.0 * half; 2])?.with_origin(shift.map(|s| s * h - half))?;
     let fluid = Fluid { density: 1.0, viscosity: VISCOSITY };
     let mut flow = Projection::new(grid, Side::WALL.everywhere(), fluid)?;
-    let bodies = StillBodies::default();
-    let bodies = bodies.with(Disc::new(0.25)?, [0.0; 3], 1.0);
-    let bodies = bodies.with(Bore { radius: 0.5, half: [2.0 * half; 2] }, [0.0; 3], 0.0);
+    let inner = StillBodies::default().with(Disc::new(0.25)?, [0.0; 3], 1.0);
+    let bodies = inner.with(Bore { radius: 0.5, half: [2.0 * half; 2] }, [0.0; 3], 0.0);
     put_walls(&mut flow, &bodies)?;
     flow.set_velocity(couette_velocity);
-    Ok(flow)
+    Ok((flow, bodies))
 }
 
 /// u_θ = −r/3 + 1/(12 r).
@@ -165,6 +183,8 @@ fn exact_in(banks: &Banks, place: [f64; 2], x: [f64; 2]) -> [f64; 2] {
 pub struct SphereArray {
     /// The flow.
     pub flow: Projection<3>,
+    /// The sphere.
+    pub bodies: StillBodies,
     /// Faces that the walls cut or close.
     pub faces: usize,
     /// Radius of the spheres \[m\].
@@ -186,7 +206,7 @@ impl SphereArray {
         let mut flow = Projection::new(grid, Side::Periodic.everywhere(), fluid)?;
         let bodies = StillBodies::default().with(Sphere::new(radius)?, [0.513, 0.487, 0.505], 0.0);
         let faces = put_walls(&mut flow, &bodies)?;
-        Ok(Self { flow, faces, radius })
+        Ok(Self { flow, bodies, faces, radius })
     }
     /// The radius that fills `fraction` \[m\].
     pub fn radius(fraction: f64) -> f64 {

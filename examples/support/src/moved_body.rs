@@ -1,0 +1,229 @@
+//! One body that moves as it is told, in a flow.
+use crate::Outcome;
+use crate::axes::gathered;
+use dem::{Disc, Sphere};
+use fv_mesh::{CartesianGrid, Fluid, Projection, Side};
+use ibm::Forcing;
+use interfaces::{Bodies, BodyId, Freedom, Inertia, Kinematics, Point, Pose, Rotation, Solid, Twist, Vector};
+use std::f64::consts::TAU;
+
+/// A body with a place and a motion.
+pub struct MovedBody {
+    solid: Box<dyn Solid>,
+    pose: Pose,
+    twist: Twist,
+}
+
+impl MovedBody {
+    /// At rest at `at`.
+    pub fn new(solid: impl Solid + 'static, at: [f64; 3]) -> Self {
+        Self { solid: Box::new(solid), pose: Pose::at(at), twist: Twist::default() }
+    }
+}
+
+impl Kinematics for MovedBody {
+    fn n_bodies(&self) -> usize {
+        1
+    }
+    fn pose(&self, _: BodyId) -> Pose {
+        self.pose
+    }
+    fn twist(&self, _: BodyId) -> Twist {
+        self.twist
+    }
+}
+
+impl Bodies for MovedBody {
+    fn solid(&self, _: BodyId) -> &dyn Solid {
+        &*self.solid
+    }
+    fn inertia(&self, _: BodyId) -> Inertia {
+        Inertia { mass: 1.0, volume: 1.0, tensor: nalgebra::Matrix3::identity() }
+    }
+    fn freedom(&self, _: BodyId) -> Freedom {
+        Freedom::NONE
+    }
+}
+
+/// A flow with a body that moves in it as it is told.
+pub struct MovedScene<const D: usize> {
+    /// The flow.
+    pub flow: Projection<D>,
+    body: MovedBody,
+    forcing: Box<dyn Forcing>,
+    /// Mass of the fluid that the body displaces \[kg\].
+    displaced: f64,
+}
+
+impl<const D: usize> MovedScene<D> {
+    /// With this body of a certain volume.
+    pub fn new(flow: Projection<D>, body: MovedBody, forcing: Box<dyn Forcing>, volume: f64) -> Self {
+        let displaced = flow.fluid().density * volume;
+        Self { flow, body, forcing, displaced }
+    }
+
+    /// Advances by `dt` to the position and twist given; answers the force of the fluid on the body: −ρ∫f_ib dV + ρV dU/dt, as if
+    /// the fluid inside moved with the body. (Its computed momentum, ρΣλuV, is right on average, but its change from step to
+    /// step has the noise of λ: several times that of the forcing with the quintic kernel.)
+    ///
+    /// # Errors
+    /// Those of flow and forcing.
+    pub fn step(&mut self, dt: f64, position: Point, twist: Twist) -> Outcome<Vector> {
+        let Self { flow, body, forcing, displaced } = self;
+        flow.predict(dt, [0.0; D])?;
+        let turn = Rotation::from_scaled_axis(twist.angular * dt);
+        body.pose = Pose { position, orientation: turn * body.pose.orientation };
+        let last = std::mem::replace(&mut body.twist, twist);
+        forcing.place(flow.velocity(), body)?;
+        for _ in 0..forcing.rounds() {
+            forcing.force(flow.velocity_mut(), body);
+            flow.project(dt)?;
+        }
+        flow.finish(dt)?;
+        let gained = *displaced * (twist.linear - last.linear);
+        Ok((forcing.reaction(BodyId(0)).force + gained) / dt)
+    }
+}
+
+/// A series of values at equal times as mean, slope and harmonics of its length, and what is left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// Root mean square of what the fit leaves.
+    pub rms: f64,
+    /// Largest value of the series.
+    pub peak: f64,
+}
+
+impl Noise {
+    /// Of what a straight line and `harmonics` sines and cosines leave of the series, by least squares.
+    pub fn of(series: &[f64], harmonics: usize) -> Self {
+        let n = series.len();
+        let columns = 2 + 2 * harmonics;
+        let matrix = nalgebra::DMatrix::from_fn(n, columns, |i, j| {
+            let t = i as f64 / n as f64;
+            match j {
+                0 => 1.0,
+                1 => t,
+                _ if j % 2 == 0 => (TAU * (j / 2) as f64 * t).sin(),
+                _ => (TAU * (j / 2) as f64 * t).cos(),
+            }
+        });
+        let values = nalgebra::DVector::from_column_slice(series);
+        let normal = matrix.transpose() * &matrix;
+        let rest = match normal.cholesky() {
+            Some(factor) => &values - &matrix * factor.solve(&(matrix.transpose() * &values)),
+            None => values.clone(),
+        };
+        Self { rms: rest.norm() / (n as f64).sqrt(), peak: values.amax() }
+    }
+}
+
+/// A cylinder of diameter 1 that swings along x as −A sin(2πt/T) in fluid at rest, largest speed 1: Re 100 and a Keulegan–Carpenter
+/// number of 5 (Dütsch, Durst, Becker & Lienhart 1998, J. Fluid Mech. 360, 249), in a box of 40 × 30.
+pub struct Swinging {
+    scene: MovedScene<2>,
+    middle: [f64; 2],
+    steps: usize,
+    made: usize,
+}
+
+impl Swinging {
+    /// Time of a swing.
+    pub const PERIOD: f64 = 5.0;
+
+    /// With so many cells per diameter, moved by `shift` cells against the cylinder's middle place, and steps per swing.
+    ///
+    /// # Errors
+    /// Those of grid and forcing.
+    pub fn new(
+        per_diameter: usize,
+        steps: usize,
+        shift: [f64; 2],
+        forcing: Box<dyn Forcing>,
+    ) -> Outcome<Self> {
+        let h = 1.0 / per_diameter as f64;
+        let [length, height] = [40.0, 30.0];
+        let x = gathered(length, h, [length / 2.0 - 2.0, length / 2.0 + 2.0], 1.05, shift[0])?;
+        let y = gathered(height, h, [height / 2.0 - 1.2, height / 2.0 + 1.2], 1.05, shift[1])?;
+        let fluid = Fluid { density: 1.0, viscosity: 0.01 };
+        let flow = Projection::new(CartesianGrid::from_axes([x, y])?, Side::WALL.everywhere(), fluid)?;
+        let middle = [0.5 * length, 0.5 * height];
+        let mut body = MovedBody::new(Disc::new(0.5)?, [middle[0], middle[1], 0.0]);
+        body.twist.linear.x = -1.0;
+        let scene = MovedScene::new(flow, body, forcing, 0.125 * TAU);
+        Ok(Self { scene, middle, steps, made: 0 })
+    }
+
+    /// The forces along x of the next swing, step by step, over ρU²D.
+    ///
+    /// # Errors
+    /// Those of flow and forcing.
+    pub fn swing(&mut self) -> Outcome<Vec<f64>> {
+        let amplitude = Self::PERIOD / TAU;
+        let dt = Self::PERIOD / self.steps as f64;
+        (0..self.steps)
+            .map(|_| {
+                self.made += 1;
+                let phase = TAU * self.made as f64 / self.steps as f64;
+                let x = self.middle[0] - amplitude * phase.sin();
+                let twist = Twist { linear: Vector::new(-phase.cos(), 0.0, 0.0), ..Twist::default() };
+                Ok(self.scene.step(dt, Point::new(x, self.middle[1], 0.0), twist)?.x)
+            })
+            .collect()
+    }
+}
+
+/// A cylinder or sphere of diameter 1 in a periodic box of edge `edge`, set in motion at speed 1 against the fluid: either it
+/// `moves` through fluid at rest, or the fluid passes it. Both are the same flow. Answers the forces against the motion of the first
+/// `time`, step by step, over ½ρU² and the frontal area.
+///
+/// # Errors
+/// Those of grid, flow and forcing.
+pub fn passing<const D: usize>(
+    moves: bool,
+    edge: usize,
+    per_diameter: usize,
+    viscosity: f64,
+    [time, dt]: [f64; 2],
+    forcing: Box<dyn Forcing>,
+) -> Outcome<Vec<f64>> {
+    let grid = CartesianGrid::new([edge * per_diameter; D], [edge as f64; D])?;
+    let fluid = Fluid { density: 1.0, viscosity };
+    let mut flow = Projection::new(grid, Side::Periodic.everywhere(), fluid)?;
+    // Neither on a face nor on a centre.
+    let place = 0.5 * edge as f64 + 0.23 / per_diameter as f64;
+    let at = [place, place, if D == 2 { 0.0 } else { place }];
+    // Along no axis of the grid.
+    let heading = Vector::new(0.96, 0.28, 0.0);
+    if !moves {
+        flow.set_velocity(|_| std::array::from_fn(|a| -heading[a]));
+    }
+    let body =
+        if D == 2 { MovedBody::new(Disc::new(0.5)?, at) } else { MovedBody::new(Sphere::new(0.5)?, at) };
+    let twist = Twist { linear: if moves { heading } else { Vector::zeros() }, ..Twist::default() };
+    let (area, volume) = if D == 2 { (1.0, 0.125 * TAU) } else { (0.125 * TAU, TAU / 12.0) };
+    let mut scene = MovedScene::new(flow, MovedBody { twist, ..body }, forcing, volume);
+    (1..=(time / dt).round() as usize)
+        .map(|step| {
+            let position = Point::from(Vector::from(at) + twist.linear * (dt * step as f64));
+            Ok(-scene.step(dt, position, twist)?.dot(&heading) / (0.5 * area))
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_is_what_harmonics_leave() {
+        let series: Vec<f64> = (0..200)
+            .map(|i| {
+                let t = f64::from(i) / 200.0;
+                3.0 * (TAU * 5.0 * t).sin() + 0.5 * t + if i % 2 == 0 { 0.01 } else { -0.01 }
+            })
+            .collect();
+        let noise = Noise::of(&series, 12);
+        assert!((noise.rms - 0.01).abs() < 1e-4 && (noise.peak - 3.3).abs() < 0.2, "{noise:?}");
+    }
+}

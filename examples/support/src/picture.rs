@@ -9,6 +9,7 @@ mod axes;
 mod canvas;
 mod colour;
 pub mod plot;
+pub mod sketch;
 pub mod summary;
 mod text;
 

@@ -1,5 +1,7 @@
 //! Bodies that stand still, or turn in themselves.
-use interfaces::{Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Point, Pose, Solid, Twist, Vector};
+use interfaces::{
+    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Point, Pose, Rotation, Solid, Twist, Vector,
+};
 use std::sync::Arc;
 
 /// Some solids, with their place and motion.
@@ -17,6 +19,14 @@ impl StillBodies {
         self.solids.push(Arc::new(solid));
         self.poses.push(Pose::at(at));
         self.twists.push(Twist { linear: Vector::zeros(), angular: Vector::new(0.0, 0.0, turning) });
+        self
+    }
+    /// The same with the last one turned by `angle` \[rad\] about the axis z.
+    #[must_use]
+    pub fn turned(mut self, angle: f64) -> Self {
+        if let Some(pose) = self.poses.last_mut() {
+            pose.orientation = Rotation::from_axis_angle(&Vector::z_axis(), angle);
+        }
         self
     }
 }

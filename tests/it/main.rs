@@ -3,6 +3,7 @@ mod bad_input;
 mod edges;
 mod files;
 mod frame;
+mod immersed_stress;
 mod physics;
 mod restart;
 mod skipping;

@@ -4,6 +4,7 @@ mod edges;
 mod files;
 mod frame;
 mod immersed_stress;
+mod moving;
 mod physics;
 mod restart;
 mod skipping;

@@ -6,6 +6,7 @@ mod cost;
 use example_support::Outcome;
 use example_support::channel_cylinder::{self, Cells, DRAG, Found, LIFT, Way};
 use example_support::cpu::Stopwatch;
+use example_support::free_stream;
 use example_support::walled_flows::{
     COUETTE_TORQUE, SphereArray, TurnedChannel, couette, couette_velocity, settle, surface_loads,
     velocity_errors,
@@ -18,11 +19,12 @@ const STEADY: f64 = 1e-6;
 fn main() -> Outcome<()> {
     let wanted: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
     type Case = (&'static str, fn() -> Outcome<()>);
-    let cases: [Case; 5] = [
+    let cases: [Case; 6] = [
         ("channel", channel),
         ("couette", cylinders),
         ("spheres", spheres),
         ("cylinder", cylinder),
+        ("stream", stream),
         ("cost", cost::table),
     ];
     rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(|| {
@@ -167,6 +169,33 @@ fn cylinder() -> Outcome<()> {
                     shift[1]
                 );
             }
+        }
+    }
+    Ok(())
+}
+
+fn stream() -> Outcome<()> {
+    println!(
+        "\nCylinder in a free stream, cut links with QUICK on gathered cells; the drag by the stress on its surface at the end"
+    );
+    println!(
+        "{:>4} {:>6} {:>7} {:>8} {:>9} {:>8} {:>8} {:>9} {:>7} {:>7}",
+        "Re", "per D", "cells", "Cd", "surface", "wake/D", "Cl", "St", "steps", "CPU s"
+    );
+    for (reynolds, end) in [(20.0, 60.0), (40.0, 80.0), (100.0, 200.0)] {
+        for per_diameter in [10, 20] {
+            let found = free_stream::run(reynolds, per_diameter, end)?;
+            println!(
+                "{reynolds:>4} {per_diameter:>6} {:>7} {:>8.4} {:>8.2}% {:>8.3} {:>8.4} {:>9.4} {:>7} {:>7.1}",
+                found.cells,
+                found.drag,
+                100.0 * (found.surface / found.drag_at_end - 1.0),
+                found.wake,
+                found.lift,
+                found.strouhal,
+                found.steps,
+                found.cpu
+            );
         }
     }
     Ok(())

@@ -4,6 +4,7 @@
 pub mod axes;
 pub mod channel_cylinder;
 pub mod cpu;
+pub mod free_stream;
 pub mod moved_body;
 pub mod picture;
 pub mod progress;

@@ -10,7 +10,8 @@
 //! Bodies at rest may be walls of the flow itself instead: [`cut_walls`] tells where they cut links and faces of the grid, and
 //! a flow that takes [`interfaces::CutWalls`] is of second order up to them.
 //!
-//! [`Reconstruction`] does the same for any scalar with values or gradients given, [`Pockets`] finds fluid that bodies
+//! [`SurfaceStress`] tells pressure and friction on surfaces from the fields beside them. [`ImmersedScalar`] holds scalars to values or
+//! gradients given on bodies ([`Reconstruction`] is what both it and `Hfdib` use), [`Pockets`] finds fluid that bodies
 //! have closed in, and with the feature `mesh` closed triangle meshes are bodies (`TriangleMesh`).
 //!
 //! The crate works on any [`interfaces::VelocityField`] and any [`interfaces::Bodies`].
@@ -21,6 +22,7 @@ mod error;
 mod forcing;
 mod fraction;
 mod hfdib;
+mod immersed_scalar;
 mod kernel;
 #[cfg(feature = "mesh")]
 mod mesh;
@@ -42,6 +44,7 @@ pub use error::IbmError;
 pub use forcing::{Forcing, Layer};
 pub use fraction::{cell_fraction, plane_fraction};
 pub use hfdib::Hfdib;
+pub use immersed_scalar::ImmersedScalar;
 pub use kernel::{Kernel, WIDEST};
 #[cfg(feature = "mesh")]
 pub use mesh::{MeshError, TriangleMesh};

@@ -61,7 +61,10 @@ impl Profile {
             (Given::Value, None, _) => w(1.0, 0.0, 0.0),
             (Given::Value, Some(s1), None) => {
                 let share = match self {
-                    Self::Logarithmic { length } => (s / length).ln_1p() / (s1 / length).ln_1p(),
+                    // Behind the surface it goes on as it came.
+                    Self::Logarithmic { length } => {
+                        (s.abs() / length).ln_1p().copysign(s) / (s1 / length).ln_1p()
+                    }
                     _ => s / s1,
                 };
                 w(1.0 - share, share, 0.0)

@@ -103,6 +103,11 @@ impl<const D: usize> Scalar<D> {
         self.boundaries.fill_ghosts(&mut self.phi);
         self.step = 0;
     }
+    /// Changes values between two steps, as immersed bodies do; `change` gets them as [`Field::data`] has them.
+    pub fn impose(&mut self, change: impl FnOnce(&mut [f64])) {
+        change(self.phi.data_mut());
+        self.boundaries.fill_ghosts(&mut self.phi);
+    }
     /// φ, ghosts filled.
     pub fn field(&self) -> &Field<D> {
         &self.phi

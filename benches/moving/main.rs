@@ -2,7 +2,7 @@
 //! comes from the grid. On one thread: `cargo bench --bench moving`, or with the names of cases after `--`.
 use example_support::Outcome;
 use example_support::cpu::Stopwatch;
-use example_support::moved_body::{Noise, Swinging, passing};
+use example_support::moved_body::{Noise, Swinging, passing, turning};
 use siltflow::ibm::{Forcing, Hfdib, Kernel, SmoothForcing};
 
 /// Harmonics that belong to the flow.
@@ -14,7 +14,12 @@ const MEASURED: &str = include_str!("../../tests/data/dutsch_1998_inline_force.c
 fn main() -> Outcome<()> {
     let wanted: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
     type Case = (&'static str, fn() -> Outcome<()>);
-    let cases: [Case; 3] = [("swinging", swinging), ("passing", passing_2d), ("sphere", passing_3d)];
+    let cases: [Case; 4] = [
+        ("swinging", swinging),
+        ("passing", passing_2d),
+        ("sphere", passing_3d),
+        ("turning", turning_sphere),
+    ];
     rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(|| {
         for (name, table) in cases {
             if wanted.is_empty() || wanted.iter().any(|w| w == name) {
@@ -120,6 +125,19 @@ fn table<const D: usize>(edge: usize, resolutions: [usize; 2], viscosity: f64) -
                     watch.elapsed().cpu
                 );
             }
+        }
+    }
+    Ok(())
+}
+
+fn turning_sphere() -> Outcome<()> {
+    println!("\nSphere that turns in creeping flow: torque over 8πμR³Ω");
+    println!("{:>16} {:>6} {:>9} {:>8}", "forcing", "per D", "torque", "CPU s");
+    for (name, forcing) in WAYS {
+        for per_diameter in [10, 20] {
+            let watch = Stopwatch::start();
+            let torque = turning(per_diameter, forcing())?;
+            println!("{name:>16} {per_diameter:>6} {torque:>9.4} {:>8.1}", watch.elapsed().cpu);
         }
     }
     Ok(())

@@ -2,6 +2,7 @@
 mod check;
 mod links;
 mod pressure;
+mod recent;
 mod regions;
 #[cfg(test)]
 mod tests;
@@ -115,6 +116,9 @@ impl<const D: usize> Walls<D> {
             sink(&format!("walls{c}"), &links.plain);
         }
         sink("walls", &self.pressure.missing);
+        if let Some(recent) = &self.pressure.recent {
+            recent.save(sink);
+        }
     }
 
     /// Takes back what [`save`](Self::save) gave.
@@ -125,6 +129,7 @@ impl<const D: usize> Walls<D> {
         for (c, links) in self.links.iter_mut().enumerate() {
             restore_list(source, &format!("walls{c}"), &mut links.plain)?;
         }
-        restore_list(source, "walls", &mut self.pressure.missing)
+        restore_list(source, "walls", &mut self.pressure.missing)?;
+        self.pressure.recent.as_mut().map_or(Ok(()), |recent| recent.restore(source))
     }
 }

@@ -1,4 +1,5 @@
 //! The pressure equation of cells that walls cut.
+use super::recent::Recent;
 use super::regions::{Orphan, Regions};
 use crate::metrics::Metrics;
 use crate::poisson::PoissonError;
@@ -20,7 +21,8 @@ use rayon::prelude::*;
 ///
 /// (the capacitance matrix method: Buzbee, Dorr, George & Golub 1971). M is symmetric and positive definite and stays what
 /// it is while the walls stay where they are. Few faces: M⁻¹ is kept, and a solution takes two of the box's. Many: conjugate
-/// gradients from the last y, one of the box's each, with the diagonal 1/((1 − open) g) as preconditioner.
+/// gradients from the last y and from what the last changes of y tell ([`Recent`]), one of the box's each, with the diagonal
+/// 1/((1 − open) g) as preconditioner.
 ///
 /// Regions that the walls separate (the inside of a body, a closed pocket of fluid) hang on one closed face each, through
 /// which nothing flows as long as what enters the region leaves it.
@@ -36,6 +38,10 @@ pub(crate) struct CutPressure {
     pub(super) missing: Vec<f64>,
     /// B L⁻¹ f + B L⁻¹ G y − y/((1 − open) g).
     residual: Vec<f64>,
+    /// What the last solutions by conjugate gradients tell of the next one.
+    pub(super) recent: Option<Recent>,
+    /// The residual before the last correction.
+    start: Vec<f64>,
     /// Correction of y, and the directions and products of conjugate gradients.
     change: Vec<f64>,
     direction: Vec<f64>,
@@ -94,6 +100,8 @@ impl CutPressure {
             dipoles,
             row_starts,
             inverse: None,
+            recent: None,
+            start: vec![0.0; m],
             residual: vec![0.0; m],
             change: vec![0.0; m],
             direction: vec![0.0; m],
@@ -114,7 +122,11 @@ impl CutPressure {
         phi: &mut [f64],
     ) -> Result<(), FlowError> {
         let m = self.faces.len();
-        if m * m <= DENSE * phi.len() { self.invert(solver, phi) } else { Ok(()) }
+        if m * m <= DENSE * phi.len() {
+            return self.invert(solver, phi);
+        }
+        self.recent = Some(Recent::new(m));
+        Ok(())
     }
 
     /// Makes M⁻¹.
@@ -225,6 +237,11 @@ impl CutPressure {
             return Ok(false);
         }
         self.change.fill(0.0);
+        self.start.copy_from_slice(&self.residual);
+        if let Some(recent) = &self.recent {
+            recent.start(&mut self.residual, &mut self.change);
+            square = self.weighted_square();
+        }
         for ((p, r), face) in self.direction.iter_mut().zip(&self.residual).zip(&self.faces) {
             *p = r / face.resistance;
         }
@@ -251,6 +268,13 @@ impl CutPressure {
             iterations += 1;
         }
         self.iterations = iterations;
+        if let Some(recent) = &mut self.recent {
+            self.direction.copy_from_slice(&self.change);
+            for ((product, start), rest) in self.product.iter_mut().zip(&self.start).zip(&self.residual) {
+                *product = start - rest;
+            }
+            recent.learn(&mut self.direction, &mut self.product);
+        }
         Ok(true)
     }
 

@@ -70,6 +70,16 @@ pub enum IbmError {
         /// Mean distance of the nodes \[m\].
         spacing: f64,
     },
+    /// A field is not one of this lattice.
+    #[error(
+        "a field of {found} values was given with a lattice that stores {needed}: give both of the same grid"
+    )]
+    Storage {
+        /// Values that the lattice reaches.
+        needed: usize,
+        /// Values there are.
+        found: usize,
+    },
     /// A body's place is not finite.
     #[error("body {} stands at {position:?}, which is not finite; the run has diverged: take a smaller time step", body.0)]
     Lost {

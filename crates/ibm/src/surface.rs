@@ -8,7 +8,12 @@ use interfaces::{Aabb, Point, Solid, SurfaceElement, Vector};
 /// surface is where their linear interpolation is `offset`. The pieces in cubes of `spacing` with about the same normal make
 /// one element. Area and place are of second order in the size of the small cells: a sphere 10 `spacing` wide has its area
 /// within 0.1 %. Edges are cut off by about half a small cell; nothing is left of a body that is thinner than twice −`offset`.
+///
+/// A `spacing` that is not positive and finite has no elements.
 pub fn surface_elements(solid: &dyn Solid, spacing: f64, offset: f64) -> Vec<SurfaceElement> {
+    if !(spacing > 0.0 && spacing.is_finite() && offset.is_finite()) {
+        return Vec::new();
+    }
     solid.surface(spacing, offset).unwrap_or_else(|| Marcher::new(solid, spacing, offset).elements())
 }
 

@@ -104,9 +104,17 @@ impl<'a> SurfaceStress<'a> {
     /// the box cover of the surface is left out.
     ///
     /// # Errors
-    /// [`IbmError::NoSurface`] for a body without surface; [`IbmError::Lost`] and [`IbmError::TooLarge`].
+    /// [`IbmError::NoSurface`] for a body without surface (or a spacing that is not positive), [`IbmError::Storage`] for a pressure that
+    /// is not the lattice's; [`IbmError::Lost`] and [`IbmError::TooLarge`].
     pub fn on(&self, bodies: &dyn Bodies, b: BodyId, spacing: f64) -> Result<SurfaceLoads, IbmError> {
         check(self.lattice, bodies, b)?;
+        let last = self.lattice.index(self.lattice.shape().map(|n| n as isize - 1));
+        if last.is_none_or(|last| last >= self.pressure.len()) {
+            return Err(IbmError::Storage {
+                needed: last.map_or(0, |last| last + 1),
+                found: self.pressure.len(),
+            });
+        }
         let elements = surface_elements(bodies.solid(b), spacing, 0.0);
         if elements.is_empty() {
             return Err(IbmError::NoSurface { body: b, offset: 0.0 });
@@ -144,32 +152,43 @@ impl<'a> SurfaceStress<'a> {
         Ok(SurfaceLoads { points: elements.par_iter().zip(&arms).filter_map(stressed).collect() })
     }
 
-    /// The bodies that may be beside body `b`, each as near as it repeats.
+    /// The bodies that may be beside body `b`, itself as it repeats among them.
     fn neighbours(&self, bodies: &dyn Bodies, b: BodyId) -> Vec<Neighbour> {
+        let dim = self.lattice.dim;
         let here = bodies.aabb(b);
         let reach = Vector::from_fn(|a, _| {
-            if a < self.lattice.dim {
+            if a < dim {
                 let [_, widest] = self.lattice.axes[a].spacings(here.min[a], here.max[a]);
-                2.0 * (self.clearance + REACH[self.lattice.dim - 2]) * widest
+                2.0 * (self.clearance.max(PRESSED) + REACH[dim - 2]) * widest
             } else {
                 0.0
             }
         });
-        (0..bodies.n_bodies())
-            .map(BodyId)
-            .filter(|&other| other != b)
-            .filter_map(|other| {
-                let there = bodies.aabb(other);
-                let apart = nalgebra::center(&there.min, &there.max) - nalgebra::center(&here.min, &here.max);
-                let shift = Vector::from_fn(|a, _| match self.lattice.axes[a].period() {
-                    Some(period) if a < self.lattice.dim => -period * (apart[a] / period).round(),
-                    _ => 0.0,
-                });
-                let room = 0.5 * (there.extent() + here.extent()) + reach;
-                let near = (0..self.lattice.dim).all(|a| (apart + shift)[a].abs() <= room[a]);
-                near.then_some(Neighbour { body: other, shift })
-            })
-            .collect()
+        let periods =
+            Vector::from_fn(|a, _| if a < dim { self.lattice.axes[a].period().unwrap_or(0.0) } else { 0.0 });
+        let turns = |a: usize| if periods[a] > 0.0 { -1..=1 } else { 0..=0 };
+        let mut found = Vec::new();
+        for body in (0..bodies.n_bodies()).map(BodyId) {
+            let there = bodies.aabb(body);
+            let apart = nalgebra::center(&there.min, &there.max) - nalgebra::center(&here.min, &here.max);
+            let nearest = Vector::from_fn(|a, _| {
+                if periods[a] > 0.0 { -periods[a] * (apart[a] / periods[a]).round() } else { 0.0 }
+            });
+            let room = 0.5 * (there.extent() + here.extent()) + reach;
+            for k in turns(2) {
+                for j in turns(1) {
+                    for i in turns(0) {
+                        let turn = Vector::new(f64::from(i), f64::from(j), f64::from(k));
+                        let shift = nearest + periods.component_mul(&turn);
+                        let itself = body == b && turn == Vector::zeros();
+                        if !itself && (0..dim).all(|a| (apart + shift)[a].abs() <= room[a]) {
+                            found.push(Neighbour { body, shift });
+                        }
+                    }
+                }
+            }
+        }
+        found
     }
 }
 
@@ -177,7 +196,7 @@ impl<'a> SurfaceStress<'a> {
 #[derive(Clone, Copy)]
 struct Neighbour {
     body: BodyId,
-    /// From where it is to where it repeats nearest.
+    /// From where it is to where it repeats.
     shift: Vector,
 }
 

@@ -112,3 +112,30 @@ fn a_body_in_a_wall() {
     assert!((area / (0.3 * PI) - 1.0).abs() < 0.06, "{area}");
     assert!((loads.total().force - Vector::new(0.0, -2.0 * 0.6, 0.0)).norm() < 0.06, "{:?}", loads.total());
 }
+
+/// In a box hardly larger than the body its own repetitions are in the way: nothing is taken from inside them.
+#[test]
+fn a_body_beside_itself() {
+    let bodies = Balls::new(2, 0.85, vec![[0.0; 3]]);
+    let inside = |x: [f64; 3]| {
+        let near = [0, 1].map(|a| x[a] - 2.0 * (x[a] / 2.0).round());
+        near[0].hypot(near[1]) < 0.85
+    };
+    let loads = loads::<2>(40, &bodies, |_| [0.0; 3], |x| if inside(x) { 1e3 } else { 7.0 });
+    for point in &loads.points {
+        assert!((point.pressure - 7.0).abs() < 1e-6, "{point:?}");
+    }
+}
+
+#[test]
+fn input_that_does_not_fit_is_named() {
+    let velocity = Staggered::new([10, 10], 0.2, [-1.0; 2]);
+    let (lattice, bodies) = (velocity.cells(), Balls::new(2, 0.5, vec![[0.0; 3]]));
+    let on = |pressure: &[f64], spacing| {
+        SurfaceStress::new(&velocity, &lattice, pressure, 1.0).on(&bodies, BodyId(0), spacing).unwrap_err()
+    };
+    assert_eq!(on(&[0.0; 99], 0.2), IbmError::Storage { needed: 100, found: 99 });
+    for spacing in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(on(&[0.0; 100], spacing), IbmError::NoSurface { .. }), "{spacing}");
+    }
+}

@@ -1,7 +1,7 @@
 //! What walls cost: a step with a ball of 5 % of the box over one without, and what it takes to set it up.
 use example_support::Outcome;
 use example_support::cpu::Stopwatch;
-use example_support::still_bodies::StillBodies;
+use example_support::prescribed_bodies::PrescribedBodies;
 use siltflow::dem::{Disc, Sphere};
 use siltflow::flow::{CartesianGrid, Fluid, Projection, Side};
 use siltflow::ibm::cut_walls;
@@ -33,7 +33,7 @@ fn steps<const D: usize>(flow: &mut Projection<D>) -> Outcome<f64> {
 fn row<const D: usize>(cells: usize, ball: impl Solid + 'static) -> Outcome<()> {
     let (mut plain, mut walled) = (flow::<D>(cells)?, flow::<D>(cells)?);
     let centre = [0.503, 0.498, if D == 2 { 0.0 } else { 0.507 }];
-    let bodies = StillBodies::default().with(ball, centre, 0.0);
+    let bodies = PrescribedBodies::default().with(ball, centre, 0.0);
     let start = Stopwatch::start();
     let walls = cut_walls(walled.velocity(), &bodies)?;
     let found = start.elapsed().cpu;

@@ -3,7 +3,6 @@
 //! immersed`, or with the names of cases after `--`.
 mod cost;
 
-use example_support::Outcome;
 use example_support::channel_cylinder::{self, Cells, DRAG, Found, LIFT, Way};
 use example_support::cpu::Stopwatch;
 use example_support::free_stream;
@@ -11,30 +10,21 @@ use example_support::walled_flows::{
     COUETTE_TORQUE, SphereArray, TurnedChannel, couette, couette_velocity, settle, surface_loads,
     velocity_errors,
 };
+use example_support::{Outcome, run_cases};
 use siltflow::flow::Convection;
 
 /// Flows are steady when they change by less than this part.
 const STEADY: f64 = 1e-6;
 
 fn main() -> Outcome<()> {
-    let wanted: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
-    type Case = (&'static str, fn() -> Outcome<()>);
-    let cases: [Case; 6] = [
+    run_cases(&[
         ("channel", channel),
         ("couette", cylinders),
         ("spheres", spheres),
         ("cylinder", cylinder),
         ("stream", stream),
         ("cost", cost::table),
-    ];
-    rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(|| {
-        for (name, table) in cases {
-            if wanted.is_empty() || wanted.iter().any(|w| w == name) {
-                table()?;
-            }
-        }
-        Ok(())
-    })
+    ])
 }
 
 fn channel() -> Outcome<()> {

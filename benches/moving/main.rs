@@ -1,8 +1,9 @@
 //! Bodies that move through the grid as they are told: a swinging cylinder against measured forces, and how much of the forces
 //! comes from the grid. On one thread: `cargo bench --bench moving`, or with the names of cases after `--`.
-use example_support::Outcome;
 use example_support::cpu::Stopwatch;
 use example_support::moved_body::{Noise, Swinging, passing, turning};
+use example_support::{Outcome, run_cases};
+use siltflow::flow::Diffusion;
 use siltflow::ibm::{Forcing, Hfdib, Kernel, SmoothForcing};
 
 /// Harmonics that belong to the flow.
@@ -12,22 +13,12 @@ const HARMONICS: usize = 12;
 const MEASURED: &str = include_str!("../../tests/data/dutsch_1998_inline_force.csv");
 
 fn main() -> Outcome<()> {
-    let wanted: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
-    type Case = (&'static str, fn() -> Outcome<()>);
-    let cases: [Case; 4] = [
+    run_cases(&[
         ("swinging", swinging),
         ("passing", passing_2d),
         ("sphere", passing_3d),
         ("turning", turning_sphere),
-    ];
-    rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(|| {
-        for (name, table) in cases {
-            if wanted.is_empty() || wanted.iter().any(|w| w == name) {
-                table()?;
-            }
-        }
-        Ok(())
-    })
+    ])
 }
 
 type Way = (&'static str, fn() -> Box<dyn Forcing>);
@@ -38,10 +29,13 @@ const WAYS: [Way; 3] = [
     ("hfdib", || Box::new(Hfdib::new(1.0))),
 ];
 
-fn measured() -> Vec<[f64; 2]> {
-    let number = |text: &str| text.trim().parse().unwrap_or(f64::NAN);
-    let row = |line: &str| line.split_once(' ').map(|(t, force)| [number(t), number(force)]);
-    MEASURED.lines().filter(|line| !line.starts_with('#')).filter_map(row).collect()
+fn measured() -> Outcome<Vec<[f64; 2]>> {
+    let row = |line: &str| -> Outcome<[f64; 2]> {
+        let (time, force) =
+            line.split_once(' ').ok_or_else(|| format!("{line:?} is not a time and a force"))?;
+        Ok([time.parse()?, force.parse()?])
+    };
+    MEASURED.lines().filter(|line| !line.starts_with('#')).map(row).collect()
 }
 
 /// The value of a series over one period at a time, over the period; entry i is at the end of step i.
@@ -59,7 +53,7 @@ fn swinging() -> Outcome<()> {
         "{:>16} {:>6} {:>6} {:>8} {:>12} {:>8} {:>10} {:>8}",
         "forcing", "per D", "steps", "peak", "rms off", "largest", "noise", "CPU s"
     );
-    let measured = measured();
+    let measured = measured()?;
     let most = measured.iter().fold(0.0, |most: f64, m| most.max(m[1].abs()));
     for (name, forcing) in WAYS {
         for per_diameter in [10, 20, 40] {
@@ -92,26 +86,27 @@ fn swinging() -> Outcome<()> {
 
 fn passing_2d() -> Outcome<()> {
     println!("\nCylinder, Re 40, periodic box of 8 D: it moves, the fluid moves");
-    table::<2>(8, [10, 20], 1.0 / 40.0)
+    table::<2>(8, [0.2, 0.1])
 }
 
 fn passing_3d() -> Outcome<()> {
     println!("\nSphere, Re 40, periodic box of 4 D: it moves, the fluid moves");
-    table::<3>(4, [10, 20], 1.0 / 40.0)
+    // At the larger one explicit diffusion is just stable with the finer cells.
+    table::<3>(4, [0.16, 0.08])
 }
 
 /// The drag from 1 to 3 units of time after the start.
-fn table<const D: usize>(edge: usize, resolutions: [usize; 2], viscosity: f64) -> Outcome<()> {
+fn table<const D: usize>(edge: usize, courant_numbers: [f64; 2]) -> Outcome<()> {
     println!(
         "{:>16} {:>6} {:>8} {:>10} {:>10} {:>9} {:>10} {:>10} {:>8}",
         "forcing", "per D", "Courant", "Cd moving", "Cd at rest", "differ", "noise", "at rest", "CPU s"
     );
     for (name, forcing) in WAYS {
-        for per_diameter in resolutions {
-            for courant in [0.2, 0.1] {
+        for per_diameter in [10, 20] {
+            for courant in courant_numbers {
                 let watch = Stopwatch::start();
                 let dt = courant / per_diameter as f64;
-                let drag = |moves| passing::<D>(moves, edge, per_diameter, viscosity, [3.0, dt], forcing());
+                let drag = |moves| passing::<D>(moves, edge, per_diameter, 1.0 / 40.0, [3.0, dt], forcing());
                 let late = |series: Vec<f64>| series[series.len() / 3..].to_vec();
                 let [moving, still] = [late(drag(true)?), late(drag(false)?)];
                 let mean = |series: &[f64]| series.iter().sum::<f64>() / series.len() as f64;
@@ -131,13 +126,19 @@ fn table<const D: usize>(edge: usize, resolutions: [usize; 2], viscosity: f64) -
 }
 
 fn turning_sphere() -> Outcome<()> {
-    println!("\nSphere that turns in creeping flow: torque over 8πμR³Ω");
-    println!("{:>16} {:>6} {:>9} {:>8}", "forcing", "per D", "torque", "CPU s");
+    println!(
+        "\nSphere that turns in creeping flow: torque over 8πμR³Ω, with explicit and with implicit diffusion"
+    );
+    println!("{:>16} {:>6} {:>9} {:>9} {:>8}", "forcing", "per D", "explicit", "implicit", "CPU s");
     for (name, forcing) in WAYS {
-        for per_diameter in [10, 14] {
+        for per_diameter in [8, 12] {
             let watch = Stopwatch::start();
-            let torque = turning(per_diameter, forcing())?;
-            println!("{name:>16} {per_diameter:>6} {torque:>9.4} {:>8.1}", watch.elapsed().cpu);
+            let torque = |diffusion| turning(per_diameter, forcing(), diffusion);
+            let [explicit, implicit] = [torque(Diffusion::Explicit)?, torque(Diffusion::Implicit)?];
+            println!(
+                "{name:>16} {per_diameter:>6} {explicit:>9.4} {implicit:>9.4} {:>8.1}",
+                watch.elapsed().cpu
+            );
         }
     }
     Ok(())

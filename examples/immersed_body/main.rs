@@ -7,10 +7,10 @@
 //! go to `target/immersed_body`.
 use example_support::Outcome;
 use example_support::picture::sketch::{Drawing, Paint, draw};
-use example_support::still_bodies::StillBodies;
+use example_support::prescribed_bodies::{PrescribedBodies, forced_step};
 use siltflow::flow::{CartesianGrid, Fluid, Profile, Projection, Side};
 use siltflow::ibm::{
-    Forcing, FractionRule, Given, Hfdib, Profile as Along, Reconstruction, SolidFraction, SurfaceCell,
+    FractionRule, Given, Hfdib, Profile as Along, Reconstruction, SolidFraction, SurfaceCell,
     surface_elements,
 };
 use siltflow::interfaces::{Aabb, Bodies, BodyId, Kinematics, Lattice, Point, Solid, Vector, VelocityField};
@@ -47,7 +47,7 @@ fn main() -> Outcome<()> {
     let sides = [[inlet, Side::PressureOutlet(0.0)], Side::WALL.both()];
     let mut flow = Projection::new(grid, sides, Fluid { density: 1.0, viscosity: 0.05 })?;
     let capsule = Capsule { half: 0.16, radius: 0.15 };
-    let body = StillBodies::default().with(capsule, [0.64, 0.51, 0.0], 0.0).turned(0.5);
+    let body = PrescribedBodies::default().with(capsule, [0.64, 0.51, 0.0], 0.0).turned(0.5);
 
     let lattice = flow.grid().lattice(None, flow.sides());
     let mut fraction = SolidFraction::new().with_rule(FractionRule::Centroid);
@@ -74,23 +74,17 @@ fn folder() -> Outcome<PathBuf> {
 }
 
 /// Two units of time under the paper's forcing.
-fn march(flow: &mut Projection<2>, body: &StillBodies) -> Outcome<()> {
+fn march(flow: &mut Projection<2>, body: &PrescribedBodies) -> Outcome<()> {
     let mut forcing = Hfdib::new(1.0);
     while flow.time() < 2.0 {
         let dt = flow.stable_dt(0.3);
-        flow.predict(dt, [0.0; 2])?;
-        forcing.place(flow.velocity(), body)?;
-        for _ in 0..forcing.rounds() {
-            forcing.force(flow.velocity_mut(), body);
-            flow.project(dt)?;
-        }
-        flow.finish(dt)?;
+        forced_step(flow, &mut forcing, body, dt)?;
     }
     Ok(())
 }
 
 /// The surface as a closed line.
-fn outline(body: &StillBodies) -> Vec<[f64; 2]> {
+fn outline(body: &PrescribedBodies) -> Vec<[f64; 2]> {
     let pose = body.pose(BODY);
     let mut points: Vec<[f64; 2]> = surface_elements(body.solid(BODY), 0.2 * H, 0.0)
         .iter()
@@ -159,7 +153,7 @@ fn figure_4(lattice: &Lattice, lambda: &[f64], outline: &[[f64; 2]]) -> Vec<Draw
 }
 
 /// The points on the normal through a surface cell, and u_x there.
-fn figure_3(flow: &Projection<2>, body: &StillBodies, outline: &[[f64; 2]]) -> Outcome<Vec<Drawing>> {
+fn figure_3(flow: &Projection<2>, body: &PrescribedBodies, outline: &[[f64; 2]]) -> Outcome<Vec<Drawing>> {
     let (lattice, u) = (flow.velocity().lattice(0), flow.velocity().component(0));
     let mut fraction = SolidFraction::new().with_rule(FractionRule::Centroid);
     fraction.update(lattice, body)?;

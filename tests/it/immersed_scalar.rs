@@ -1,5 +1,5 @@
 //! Scalars with conditions on bodies.
-use example_support::still_bodies::{Bore, StillBodies};
+use example_support::prescribed_bodies::{Bore, PrescribedBodies};
 use siltflow::dem::Disc;
 use siltflow::flow::{CartesianGrid, Fluid, Projection, Scalar, ScalarSide, ScalarTransport, Side};
 use siltflow::ibm::{Given, ImmersedScalar};
@@ -19,8 +19,8 @@ fn conduction(cells: usize, inner: Given) -> f64 {
     let exact = |r: f64| (2.0 * r).ln() / 0.5_f64.ln();
     phi.set(|[x, y]| exact(x.hypot(y).clamp(0.25, 0.5)));
 
-    let disc = StillBodies::default().with(Disc::new(0.25).unwrap(), [0.0; 3], 0.0);
-    let bore = StillBodies::default().with(Bore { radius: 0.5, half: [half; 2] }, [0.0; 3], 0.0);
+    let disc = PrescribedBodies::default().with(Disc::new(0.25).unwrap(), [0.0; 3], 0.0);
+    let bore = PrescribedBodies::default().with(Bore { radius: 0.5, half: [half; 2] }, [0.0; 3], 0.0);
     let lattice = still.grid().lattice(None, still.sides());
     let storage = phi.field().data().len();
     let mut at_disc = ImmersedScalar::new(inner);

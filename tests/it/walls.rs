@@ -1,6 +1,6 @@
 //! Immersed walls at rest: exact and published values. `benches/immersed` has the orders and the costs.
 use crate::with_threads;
-use example_support::still_bodies::StillBodies;
+use example_support::prescribed_bodies::PrescribedBodies;
 use example_support::walled_flows::{
     COUETTE_TORQUE, SphereArray, TurnedChannel, couette, couette_velocity, put_walls, settle, surface_loads,
     velocity_errors,
@@ -91,7 +91,8 @@ fn steps_beside_walls_allocate_nothing() {
                 let grid = CartesianGrid::new([40, 40], [1.0, 1.0]).unwrap();
                 let fluid = Fluid { density: 1.0, viscosity: 0.01 };
                 let mut flow = Projection::new(grid, Side::Periodic.everywhere(), fluid).unwrap();
-                let bodies = StillBodies::default().with(Disc::new(radius).unwrap(), [0.5, 0.5, 0.0], 0.3);
+                let bodies =
+                    PrescribedBodies::default().with(Disc::new(radius).unwrap(), [0.5, 0.5, 0.0], 0.3);
                 put_walls(&mut flow, &bodies).unwrap();
                 let mut steps = |n| (0..n).for_each(|_| flow.advance(5e-3, [0.1, 0.02]).unwrap());
                 steps(10);
@@ -113,7 +114,7 @@ fn walls_and_moving_bodies_meet_in_one_flow() {
     let fluid = Fluid { density: 1000.0, viscosity: 1e-5 };
     let grid = CartesianGrid::new([60, 60], [6e-3, 6e-3]).unwrap();
     let mut flow = Projection::new(grid, Side::WALL.everywhere(), fluid).unwrap();
-    let post = StillBodies::default().with(Disc::new(0.7e-3).unwrap(), [2.2e-3, 1.8e-3, 0.0], 0.0);
+    let post = PrescribedBodies::default().with(Disc::new(0.7e-3).unwrap(), [2.2e-3, 1.8e-3, 0.0], 0.0);
     put_walls(&mut flow, &post).unwrap();
     let mut bodies = RigidBodies::new(Periods::new([None; 3]));
     let material =

@@ -3,7 +3,7 @@
 use crate::Outcome;
 use crate::axes::{gathered, moved};
 use crate::cpu::Stopwatch;
-use crate::still_bodies::StillBodies;
+use crate::prescribed_bodies::{PrescribedBodies, forced_step};
 use crate::walled_flows::{put_walls, surface_loads};
 use dem::Disc;
 use fv_mesh::{CartesianGrid, Convection, Diffusion, Fluid, Profile, Projection, Side};
@@ -90,7 +90,7 @@ impl Way {
             Self::Smooth => 2.0,
         }
     }
-    fn step(self, flow: &mut Projection<2>, bodies: StillBodies) -> Outcome<Step> {
+    fn step(self, flow: &mut Projection<2>, bodies: PrescribedBodies) -> Outcome<Step> {
         Ok(match self {
             Self::Smooth => forced(SmoothForcing::new(FLUID.density), bodies),
             Self::Hfdib => forced(Hfdib::new(FLUID.density), bodies),
@@ -105,16 +105,9 @@ impl Way {
     }
 }
 
-fn forced(mut forcing: impl Forcing + 'static, bodies: StillBodies) -> Step {
+fn forced(mut forcing: impl Forcing + 'static, bodies: PrescribedBodies) -> Step {
     Box::new(move |flow, dt| {
-        flow.predict(dt, [0.0; 2])?;
-        // Nothing moves: this clears the reaction.
-        forcing.place(flow.velocity(), &bodies)?;
-        for _ in 0..forcing.rounds() {
-            forcing.force(flow.velocity_mut(), &bodies);
-            flow.project(dt)?;
-        }
-        flow.finish(dt)?;
+        forced_step(flow, &mut forcing, &bodies, dt)?;
         Ok(forcing.reaction(BodyId(0)).force)
     })
 }
@@ -142,7 +135,7 @@ pub fn run(way: Way, kind: Cells, per_diameter: usize, shift: [f64; 2]) -> Outco
         flow = flow.with_convection(scheme);
     }
     flow.set_velocity(|x| [4.0 * PEAK * x[1] * (LENGTHS[1] - x[1]) / (LENGTHS[1] * LENGTHS[1]), 0.0]);
-    let bodies = StillBodies::default().with(Disc::new(0.5 * DIAMETER)?, [0.2, 0.2, 0.0], 0.0);
+    let bodies = PrescribedBodies::default().with(Disc::new(0.5 * DIAMETER)?, [0.2, 0.2, 0.0], 0.0);
     let mut step = way.step(&mut flow, bodies.clone())?;
     let coefficient = 2.0 / (FLUID.density * MEAN * MEAN * DIAMETER);
     let (mut last, mut next) = (f64::INFINITY, LEAST);

@@ -2,7 +2,7 @@
 use crate::Outcome;
 use crate::axes::gathered;
 use crate::cpu::Stopwatch;
-use crate::still_bodies::StillBodies;
+use crate::prescribed_bodies::PrescribedBodies;
 use crate::walled_flows::{put_walls, surface_loads};
 use dem::Disc;
 use fv_mesh::{CartesianGrid, Convection, Diffusion, Fluid, Profile, Projection, Sampler, Side};
@@ -54,7 +54,7 @@ pub fn run(reynolds: f64, per_diameter: usize, end: f64) -> Outcome<Found> {
     let fluid = Fluid { density: 1.0, viscosity: 1.0 / reynolds };
     let flow = Projection::new(CartesianGrid::from_axes(axes)?, sides, fluid)?;
     let mut flow = flow.with_diffusion(Diffusion::Explicit).with_convection(Convection::Quick);
-    let bodies = StillBodies::default().with(Disc::new(0.5)?, [PLACE[0], PLACE[1], 0.0], 0.0);
+    let bodies = PrescribedBodies::default().with(Disc::new(0.5)?, [PLACE[0], PLACE[1], 0.0], 0.0);
     put_walls(&mut flow, &bodies)?;
     // A swirl behind the cylinder, so that a wake that may swing does.
     flow.set_velocity(|x| {

@@ -1,5 +1,6 @@
-//! What the examples, benches and tests share and what is no part of the library: the scene of the falling discs, bodies that
-//! stand still and flows beside them; pictures, progress, tables, time and memory of the process; the start-up theory the runs are held against.
+//! What the examples, benches and tests share and what is no part of the library: the scene of the falling discs, bodies that are
+//! and move where they are told, flows with them; pictures, progress, tables, time and memory of the process; the start-up theory the
+//! runs are held against.
 
 pub mod axes;
 pub mod channel_cylinder;
@@ -7,12 +8,28 @@ pub mod cpu;
 pub mod free_stream;
 pub mod moved_body;
 pub mod picture;
+pub mod prescribed_bodies;
 pub mod progress;
 pub mod scene;
 pub mod startup_theory;
-pub mod still_bodies;
 pub mod table;
 pub mod walled_flows;
 
 /// What may go wrong in an example or a bench.
 pub type Outcome<T> = Result<T, Box<dyn std::error::Error + Send + Sync>>;
+
+/// A case of a bench and its name.
+pub type Case<'a> = (&'a str, fn() -> Outcome<()>);
+
+/// Runs the cases of a bench, on one thread: those named on the command line, or all.
+///
+/// # Errors
+/// The first that a case has.
+pub fn run_cases(cases: &[Case<'_>]) -> Outcome<()> {
+    let wanted: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
+    rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(|| {
+        let mut chosen =
+            cases.iter().filter(|(name, _)| wanted.is_empty() || wanted.iter().any(|w| w == name));
+        chosen.try_for_each(|(_, case)| case())
+    })
+}

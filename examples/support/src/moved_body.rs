@@ -1,88 +1,54 @@
 //! One body that moves as it is told, in a flow.
 use crate::Outcome;
 use crate::axes::gathered;
+use crate::prescribed_bodies::{PrescribedBodies, forced_step};
 use dem::{Disc, Sphere};
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Side};
 use ibm::Forcing;
-use interfaces::{
-    Bodies, BodyId, Freedom, Inertia, Kinematics, Point, Pose, Rotation, Solid, Twist, Vector, Wrench,
-};
+use interfaces::{BodyId, Kinematics, Point, Pose, Rotation, Solid, Twist, Vector, Wrench};
 use std::f64::consts::TAU;
 
-/// A body with a place and a motion.
-pub struct MovedBody {
-    solid: Box<dyn Solid>,
-    pose: Pose,
-    twist: Twist,
-}
-
-impl MovedBody {
-    /// At rest at `at`.
-    pub fn new(solid: impl Solid + 'static, at: [f64; 3]) -> Self {
-        Self { solid: Box::new(solid), pose: Pose::at(at), twist: Twist::default() }
-    }
-}
-
-impl Kinematics for MovedBody {
-    fn n_bodies(&self) -> usize {
-        1
-    }
-    fn pose(&self, _: BodyId) -> Pose {
-        self.pose
-    }
-    fn twist(&self, _: BodyId) -> Twist {
-        self.twist
-    }
-}
-
-impl Bodies for MovedBody {
-    fn solid(&self, _: BodyId) -> &dyn Solid {
-        &*self.solid
-    }
-    fn inertia(&self, _: BodyId) -> Inertia {
-        Inertia { mass: 1.0, volume: 1.0, tensor: nalgebra::Matrix3::identity() }
-    }
-    fn freedom(&self, _: BodyId) -> Freedom {
-        Freedom::NONE
-    }
-}
+const BODY: BodyId = BodyId(0);
 
 /// A flow with a body that moves in it as it is told.
 pub struct MovedScene<const D: usize> {
     /// The flow.
     pub flow: Projection<D>,
-    body: MovedBody,
+    body: PrescribedBodies,
     forcing: Box<dyn Forcing>,
     /// Mass of the fluid that the body displaces \[kg\].
     displaced: f64,
 }
 
 impl<const D: usize> MovedScene<D> {
-    /// With this body of a certain volume.
-    pub fn new(flow: Projection<D>, body: MovedBody, forcing: Box<dyn Forcing>, volume: f64) -> Self {
+    /// With a `solid` of this `volume` that starts at `at` with this `twist`.
+    pub fn new(
+        flow: Projection<D>,
+        forcing: Box<dyn Forcing>,
+        (solid, volume): (impl Solid + 'static, f64),
+        at: Point,
+        twist: Twist,
+    ) -> Self {
         let displaced = flow.fluid().density * volume;
+        let mut body = PrescribedBodies::default().with(solid, at.into(), 0.0);
+        body.put(BODY, Pose::at(at.into()), twist);
         Self { flow, body, forcing, displaced }
     }
 
-    /// Advances by `dt` to the position and twist given; answers the force of the fluid on the body: −ρ∫f_ib dV + ρV dU/dt, as if
-    /// the fluid inside moved with the body, and the torque of a body that turns steadily. (Its computed momentum, ρΣλuV, is right on average, but its change from step to
-    /// step has the noise of λ: several times that of the forcing with the quintic kernel.)
+    /// Advances by `dt` to the position and twist given. Answers the force of the fluid on the body, −ρ∫f_ib dV + ρV dU/dt, as if the
+    /// fluid inside moved with it (what is computed inside, ρΣλuV, is right on average, but its change from step to step has the noise
+    /// of λ), and the torque of a body that turns steadily.
     ///
     /// # Errors
     /// Those of flow and forcing.
     pub fn step(&mut self, dt: f64, position: Point, twist: Twist) -> Outcome<Wrench> {
         let Self { flow, body, forcing, displaced } = self;
-        flow.predict(dt, [0.0; D])?;
         let turn = Rotation::from_scaled_axis(twist.angular * dt);
-        body.pose = Pose { position, orientation: turn * body.pose.orientation };
-        let last = std::mem::replace(&mut body.twist, twist);
-        forcing.place(flow.velocity(), body)?;
-        for _ in 0..forcing.rounds() {
-            forcing.force(flow.velocity_mut(), body);
-            flow.project(dt)?;
-        }
-        flow.finish(dt)?;
-        let mut impulse = forcing.reaction(BodyId(0));
+        let orientation = turn * body.pose(BODY).orientation;
+        let last = body.twist(BODY);
+        body.put(BODY, Pose { position, orientation }, twist);
+        forced_step(flow, &mut **forcing, body, dt)?;
+        let mut impulse = forcing.reaction(BODY);
         impulse.force += *displaced * (twist.linear - last.linear);
         Ok(impulse * (1.0 / dt))
     }
@@ -149,11 +115,12 @@ impl Swinging {
         let x = gathered(length, h, [length / 2.0 - 2.0, length / 2.0 + 2.0], 1.05, shift[0])?;
         let y = gathered(height, h, [height / 2.0 - 1.2, height / 2.0 + 1.2], 1.05, shift[1])?;
         let fluid = Fluid { density: 1.0, viscosity: 0.01 };
-        let flow = Projection::new(CartesianGrid::from_axes([x, y])?, Side::WALL.everywhere(), fluid)?;
+        let flow = Projection::new(CartesianGrid::from_axes([x, y])?, Side::WALL.everywhere(), fluid)?
+            .with_diffusion(Diffusion::Explicit);
         let middle = [0.5 * length, 0.5 * height];
-        let mut body = MovedBody::new(Disc::new(0.5)?, [middle[0], middle[1], 0.0]);
-        body.twist.linear.x = -1.0;
-        let scene = MovedScene::new(flow, body, forcing, 0.125 * TAU);
+        let start = Twist { linear: -Vector::x(), ..Twist::default() };
+        let disc = (Disc::new(0.5)?, 0.125 * TAU);
+        let scene = MovedScene::new(flow, forcing, disc, Point::new(middle[0], middle[1], 0.0), start);
         Ok(Self { scene, middle, steps, made: 0 })
     }
 
@@ -192,44 +159,44 @@ pub fn passing<const D: usize>(
 ) -> Outcome<Vec<f64>> {
     let grid = CartesianGrid::new([edge * per_diameter; D], [edge as f64; D])?;
     let fluid = Fluid { density: 1.0, viscosity };
-    let mut flow = Projection::new(grid, Side::Periodic.everywhere(), fluid)?;
+    let mut flow =
+        Projection::new(grid, Side::Periodic.everywhere(), fluid)?.with_diffusion(Diffusion::Explicit);
     // Neither on a face nor on a centre.
     let place = 0.5 * edge as f64 + 0.23 / per_diameter as f64;
-    let at = [place, place, if D == 2 { 0.0 } else { place }];
+    let at = Point::new(place, place, if D == 2 { 0.0 } else { place });
     // Along no axis of the grid.
     let heading = Vector::new(0.96, 0.28, 0.0);
     if !moves {
         flow.set_velocity(|_| std::array::from_fn(|a| -heading[a]));
     }
-    let body =
-        if D == 2 { MovedBody::new(Disc::new(0.5)?, at) } else { MovedBody::new(Sphere::new(0.5)?, at) };
     let twist = Twist { linear: if moves { heading } else { Vector::zeros() }, ..Twist::default() };
-    let (area, volume) = if D == 2 { (1.0, 0.125 * TAU) } else { (0.125 * TAU, TAU / 12.0) };
-    let mut scene = MovedScene::new(flow, MovedBody { twist, ..body }, forcing, volume);
+    let area = if D == 2 { 1.0 } else { 0.125 * TAU };
+    let mut scene = match D {
+        2 => MovedScene::new(flow, forcing, (Disc::new(0.5)?, 0.125 * TAU), at, twist),
+        _ => MovedScene::new(flow, forcing, (Sphere::new(0.5)?, TAU / 12.0), at, twist),
+    };
     (1..=(time / dt).round() as usize)
         .map(|step| {
-            let position = Point::from(Vector::from(at) + twist.linear * (dt * step as f64));
+            let position = at + twist.linear * (dt * step as f64);
             Ok(-scene.step(dt, position, twist)?.force.dot(&heading) / (0.5 * area))
         })
         .collect()
 }
 
 /// The torque on a sphere of diameter 1 that turns at 1 about an oblique axis in creeping flow, over −8πμR³Ω; in a box of edge 8 with
-/// walls (which make it larger by about (R/4)³ = 0.2 %). Diffusion is explicit: implicit steps of ν dt = 4 h² would make it 8 % too small,
-/// since what diffuses within a step does not see the forcing.
+/// walls (which make it larger by about (R/4)³ = 0.2 %).
 ///
 /// # Errors
 /// Those of grid, flow and forcing.
-pub fn turning(per_diameter: usize, forcing: Box<dyn Forcing>) -> Outcome<f64> {
+pub fn turning(per_diameter: usize, forcing: Box<dyn Forcing>, diffusion: Diffusion) -> Outcome<f64> {
     let (edge, h) = (8.0, 1.0 / per_diameter as f64);
     let axis = |shift| gathered(edge, h, [0.5 * edge - 1.3, 0.5 * edge + 1.3], 1.15, shift);
     let grid = CartesianGrid::from_axes([axis(0.37)?, axis(0.3)?, axis(0.11)?])?;
     let flow = Projection::new(grid, Side::WALL.everywhere(), Fluid { density: 1.0, viscosity: 1.0 })?
-        .with_diffusion(Diffusion::Explicit);
+        .with_diffusion(diffusion);
     let at = Point::new(0.5 * edge, 0.5 * edge, 0.5 * edge);
     let twist = Twist { linear: Vector::zeros(), angular: Vector::new(0.48, 0.6, 0.64) };
-    let body = MovedBody { twist, ..MovedBody::new(Sphere::new(0.5)?, at.into()) };
-    let mut scene = MovedScene::new(flow, body, forcing, TAU / 12.0);
+    let mut scene = MovedScene::new(flow, forcing, (Sphere::new(0.5)?, TAU / 12.0), at, twist);
     let mut last = f64::INFINITY;
     loop {
         // The torque of the start dies with the root of time.

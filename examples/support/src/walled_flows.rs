@@ -1,6 +1,6 @@
 //! Steady flows beside immersed walls with exact or published answers.
 use crate::Outcome;
-use crate::still_bodies::{Banks, Bore, StillBodies};
+use crate::prescribed_bodies::{Banks, Bore, PrescribedBodies};
 use dem::{Disc, Sphere};
 use fv_mesh::{CartesianGrid, Fluid, Projection, Side};
 use ibm::{SurfaceLoads, SurfaceStress, cut_walls};
@@ -14,7 +14,7 @@ const VISCOSITY: f64 = 0.1;
 ///
 /// # Errors
 /// Those of the cuts and of the flow.
-pub fn put_walls<const D: usize>(flow: &mut Projection<D>, bodies: &StillBodies) -> Outcome<usize> {
+pub fn put_walls<const D: usize>(flow: &mut Projection<D>, bodies: &PrescribedBodies) -> Outcome<usize> {
     let walls = cut_walls(flow.velocity(), bodies)?;
     let faces = walls.components.iter().map(|component| component.faces.len()).sum();
     flow.set_walls(Some(walls))?;
@@ -28,7 +28,7 @@ pub fn put_walls<const D: usize>(flow: &mut Projection<D>, bodies: &StillBodies)
 /// Those of [`SurfaceStress::on`].
 pub fn surface_loads<const D: usize>(
     flow: &Projection<D>,
-    bodies: &StillBodies,
+    bodies: &PrescribedBodies,
     b: usize,
     clearance: f64,
 ) -> Outcome<SurfaceLoads> {
@@ -97,14 +97,14 @@ pub fn velocity_errors<const D: usize>(
 ///
 /// # Errors
 /// Those of the walls and of the flow.
-pub fn couette(cells: usize, shift: [f64; 2]) -> Outcome<(Projection<2>, StillBodies)> {
+pub fn couette(cells: usize, shift: [f64; 2]) -> Outcome<(Projection<2>, PrescribedBodies)> {
     let h = 1.0 / cells as f64;
     let half = 0.5 + 2.0 * h;
     let grid =
         CartesianGrid::new([cells + 4; 2], [2.0 * half; 2])?.with_origin(shift.map(|s| s * h - half))?;
     let fluid = Fluid { density: 1.0, viscosity: VISCOSITY };
     let mut flow = Projection::new(grid, Side::WALL.everywhere(), fluid)?;
-    let inner = StillBodies::default().with(Disc::new(0.25)?, [0.0; 3], 1.0);
+    let inner = PrescribedBodies::default().with(Disc::new(0.25)?, [0.0; 3], 1.0);
     let bodies = inner.with(Bore { radius: 0.5, half: [2.0 * half; 2] }, [0.0; 3], 0.0);
     put_walls(&mut flow, &bodies)?;
     flow.set_velocity(couette_velocity);
@@ -148,7 +148,7 @@ impl TurnedChannel {
         let banks = Banks { lengths, width: 1.0 };
         let place = [0.0123 * h, 0.0371 * h];
         let mut channel = Self { flow, faces: 0, banks, place };
-        let bodies = StillBodies::default().with(banks, [place[0], place[1], 0.0], 0.0);
+        let bodies = PrescribedBodies::default().with(banks, [place[0], place[1], 0.0], 0.0);
         channel.faces = put_walls(&mut channel.flow, &bodies)?;
         channel.flow.set_velocity(|x| exact_in(&banks, place, x));
         Ok(channel)
@@ -184,7 +184,7 @@ pub struct SphereArray {
     /// The flow.
     pub flow: Projection<3>,
     /// The sphere.
-    pub bodies: StillBodies,
+    pub bodies: PrescribedBodies,
     /// Faces that the walls cut or close.
     pub faces: usize,
     /// Radius of the spheres \[m\].
@@ -204,7 +204,7 @@ impl SphereArray {
         let grid = CartesianGrid::new([cells; 3], [1.0; 3])?;
         let fluid = Fluid { density: 1.0, viscosity: 1.0 };
         let mut flow = Projection::new(grid, Side::Periodic.everywhere(), fluid)?;
-        let bodies = StillBodies::default().with(Sphere::new(radius)?, [0.513, 0.487, 0.505], 0.0);
+        let bodies = PrescribedBodies::default().with(Sphere::new(radius)?, [0.513, 0.487, 0.505], 0.0);
         let faces = put_walls(&mut flow, &bodies)?;
         Ok(Self { flow, bodies, faces, radius })
     }

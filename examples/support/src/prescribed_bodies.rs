@@ -1,4 +1,7 @@
-//! Bodies that stand still, or turn in themselves.
+//! Bodies that are where they are told to be and move as they are told.
+use crate::Outcome;
+use fv_mesh::Projection;
+use ibm::Forcing;
 use interfaces::{
     Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Point, Pose, Rotation, Solid, Twist, Vector,
 };
@@ -6,13 +9,13 @@ use std::sync::Arc;
 
 /// Some solids, with their place and motion.
 #[derive(Clone, Default)]
-pub struct StillBodies {
+pub struct PrescribedBodies {
     solids: Vec<Arc<dyn Solid>>,
     poses: Vec<Pose>,
     twists: Vec<Twist>,
 }
 
-impl StillBodies {
+impl PrescribedBodies {
     /// The same with one more, `turning` \[rad/s\] about the axis z.
     #[must_use]
     pub fn with(mut self, solid: impl Solid + 'static, at: [f64; 3], turning: f64) -> Self {
@@ -29,9 +32,32 @@ impl StillBodies {
         }
         self
     }
+    /// Puts body `b` somewhere else, with another motion.
+    pub fn put(&mut self, b: BodyId, pose: Pose, twist: Twist) {
+        (self.poses[b.0], self.twists[b.0]) = (pose, twist);
+    }
 }
 
-impl Kinematics for StillBodies {
+/// One step of `dt` \[s\] of a flow with bodies where they are at its end.
+///
+/// # Errors
+/// Those of flow and forcing.
+pub fn forced_step<const D: usize>(
+    flow: &mut Projection<D>,
+    forcing: &mut dyn Forcing,
+    bodies: &PrescribedBodies,
+    dt: f64,
+) -> Outcome<()> {
+    flow.predict(dt, [0.0; D])?;
+    forcing.place(flow.velocity(), bodies)?;
+    for _ in 0..forcing.rounds() {
+        forcing.force(flow.velocity_mut(), bodies);
+        flow.project(dt)?;
+    }
+    Ok(flow.finish(dt)?)
+}
+
+impl Kinematics for PrescribedBodies {
     fn n_bodies(&self) -> usize {
         self.solids.len()
     }
@@ -43,7 +69,7 @@ impl Kinematics for StillBodies {
     }
 }
 
-impl Bodies for StillBodies {
+impl Bodies for PrescribedBodies {
     fn solid(&self, b: BodyId) -> &dyn Solid {
         &*self.solids[b.0]
     }

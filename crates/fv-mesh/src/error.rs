@@ -57,12 +57,12 @@ pub enum FlowError {
     },
     /// The immersed walls leave no pressure equation that can be solved.
     #[error(
-        "the pressure equation of the {faces} faces that immersed walls cut is not positive definite to round-off; check \
-         that no wall is cut twice within a cell, or refine the grid there"
+        "the pressure equation of the {cells} cells that immersed walls cut is singular to round-off; check \
+         that no cell is cut twice, or refine the grid there"
     )]
     Walls {
-        /// Faces that are partly closed.
-        faces: usize,
+        /// Cells of the fluid with faces that are not wholly open.
+        cells: usize,
     },
     /// The velocity is no longer finite, or grew beyond what a step can carry.
     #[error(

@@ -170,6 +170,12 @@ impl<const D: usize> Metrics<D> {
         Self { axes: std::array::from_fn(|a| AxisMetrics::new(grid.axis(a), periodic[a])), periodic }
     }
 
+    /// Area of the face below cell `above` along axis `a`, over the distance of the centres beside it.
+    pub(crate) fn conductance(&self, a: usize, above: [usize; D]) -> f64 {
+        let widths = (0..D).filter(|&b| b != a).map(|b| self.axes[b].width[GHOSTS + above[b]]);
+        widths.product::<f64>() / self.axes[a].faces.volume[GHOSTS + above[a]]
+    }
+
     /// Weights of `scheme` along axis `a` for nodes of this family. At the ends of a bounded axis the interface
     /// value is the boundary's.
     pub(crate) fn weights(&self, scheme: Convection, a: usize, nodes: Nodes) -> InterfaceWeights {

@@ -9,6 +9,7 @@ mod tests;
 
 pub(crate) use check::check;
 
+use crate::boundary::Boundaries;
 use crate::flow_state::restore_list;
 use crate::metrics::Metrics;
 use crate::pressure::Pressure;
@@ -47,10 +48,11 @@ impl<const D: usize> Walls<D> {
         cuts: CutWalls,
         grid: &CartesianGrid<D>,
         metrics: &Metrics<D>,
+        boundaries: &Boundaries<D>,
         solver: &mut Pressure<D>,
         phi: &mut [f64],
     ) -> Result<Self, FlowError> {
-        let mut pressure = CutPressure::new(&cuts, grid, metrics);
+        let mut pressure = CutPressure::new(&cuts, grid, metrics, boundaries);
         pressure.prepare(solver, phi)?;
         Ok(Self {
             links: std::array::from_fn(|c| Links::new(&cuts.components[c], grid, metrics, c)),

@@ -1,127 +1,109 @@
 //! The pressure equation of cells that walls cut.
 use super::recent::Recent;
-use super::regions::{Orphan, Regions};
+use super::regions::{CutCell, Orphan, Regions};
+use crate::boundary::Boundaries;
 use crate::metrics::Metrics;
 use crate::poisson::PoissonError;
 use crate::pressure::Pressure;
 use crate::{CartesianGrid, Field, FlowError};
+use faer::Mat;
 use faer::linalg::solvers::DenseSolveCore;
-use faer::{Mat, Side};
 use interfaces::CutWalls;
 use rayon::prelude::*;
+use std::ops::Range;
 
-/// Σ_f open_f A_f (φ_N − φ_P)/d_f = V f, by the solver of the box and a system of the cut faces.
+/// Σ_f open_f g_f (φ_N − φ_P) = V f with g_f = A_f/d_f, by the solver of the box and a system of the cells of the fluid with
+/// faces that are not wholly open.
 ///
-/// The part of the flux that a wall takes away, y_f = (1 − open_f) g_f (φ_N − φ_P) with g_f = A_f/d_f, stands on the right
-/// as dipoles. With L the box's operator, B the difference across the cut faces and G its adjoint per volume,
+/// What the walls take away from such a cell stands on the right as a source,
 ///
 /// ```text
-/// L φ = f + G y,   M y = B L⁻¹ f,   M = diag(1/((1 − open) g)) − B L⁻¹ G
+/// σ = C φ,   C φ = Σ_f (1 − open_f) g_f (φ_N − φ_P)/V,   L φ = f + P σ
+/// K σ = S C L⁻¹ f,   K = S (1 − C L⁻¹ P)
 /// ```
 ///
-/// (the capacitance matrix method: Buzbee, Dorr, George & Golub 1971). M is symmetric and positive definite and stays what
-/// it is while the walls stay where they are. Few faces: M⁻¹ is kept, and a solution takes two of the box's. Many: conjugate
-/// gradients from the last y and from what the last changes of y tell ([`Recent`]), one of the box's each, with the diagonal
-/// 1/((1 − open) g) as preconditioner.
+/// with the box's operator L, P from those cells to all, and S = Σ g/Σ open g, which makes rows of narrow openings as long as
+/// others. Cells of the solid keep the box's equation, and nothing in the fluid depends on them: σ is a layer of sources along the
+/// walls whose normal derivative is given, an integral equation of the second kind (Hsiao & Wendland 2008, *Boundary Integral
+/// Equations*, § 1.4). So the condition number of K does not depend on the cells' size. (Dipoles on the closed faces, whose matrix is
+/// symmetric, take as many iterations as there are cells along the walls: seven times as many at 64³.)
 ///
-/// Regions that the walls separate (the inside of a body, a closed pocket of fluid) hang on one closed face each, through
-/// which nothing flows as long as what enters the region leaves it.
+/// Few cells: K⁻¹ is kept, and a solution takes two of the box's (the capacitance matrix method: Buzbee, Dorr, George & Golub
+/// 1971). Many: [`Recent`] starts from the last σ and what is known of K from the last solutions, one of the box's for each new
+/// direction.
 pub(crate) struct CutPressure {
-    faces: Vec<Face>,
-    /// Sources of the faces' dipoles, row after row: cell in the row, face, 1/V with its sign.
-    dipoles: Vec<(usize, usize, f64)>,
-    /// Where each row's dipoles begin.
-    row_starts: Vec<usize>,
-    /// M⁻¹, row after row, where it is kept.
+    cells: Vec<CutCell>,
+    /// The cells of every row of the grid, and how long a row is.
+    rows: Vec<Range<usize>>,
+    row: usize,
+    /// No pressure is given at any side: the sum of the sources is zero.
+    floating: bool,
+    /// K⁻¹, row after row, where it is kept.
     inverse: Option<Vec<f64>>,
-    /// y.
+    /// σ.
     pub(super) missing: Vec<f64>,
-    /// B L⁻¹ f + B L⁻¹ G y − y/((1 − open) g).
     residual: Vec<f64>,
-    /// What the last solutions by conjugate gradients tell of the next one.
-    pub(super) recent: Option<Recent>,
-    /// The residual before the last correction.
-    start: Vec<f64>,
-    /// Correction of y, and the directions and products of conjugate gradients.
     change: Vec<f64>,
     direction: Vec<f64>,
     product: Vec<f64>,
-    /// Of conjugate gradients in the last solution.
+    /// What the last solutions tell of the next one, where K⁻¹ is not kept.
+    pub(super) recent: Option<Recent>,
+    /// Of the last solution.
     pub(crate) iterations: usize,
     /// Cells of which no velocity is computed.
     orphans: Vec<Orphan>,
 }
 
-/// M⁻¹ is kept if it has at most so many entries per cell of the grid: its product then costs less than a few of the box's
+/// K⁻¹ is kept if it has at most so many entries per cell of the grid: its product then costs less than a few of the box's
 /// solutions.
 const DENSE: usize = 40;
 
-/// Residuals of M y = b, over its terms, below which y is good …
+/// Residuals of K σ, over its terms, below which σ is good …
 const EXACT: f64 = 1e-11;
-/// … and those at which conjugate gradients stop, at the latest after so many iterations.
+/// … and those at which iterations stop, at the latest after so many …
 const TOLERANCE: f64 = 1e-7;
 const MOST: usize = 200;
-
-/// A face that is partly closed.
-#[derive(Clone, Copy, Debug)]
-struct Face {
-    /// Dense numbers of the cells below and above.
-    cells: [usize; 2],
-    /// 1/((1 − open) g).
-    resistance: f64,
-}
+/// … unless what is found then is so many times worse.
+const SLACK: f64 = 10.0;
 
 impl CutPressure {
     pub(super) fn new<const D: usize>(
         cuts: &CutWalls,
         grid: &CartesianGrid<D>,
         metrics: &Metrics<D>,
+        boundaries: &Boundaries<D>,
     ) -> Self {
-        let Regions { cut, orphans } = Regions::new(cuts, grid, metrics);
-        let n = grid.cells();
-        let volume = |index: usize| grid.cell_volume(grid.cell(index));
-        let faces: Vec<Face> = cut
-            .iter()
-            .map(|face| Face { cells: face.cells, resistance: 1.0 / ((1.0 - face.open) * face.conductance) })
-            .collect();
-        let mut dipoles: Vec<(usize, usize, f64)> = faces
-            .iter()
-            .enumerate()
-            .flat_map(|(f, face)| [(face.cells[0], f, 1.0), (face.cells[1], f, -1.0)])
-            .map(|(cell, f, sign)| (cell, f, sign / volume(cell)))
-            .collect();
-        dipoles.sort_by_key(|d| (d.0, d.1));
-        let rows = grid.n_cells() / n[0];
-        let row_starts = (0..=rows).map(|r| dipoles.partition_point(|d| d.0 < r * n[0])).collect();
-        dipoles.iter_mut().for_each(|d| d.0 %= n[0]);
-        let m = faces.len();
+        let Regions { cells, orphans, floating } = Regions::new(cuts, grid, metrics, boundaries);
+        let row = grid.cells()[0];
+        let start = |r: usize| cells.partition_point(|cut| cut.cell < r * row);
+        let m = cells.len();
         Self {
-            faces,
-            dipoles,
-            row_starts,
+            rows: (0..grid.n_cells() / row).map(|r| start(r)..start(r + 1)).collect(),
+            cells,
+            row,
+            floating,
             inverse: None,
-            recent: None,
-            start: vec![0.0; m],
+            missing: vec![0.0; m],
             residual: vec![0.0; m],
             change: vec![0.0; m],
             direction: vec![0.0; m],
             product: vec![0.0; m],
-            missing: vec![0.0; m],
+            recent: None,
             iterations: 0,
             orphans,
         }
     }
 
-    /// Makes M⁻¹ with the box's solver if it is worth keeping; `phi` is scratch.
+    /// Makes K⁻¹ with the box's solver if it is worth keeping; `phi` is scratch.
     ///
     /// # Errors
-    /// Those of the solver; [`FlowError::Walls`] if M is not positive definite.
+    /// Those of the solver; [`FlowError::Walls`] if K is singular.
     pub(super) fn prepare<const D: usize>(
         &mut self,
         solver: &mut Pressure<D>,
         phi: &mut [f64],
     ) -> Result<(), FlowError> {
-        let m = self.faces.len();
+        let m = self.cells.len();
         if m * m <= DENSE * phi.len() {
             return self.invert(solver, phi);
         }
@@ -129,45 +111,46 @@ impl CutPressure {
         Ok(())
     }
 
-    /// Makes M⁻¹.
+    /// Makes K⁻¹.
     pub(super) fn invert<const D: usize>(
         &mut self,
         solver: &mut Pressure<D>,
         phi: &mut [f64],
     ) -> Result<(), FlowError> {
-        let m = self.faces.len();
+        let m = self.cells.len();
         let mut matrix = Mat::<f64>::zeros(m, m);
         for j in 0..m {
             self.direction.fill(0.0);
             self.direction[j] = 1.0;
             self.multiply(solver, phi)?;
-            for (i, value) in self.product.iter().enumerate() {
-                matrix[(i, j)] += 0.5 * value;
-                matrix[(j, i)] += 0.5 * value;
-            }
+            self.product.iter().enumerate().for_each(|(i, value)| matrix[(i, j)] = *value);
         }
         phi.fill(0.0);
-        let inverse = matrix.llt(Side::Lower).map_err(|_| FlowError::Walls { faces: m })?.inverse();
-        self.inverse = Some((0..m * m).map(|k| inverse[(k / m, k % m)]).collect());
+        let inverse = matrix.partial_piv_lu().inverse();
+        let inverse: Vec<f64> = (0..m * m).map(|k| inverse[(k / m, k % m)]).collect();
+        if !inverse.iter().all(|value| value.is_finite()) {
+            return Err(FlowError::Walls { cells: m });
+        }
+        self.inverse = Some(inverse);
         Ok(())
     }
 
-    /// `product` becomes M `direction`.
+    /// `product` becomes K `direction`. Where no pressure is given, K is taken of the direction less its mean, and that mean is added:
+    /// K is not singular then.
     fn multiply<const D: usize>(
         &mut self,
         solver: &mut Pressure<D>,
         phi: &mut [f64],
     ) -> Result<(), PoissonError> {
-        let direction = &self.direction;
-        solver.solve_rows(
-            |r, row: &mut [f64]| {
-                row.fill(0.0);
-                self.add_dipoles(r, direction, row);
-            },
-            phi,
-        )?;
-        for ((product, face), y) in self.product.iter_mut().zip(&self.faces).zip(direction) {
-            *product = face.resistance * y - face.jump(phi);
+        let mean = take_mean(self.floating, &self.cells, &mut self.direction);
+        let rows = |r: usize, row: &mut [f64]| {
+            row.fill(0.0);
+            self.add_sources(r, &self.direction, row);
+        };
+        solver.solve_rows(rows, phi)?;
+        for ((product, source), cut) in self.product.iter_mut().zip(&mut self.direction).zip(&self.cells) {
+            *product = cut.scale * (*source - cut.taken(phi)) + mean;
+            *source += mean;
         }
         Ok(())
     }
@@ -188,100 +171,104 @@ impl CutPressure {
         let whole = |this: &Self, solver: &mut Pressure<D>, phi: &mut [f64]| {
             let rows = |r: usize, row: &mut [f64]| {
                 fill(r, row);
-                this.add_dipoles(r, &this.missing, row);
+                this.add_sources(r, &this.missing, row);
             };
             solver.solve_rows(rows, phi)
         };
-        whole(self, solver, phi)?;
-        let mut scale = 0.0;
-        for ((residual, face), y) in self.residual.iter_mut().zip(&self.faces).zip(&self.missing) {
-            let jump = face.jump(phi);
-            *residual = jump - face.resistance * y;
-            scale += jump * jump / face.resistance + face.resistance * y * y;
-        }
-        let goal = EXACT * EXACT * scale;
         self.iterations = 0;
-        if self.weighted_square() <= goal {
-            return Ok(());
+        let mut corrections = 0;
+        loop {
+            whole(self, solver, phi)?;
+            let scale = self.measure(phi);
+            // What is asked is reached but for round-off, or known pairs have lost theirs.
+            let (goal, enough) = match &self.recent {
+                None => (EXACT, corrections == 1),
+                Some(_) => (if corrections == 0 { TOLERANCE } else { SLACK * TOLERANCE }, false),
+            };
+            let goal = goal * goal * scale;
+            if enough || square(&self.residual) <= goal {
+                return Ok(());
+            }
+            if corrections > 0 {
+                self.recent.as_mut().map(Recent::forget);
+            }
+            self.find_change(solver, scale, phi)?;
+            take_mean(self.floating, &self.cells, &mut self.change);
+            self.missing.iter_mut().zip(&self.change).for_each(|(source, change)| *source += change);
+            corrections += 1;
         }
-        let m = self.faces.len();
-        if let Some(inverse) = &self.inverse {
-            let residual = &self.residual;
-            self.change.par_iter_mut().zip(inverse.par_chunks_exact(m)).with_min_len(64).for_each(
-                |(y, row)| {
-                    *y = row.iter().zip(residual).map(|(a, b)| a * b).sum();
-                },
-            );
-        } else if !self.iterate(solver, scale, phi)? {
-            return Ok(());
-        }
-        self.missing.iter_mut().zip(&self.change).for_each(|(y, change)| *y += change);
-        whole(self, solver, phi)
     }
 
-    /// Σ r²(1 − open) g: the square of the residual in the norm of the preconditioner.
-    fn weighted_square(&self) -> f64 {
-        self.residual.iter().zip(&self.faces).map(|(r, face)| r * r / face.resistance).sum()
+    /// Takes the residual S (C φ − σ), and answers the sum of its terms' squares.
+    fn measure(&mut self, phi: &[f64]) -> f64 {
+        let mut scale = 0.0;
+        for ((residual, source), cut) in self.residual.iter_mut().zip(&self.missing).zip(&self.cells) {
+            let taken = cut.taken(phi);
+            *residual = cut.scale * (taken - source);
+            scale += cut.scale.powi(2) * (taken * taken + source * source);
+        }
+        self.balance();
+        scale
     }
 
-    /// Conjugate gradients for M `change` = `residual`; is there a change?
-    fn iterate<const D: usize>(
+    /// Where no pressure is given, nothing flows in or out of the largest region in sum: takes from the residual what says otherwise
+    /// (the walls' own fluxes do not cancel to round-off).
+    fn balance(&mut self) {
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for (residual, cut) in self.residual.iter().zip(&self.cells).filter(|(_, cut)| cut.floats) {
+            let weight = cut.volume / cut.scale;
+            sum += weight * residual;
+            weights += weight;
+        }
+        if weights > 0.0 {
+            let mean = sum / weights;
+            let floating = self.residual.iter_mut().zip(&self.cells).filter(|(_, cut)| cut.floats);
+            floating.for_each(|(residual, _)| *residual -= mean);
+        }
+    }
+
+    /// Finds the `change` with K `change` = `residual`.
+    fn find_change<const D: usize>(
         &mut self,
         solver: &mut Pressure<D>,
         scale: f64,
         phi: &mut [f64],
-    ) -> Result<bool, PoissonError> {
-        let goal = TOLERANCE * TOLERANCE * scale;
-        let mut square = self.weighted_square();
-        if square <= goal {
-            return Ok(false);
+    ) -> Result<(), PoissonError> {
+        if let Some(inverse) = &self.inverse {
+            let (m, residual) = (self.cells.len(), &self.residual);
+            let rows = inverse.par_chunks_exact(m);
+            self.change.par_iter_mut().zip(rows).with_min_len(64).for_each(|(change, row)| {
+                *change = row.iter().zip(residual).map(|(a, b)| a * b).sum();
+            });
+            return Ok(());
         }
         self.change.fill(0.0);
-        self.start.copy_from_slice(&self.residual);
-        if let Some(recent) = &self.recent {
-            recent.start(&mut self.residual, &mut self.change);
-            square = self.weighted_square();
-        }
-        for ((p, r), face) in self.direction.iter_mut().zip(&self.residual).zip(&self.faces) {
-            *p = r / face.resistance;
-        }
-        let mut iterations = 0;
-        while square > goal {
-            if iterations == MOST {
-                let residual = (square / scale).sqrt();
-                return Err(PoissonError::NotConverged { iterations, residual, tolerance: TOLERANCE });
+        let mut recent = self.recent.take().unwrap_or_else(|| Recent::new(self.cells.len()));
+        recent.reduce(&mut self.residual, &mut self.change);
+        let goal = TOLERANCE * TOLERANCE * scale;
+        let mut solved = Ok(());
+        while square(&self.residual) > goal && solved.is_ok() {
+            if self.iterations == MOST {
+                let residual = (square(&self.residual) / scale).sqrt();
+                let (iterations, tolerance) = (MOST, TOLERANCE);
+                solved = Err(PoissonError::NotConverged { iterations, residual, tolerance });
+                break;
             }
-            self.multiply(solver, phi)?;
-            let curvature: f64 = self.direction.iter().zip(&self.product).map(|(p, q)| p * q).sum();
-            let alpha = square / curvature;
-            for (((y, r), p), q) in
-                self.change.iter_mut().zip(&mut self.residual).zip(&self.direction).zip(&self.product)
-            {
-                *y += alpha * p;
-                *r -= alpha * q;
-            }
-            let last = std::mem::replace(&mut square, self.weighted_square());
-            let beta = square / last;
-            for ((p, r), face) in self.direction.iter_mut().zip(&self.residual).zip(&self.faces) {
-                *p = r / face.resistance + beta * *p;
-            }
-            iterations += 1;
-        }
-        self.iterations = iterations;
-        if let Some(recent) = &mut self.recent {
-            self.direction.copy_from_slice(&self.change);
-            for ((product, start), rest) in self.product.iter_mut().zip(&self.start).zip(&self.residual) {
-                *product = start - rest;
-            }
+            self.direction.copy_from_slice(&self.residual);
+            solved = self.multiply(solver, phi);
             recent.learn(&mut self.direction, &mut self.product);
+            recent.reduce_last(&mut self.residual, &mut self.change);
+            self.iterations += 1;
         }
-        Ok(true)
+        self.recent = Some(recent);
+        solved
     }
 
-    /// Adds the dipoles of row `r`, of these strengths per face.
-    fn add_dipoles(&self, r: usize, strengths: &[f64], row: &mut [f64]) {
-        for &(i, face, weight) in &self.dipoles[self.row_starts[r]..self.row_starts[r + 1]] {
-            row[i] += weight * strengths[face];
+    /// Adds the sources of row `r`.
+    fn add_sources(&self, r: usize, sources: &[f64], row: &mut [f64]) {
+        let cells = self.rows[r].clone();
+        for (cut, source) in self.cells[cells.clone()].iter().zip(&sources[cells]) {
+            row[cut.cell - r * self.row] += source;
         }
     }
 
@@ -294,8 +281,24 @@ impl CutPressure {
     }
 }
 
-impl Face {
-    fn jump(&self, phi: &[f64]) -> f64 {
-        phi[self.cells[1]] - phi[self.cells[0]]
+impl CutCell {
+    /// What the walls take away from the cell: C φ.
+    fn taken(&self, phi: &[f64]) -> f64 {
+        self.closed.iter().map(|&(neighbour, weight)| weight * (phi[neighbour] - phi[self.cell])).sum()
     }
+}
+
+/// Takes out and answers the mean of the sources if they `must` have none.
+fn take_mean(must: bool, cells: &[CutCell], sources: &mut [f64]) -> f64 {
+    if !must {
+        return 0.0;
+    }
+    let volume: f64 = cells.iter().map(|cut| cut.volume).sum();
+    let mean = sources.iter().zip(cells).map(|(source, cut)| cut.volume * source).sum::<f64>() / volume;
+    sources.iter_mut().for_each(|source| *source -= mean);
+    mean
+}
+
+fn square(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum()
 }

@@ -3,34 +3,34 @@
 use crate::flow_state::restore_list;
 use interfaces::RestartError;
 
-/// Changes of the unknowns in the last solutions and their products with the matrix, M-orthonormal: of a new right-hand side
-/// they take what lies in their span (Fischer 1998, Comput. Methods Appl. Mech. Eng. 163, 193).
+/// Directions and their products with the matrix, the products orthonormal: of a right-hand side they take what lies in the products'
+/// span. Going on in the direction of what is left, with each product made orthogonal to those before, is the method of generalised
+/// conjugate residuals (Eisenstat, Elman & Schultz 1983, SIAM J. Numer. Anal. 20, 345), and the directions serve the next right-hand
+/// side as well (de Sturler 1996, J. Comput. Appl. Math. 67, 15). The oldest give way.
 #[derive(Clone, Debug)]
 pub(super) struct Recent {
     m: usize,
     /// How many there are, and which is the next to be replaced.
     count: usize,
     next: usize,
-    /// Change after change, and product after product; as many as there may be.
-    changes: Vec<f64>,
+    /// Direction after direction, and product after product; as many as there may be.
+    directions: Vec<f64>,
     products: Vec<f64>,
 }
 
 /// So many are kept.
-const KEPT: usize = 10;
-/// What is left of a change after those before it have been taken out, in the square of the norm, below which it is nothing new.
-const NEW: f64 = 1e-6;
+const KEPT: usize = 20;
 
 impl Recent {
     /// For `m` unknowns.
     pub(super) fn new(m: usize) -> Self {
-        Self { m, count: 0, next: 0, changes: vec![0.0; KEPT * m], products: vec![0.0; KEPT * m] }
+        Self { m, count: 0, next: 0, directions: vec![0.0; KEPT * m], products: vec![0.0; KEPT * m] }
     }
 
     /// Hands all of it to `sink`.
     pub(super) fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         sink("walls recent", &[self.count as f64, self.next as f64]);
-        sink("walls changes", &self.changes);
+        sink("walls directions", &self.directions);
         sink("walls products", &self.products);
     }
 
@@ -43,41 +43,52 @@ impl Recent {
         restore_list(source, "walls recent", &mut counts)?;
         [self.count, self.next] = counts.map(|count| (count as usize).min(KEPT));
         self.next %= KEPT;
-        restore_list(source, "walls changes", &mut self.changes)?;
+        restore_list(source, "walls directions", &mut self.directions)?;
         restore_list(source, "walls products", &mut self.products)
     }
 
-    fn pairs(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
-        self.changes.chunks_exact(self.m).zip(self.products.chunks_exact(self.m)).take(self.count)
+    /// Forgets all.
+    pub(super) fn forget(&mut self) {
+        (self.count, self.next) = (0, 0);
+    }
+
+    fn pair(&self, k: usize) -> (&[f64], &[f64]) {
+        let at = k * self.m..(k + 1) * self.m;
+        (&self.directions[at.clone()], &self.products[at])
+    }
+
+    /// Moves from `residual` to `change` what pair `k` tells.
+    fn reduce_by(&self, k: usize, residual: &mut [f64], change: &mut [f64]) {
+        let (d, q) = self.pair(k);
+        let part = dot(q, residual);
+        add(residual, -part, q);
+        add(change, part, d);
     }
 
     /// Moves from `residual` to `change` what is known.
-    pub(super) fn start(&self, residual: &mut [f64], change: &mut [f64]) {
-        for (d, q) in self.pairs() {
-            let part = dot(d, residual);
-            add(residual, -part, q);
-            add(change, part, d);
-        }
+    pub(super) fn reduce(&self, residual: &mut [f64], change: &mut [f64]) {
+        (0..self.count).for_each(|k| self.reduce_by(k, residual, change));
     }
 
-    /// Learns from a solution: M `change` = `product`. Both are scratch afterwards.
-    pub(super) fn learn(&mut self, change: &mut [f64], product: &mut [f64]) {
-        let whole = dot(change, product);
-        // Twice, for round-off.
+    /// Moves from `residual` to `change` what was learnt last.
+    pub(super) fn reduce_last(&self, residual: &mut [f64], change: &mut [f64]) {
+        self.reduce_by((self.next + KEPT - 1) % KEPT, residual, change);
+    }
+
+    /// Learns that the matrix makes this `product` of this `direction`. Both are scratch afterwards.
+    pub(super) fn learn(&mut self, direction: &mut [f64], product: &mut [f64]) {
+        // Twice, for round-off; not against the one that gives way.
         for _ in 0..2 {
-            for (d, q) in self.pairs() {
-                let part = dot(q, change);
-                add(change, -part, d);
+            for k in (0..self.count).filter(|&k| k != self.next) {
+                let (d, q) = self.pair(k);
+                let part = dot(q, product);
                 add(product, -part, q);
+                add(direction, -part, d);
             }
         }
-        let left = dot(change, product);
-        if !(left > NEW * whole && whole > 0.0) {
-            return;
-        }
-        let scale = left.sqrt().recip();
+        let scale = dot(product, product).sqrt().max(f64::MIN_POSITIVE).recip();
         let at = self.next * self.m..(self.next + 1) * self.m;
-        self.changes[at.clone()].iter_mut().zip(&*change).for_each(|(to, from)| *to = scale * from);
+        self.directions[at.clone()].iter_mut().zip(&*direction).for_each(|(to, from)| *to = scale * from);
         self.products[at].iter_mut().zip(&*product).for_each(|(to, from)| *to = scale * from);
         self.count = (self.count + 1).min(KEPT);
         self.next = (self.next + 1) % KEPT;
@@ -96,10 +107,12 @@ fn add(to: &mut [f64], part: f64, from: &[f64]) {
 mod tests {
     use super::*;
 
-    /// A symmetric, positive definite matrix.
+    /// A matrix without symmetry.
     fn product(x: &[f64]) -> Vec<f64> {
-        let n = x.len();
-        (0..n).map(|i| (0..n).map(|j| if i == j { 3.0 + i as f64 } else { 0.3 } * x[j]).sum()).collect()
+        let entry = |i: usize, j: usize| {
+            if i == j { 3.0 + i as f64 } else { 0.3 * (i as f64 + 0.1 * j as f64).sin() }
+        };
+        (0..x.len()).map(|i| x.iter().enumerate().map(|(j, x)| entry(i, j) * x).sum()).collect()
     }
 
     #[test]
@@ -111,16 +124,13 @@ mod tests {
             recent.learn(&mut change(k), &mut product(&change(k)));
         }
         assert_eq!(recent.count, 6);
-        // Nothing new.
-        recent.learn(&mut change(3), &mut product(&change(3)));
-        assert_eq!(recent.count, 6);
         let wanted: Vec<f64> = (0..n).map(|i| 2.0 * change(2)[i] - 0.7 * change(5)[i]).collect();
         let (mut residual, mut found) = (product(&wanted), vec![0.0; n]);
-        recent.start(&mut residual, &mut found);
+        recent.reduce(&mut residual, &mut found);
         assert!(residual.iter().all(|r| r.abs() < 1e-12), "{residual:?}");
         assert!(found.iter().zip(&wanted).all(|(a, b)| (a - b).abs() < 1e-12));
         // The oldest gives way, and what was saved is the same.
-        for k in 7..=14 {
+        for k in 7..=24 {
             recent.learn(&mut change(k), &mut product(&change(k)));
         }
         assert_eq!((recent.count, recent.next), (KEPT, 4));
@@ -130,7 +140,7 @@ mod tests {
         other.restore(&|name| saved.iter().find(|s| s.0 == name).map(|s| s.1.as_slice())).unwrap();
         let first = |recent: &Recent| {
             let (mut residual, mut found) = (product(&wanted), vec![0.0; n]);
-            recent.start(&mut residual, &mut found);
+            recent.reduce(&mut residual, &mut found);
             found
         };
         assert_eq!((first(&recent), recent.next), (first(&other), other.next));

@@ -1,16 +1,32 @@
 //! What walls make of the cells: faces that are not wholly open, cells without a velocity, regions that are cut off.
 use crate::CartesianGrid;
-use crate::grid::GHOSTS;
+use crate::boundary::{Boundaries, FaceKind};
 use crate::metrics::Metrics;
 use interfaces::CutWalls;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// The cells as the pressure equation sees them.
 pub(super) struct Regions {
-    /// Faces that are not wholly open, but for those inside the solid.
-    pub(super) cut: Vec<Cut>,
+    /// Cells of the fluid with faces that are not wholly open, in order.
+    pub(super) cells: Vec<CutCell>,
     /// Cells of which no velocity is computed, in order.
     pub(super) orphans: Vec<Orphan>,
+    /// No pressure is given at any side.
+    pub(super) floating: bool,
+}
+
+/// A cell of the fluid with faces that are not wholly open.
+pub(super) struct CutCell {
+    /// Its dense number.
+    pub(super) cell: usize,
+    /// Volume \[m³\].
+    pub(super) volume: f64,
+    /// Dense numbers of the neighbours behind those faces, and the closed part of A/d over the cell's volume.
+    pub(super) closed: Vec<(usize, f64)>,
+    /// Sum of A/d of all its faces over that of the open parts.
+    pub(super) scale: f64,
+    /// Does nothing but itself fix the pressure's level in its region?
+    pub(super) floats: bool,
 }
 
 /// A cell of which no velocity is computed.
@@ -26,51 +42,80 @@ impl Regions {
         cuts: &CutWalls,
         grid: &CartesianGrid<D>,
         metrics: &Metrics<D>,
+        boundaries: &Boundaries<D>,
     ) -> Self {
         let n = grid.cells();
         let mut cut = Vec::new();
-        // Closed faces of every cell.
-        let mut closed = vec![0; grid.n_cells()];
         for (c, component) in cuts.components.iter().enumerate().take(D) {
             for face in &component.faces {
                 let Some(above) = grid.cell_at(face.index) else { continue };
                 let mut below = above;
                 below[c] = if above[c] == 0 { n[c] - 1 } else { above[c] - 1 };
-                let area: f64 =
-                    (0..D).filter(|&a| a != c).map(|a| metrics.axes[a].width[GHOSTS + above[a]]).product();
                 let cells = [grid.index(below), grid.index(above)];
-                if face.open == 0.0 {
-                    cells.iter().for_each(|&cell| closed[cell] += 1);
-                }
-                cut.push(Cut {
-                    axis: c,
-                    cells,
-                    open: face.open,
-                    conductance: area / metrics.axes[c].faces.volume[GHOSTS + above[c]],
-                });
+                cut.push(Cut { axis: c, cells, open: face.open, conductance: metrics.conductance(c, above) });
             }
         }
-        let inner_faces = |index: usize| -> usize {
-            let cell = grid.cell(index);
-            let sides = |a: usize| usize::from(cell[a] == 0) + usize::from(cell[a] + 1 == n[a]);
-            (0..D).map(|a| 2 - if metrics.periodic[a] { 0 } else { sides(a) }).sum()
-        };
-        let solid = |index: usize| closed[index] > 0 && closed[index] == inner_faces(index);
+        let solid = solid_cells(&cut, grid, metrics);
         let orphans = orphans(cuts, grid, metrics, &mut cut);
-        cut.retain(|face| !face.cells.iter().all(|&cell| solid(cell)));
-        hang_regions(&mut cut, grid, metrics);
-        Self { cut, orphans }
+        cut.retain(|face| !face.cells.iter().all(|cell| solid.contains(cell)));
+        let roots = Roots::new(&cut, &solid, grid, metrics, boundaries);
+        // A region that hangs on a closed face sees through it what is behind.
+        let mut closed: BTreeMap<usize, Vec<(usize, f64)>> = BTreeMap::new();
+        for (f, face) in cut.iter().enumerate() {
+            for [cell, neighbour] in [face.cells, [face.cells[1], face.cells[0]]] {
+                if !solid.contains(&cell) && roots.hangs.get(&f) != Some(&cell) {
+                    closed.entry(cell).or_default().push((neighbour, (1.0 - face.open) * face.conductance));
+                }
+            }
+        }
+        let cells = closed.into_iter().map(|(cell, mut closed)| {
+            let at = grid.cell(cell);
+            let volume = grid.cell_volume(at);
+            let whole: f64 =
+                inner_faces(at, grid, metrics).map(|(a, above)| metrics.conductance(a, above)).sum();
+            let shut: f64 = closed.iter().map(|c| c.1).sum();
+            closed.iter_mut().for_each(|c| c.1 /= volume);
+            CutCell { cell, volume, closed, scale: whole / (whole - shut), floats: roots.floats(cell) }
+        });
+        Self { cells: cells.collect(), orphans, floating: roots.floating.is_some() }
     }
 }
 
 /// A face that is not wholly open.
-pub(super) struct Cut {
+struct Cut {
     axis: usize,
     /// Dense numbers of the cells below and above.
-    pub(super) cells: [usize; 2],
-    pub(super) open: f64,
+    cells: [usize; 2],
+    open: f64,
     /// Its area over the distance of the cells' centres.
-    pub(super) conductance: f64,
+    conductance: f64,
+}
+
+/// The faces of a cell that are no sides of the box: axis and the cell above.
+fn inner_faces<const D: usize>(
+    cell: [usize; D],
+    grid: &CartesianGrid<D>,
+    metrics: &Metrics<D>,
+) -> impl Iterator<Item = (usize, [usize; D])> {
+    let n = grid.cells();
+    let periodic: [bool; D] = std::array::from_fn(|a| metrics.periodic[a]);
+    (0..D).flat_map(move |a| {
+        let mut above = cell;
+        above[a] = (cell[a] + 1) % n[a];
+        let lower = (periodic[a] || cell[a] > 0).then_some((a, cell));
+        let upper = (periodic[a] || cell[a] + 1 < n[a]).then_some((a, above));
+        lower.into_iter().chain(upper)
+    })
+}
+
+/// The cells of which every face is closed.
+fn solid_cells<const D: usize>(cut: &[Cut], grid: &CartesianGrid<D>, metrics: &Metrics<D>) -> HashSet<usize> {
+    let mut closed: HashMap<usize, usize> = HashMap::new();
+    for cell in cut.iter().filter(|face| face.open == 0.0).flat_map(|face| face.cells) {
+        *closed.entry(cell).or_default() += 1;
+    }
+    let all = |cell: usize| inner_faces(grid.cell(cell), grid, metrics).count();
+    closed.into_iter().filter(|&(cell, count)| count == all(cell)).map(|(cell, _)| cell).collect()
 }
 
 /// The cells with no velocity node in the fluid, and where their pressure comes from. What passes through them passes on to
@@ -123,27 +168,94 @@ fn orphans<const D: usize>(
     sources.into_iter().map(mean).collect()
 }
 
-/// Opens one closed face per region that the walls separate from the rest.
-fn hang_regions<const D: usize>(cut: &mut Vec<Cut>, grid: &CartesianGrid<D>, metrics: &Metrics<D>) {
-    let n = grid.cells();
-    let mut regions = Sets((0..grid.n_cells()).collect());
-    let closed: HashSet<(usize, usize)> =
-        cut.iter().filter(|face| face.open == 0.0).map(|face| (face.axis, face.cells[1])).collect();
-    for above in 0..grid.n_cells() {
-        let cell = grid.cell(above);
-        for a in 0..D {
-            let mut below = cell;
-            below[a] = match (cell[a], metrics.periodic[a]) {
-                (0, false) => continue,
-                (0, true) => n[a] - 1,
-                (i, _) => i - 1,
-            };
-            if !closed.contains(&(a, above)) {
-                regions.join(grid.index(below), above);
+/// What fixes the level of the pressure in each region that the walls separate: given pressures, or the neighbour behind one closed
+/// face, through which nothing flows as long as what enters the region leaves it. Where no pressure is given at all, the largest
+/// region of the fluid is on its own.
+struct Roots {
+    regions: Sets,
+    /// Faces that regions hang on: their number, and the cell of that region.
+    hangs: HashMap<usize, usize>,
+    /// The region on its own.
+    floating: Option<usize>,
+}
+
+impl Roots {
+    fn new<const D: usize>(
+        cut: &[Cut],
+        solid: &HashSet<usize>,
+        grid: &CartesianGrid<D>,
+        metrics: &Metrics<D>,
+        boundaries: &Boundaries<D>,
+    ) -> Self {
+        let mut regions = Sets((0..grid.n_cells()).collect());
+        let closed: HashSet<(usize, usize)> =
+            cut.iter().filter(|face| face.open == 0.0).map(|face| (face.axis, face.cells[1])).collect();
+        for above in 0..grid.n_cells() {
+            let cell = grid.cell(above);
+            for (a, _) in inner_faces(cell, grid, metrics).filter(|face| face.1 == cell) {
+                let mut below = cell;
+                below[a] = if cell[a] == 0 { grid.cells()[a] - 1 } else { cell[a] - 1 };
+                if !closed.contains(&(a, above)) {
+                    regions.join(grid.index(below), above);
+                }
             }
         }
+        let mut reached: Vec<usize> =
+            given_pressures(grid, boundaries).into_iter().map(|cell| regions.find(cell)).collect();
+        reached.sort_unstable();
+        reached.dedup();
+        let mut floating = None;
+        if reached.is_empty() {
+            let mut sizes: BTreeMap<usize, usize> = BTreeMap::new();
+            for cell in (0..grid.n_cells()).filter(|cell| !solid.contains(cell)) {
+                *sizes.entry(regions.find(cell)).or_default() += 1;
+            }
+            floating = sizes.into_iter().max_by_key(|region| region.1).map(|region| region.0);
+            reached.extend(floating);
+        }
+        // From region to region through closed faces.
+        let mut doors: HashMap<usize, Vec<(usize, [usize; 2])>> = HashMap::new();
+        for (f, face) in cut.iter().enumerate().filter(|(_, face)| face.open == 0.0) {
+            for cells in [face.cells, [face.cells[1], face.cells[0]]] {
+                doors.entry(regions.find(cells[0])).or_default().push((f, cells));
+            }
+        }
+        let mut seen: HashSet<usize> = reached.iter().copied().collect();
+        let mut hangs = HashMap::new();
+        while let Some(region) = reached.pop() {
+            for &(f, [_, behind]) in doors.get(&region).into_iter().flatten() {
+                let other = regions.find(behind);
+                if seen.insert(other) {
+                    reached.push(other);
+                    if !solid.contains(&behind) {
+                        hangs.insert(f, behind);
+                    }
+                }
+            }
+        }
+        // What is asked later is answered at once.
+        (0..grid.n_cells()).for_each(|cell| regions.0[cell] = regions.find(cell));
+        Self { regions, hangs, floating }
     }
-    cut.retain(|face| face.open > 0.0 || !regions.join(face.cells[0], face.cells[1]));
+
+    fn floats(&self, cell: usize) -> bool {
+        self.floating == Some(self.regions.0[cell])
+    }
+}
+
+/// The cells beside given pressures.
+fn given_pressures<const D: usize>(grid: &CartesianGrid<D>, boundaries: &Boundaries<D>) -> Vec<usize> {
+    let n = grid.cells();
+    let mut cells = Vec::new();
+    for (a, [lower, upper]) in (0..D).filter_map(|a| Some((a, boundaries.kinds(a)?))) {
+        for (end, kinds) in [(0, lower), (n[a] - 1, upper)] {
+            let beside = (0..grid.n_cells()).filter(|&cell| grid.cell(cell)[a] == end);
+            cells.extend(
+                beside.zip(kinds).filter(|(_, kind)| *kind == FaceKind::Pressure).map(|(cell, _)| cell),
+            );
+        }
+    }
+    cells
 }
 
 /// Disjoint sets of cells.

@@ -81,26 +81,50 @@ fn flow_over_a_bed_is_exact() {
     }
 }
 
+/// Every face of 8 × 8 periodic cells partly open: more cut cells than K⁻¹ is kept for.
+fn sieve() -> Projection<2> {
+    let grid = CartesianGrid::new([8, 8], [1.0; 2]).unwrap();
+    let fluid = Fluid { density: 1.0, viscosity: 0.01 };
+    let mut flow = Projection::new(grid, Side::Periodic.everywhere(), fluid).unwrap();
+    let mut walls = CutWalls { n_bodies: 1, ..CutWalls::default() };
+    for c in 0..2 {
+        let lattice = flow.velocity().lattice(c);
+        for (i, j) in (0..8).flat_map(|i| (0..8).map(move |j| (i, j))) {
+            let open = 0.3 + 0.65 * f64::from((i * 5 + j * 3 + c as i32 * 7) % 11) / 10.0;
+            let index = lattice.index([i as isize, j as isize, 0]).unwrap();
+            let terms = [(index, open), (index, 0.0), (index, 0.0), (index, 0.0)];
+            walls.components[c].faces.push(CutFace { index, open, constant: 0.0, terms });
+        }
+    }
+    flow.set_walls(Some(walls)).unwrap();
+    flow.set_velocity(|x| [(6.0 * x[1]).sin(), (5.0 * x[0]).cos()]);
+    flow
+}
+
 #[test]
 fn walls_are_restarted_bit_for_bit() {
-    let step = |flow: &mut Projection<2>, n: usize| {
-        for _ in 0..n {
-            flow.advance(1e-3, [0.3, 0.1]).unwrap();
+    for new in [|| channel(10, 0.27, 0.2), sieve] {
+        let step = |flow: &mut Projection<2>, n: usize| {
+            for _ in 0..n {
+                flow.advance(1e-3, [0.3, 0.1]).unwrap();
+            }
+        };
+        let mut whole = new();
+        step(&mut whole, 9);
+        let mut first = new();
+        step(&mut first, 4);
+        let mut saved = HashMap::new();
+        first.save(&mut |name, values| drop(saved.insert(name.to_string(), values.to_vec())));
+        let mut second = new();
+        second.restore(&|name| saved.get(name).map(Vec::as_slice)).unwrap();
+        step(&mut second, 5);
+        for c in 0..2 {
+            assert_eq!(whole.velocity().component(c), second.velocity().component(c));
         }
-    };
-    let mut whole = channel(10, 0.27, 0.2);
-    step(&mut whole, 9);
-    let mut first = channel(10, 0.27, 0.2);
-    step(&mut first, 4);
-    let mut saved = HashMap::new();
-    first.save(&mut |name, values| drop(saved.insert(name.to_string(), values.to_vec())));
-    let mut second = channel(10, 0.27, 0.2);
-    second.restore(&|name| saved.get(name).map(Vec::as_slice)).unwrap();
-    step(&mut second, 5);
-    for c in 0..2 {
-        assert_eq!(whole.velocity().component(c), second.velocity().component(c));
+        assert_eq!(whole.pressure().data(), second.pressure().data());
+        // What is kept of K⁻¹ or of the last solutions makes later steps cheap.
+        assert!(whole.pressure_info().iterations < 8, "{:?}", whole.pressure_info());
     }
-    assert_eq!(whole.pressure().data(), second.pressure().data());
 }
 
 #[test]
@@ -203,7 +227,7 @@ fn largest_residual<const D: usize>(
             }
         });
     }
-    let mut pressure = CutPressure::new(&walls, &grid, &metrics);
+    let mut pressure = CutPressure::new(&walls, &grid, &metrics, &boundaries);
     let mut phi = vec![0.0; grid.n_cells()];
     if dense {
         pressure.invert(&mut solver, &mut phi).unwrap();

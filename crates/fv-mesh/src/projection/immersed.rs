@@ -34,12 +34,13 @@ impl<const D: usize> Projection<D> {
     }
 
     fn place(&mut self, cuts: CutWalls) -> Result<(), FlowError> {
-        let FlowState { grid, metrics, velocity, .. } = &mut self.state;
+        let FlowState { grid, metrics, boundaries, velocity, .. } = &mut self.state;
         check(&cuts, grid, metrics)?;
         match &mut self.walls {
             Some(walls) if walls.cuts.same_shape(&cuts) => walls.cuts = cuts,
             walls => {
-                let made = Walls::new(cuts, grid, metrics, &mut self.pressure_solver, &mut self.phi)?;
+                let made =
+                    Walls::new(cuts, grid, metrics, boundaries, &mut self.pressure_solver, &mut self.phi)?;
                 *walls = Some(Box::new(made));
             }
         }

@@ -1,8 +1,8 @@
-//! What wall distances and wall rows cost, in ns of CPU time. Sample run: `cargo bench -p ibm --bench walls` (half a minute or
-//! so); `-- 50` repeats more often.
+//! What wall distances and wall rows cost, in ns of CPU time. Sample run: `cargo bench -p ibm --bench walls` (a minute or so);
+//! `-- 50` repeats more often, `-- distances` or `-- rows` takes only those.
 //!
-//! 1. Distances of all cells from 1 to 512 spheres, a cube and a mesh, on 128³ cells: from scratch, after all bodies moved, after one
-//!    moved, at rest.
+//! 1. Distances of all cells from 1 to 512 spheres and a cube on 128³ cells, and from a mesh on 48³: from scratch, after all bodies
+//!    moved, after one moved, at rest.
 //! 2. Rows around a sphere and 512 of them: placed, filled, at rest.
 use cpu_time::ProcessTime;
 use ibm::{TriangleMesh, WallDistance, WallRows};
@@ -115,8 +115,7 @@ fn timed(work: impl FnOnce()) -> std::time::Duration {
     start.elapsed()
 }
 
-fn distances(name: &str, mut bodies: Equal, repeat: usize) {
-    let n = 128;
+fn distances(name: &str, mut bodies: Equal, n: usize, repeat: usize) {
     let edge = (bodies.poses.len() as f64).cbrt();
     let lattice = lattice(n, (1.25 * edge).max(2.5));
     let cells = (n * n * n) as f64;
@@ -178,14 +177,21 @@ fn rows(edge: usize, cells_per_diameter: usize, repeat: usize) {
 }
 
 fn main() {
-    let repeat = std::env::args().skip(1).find_map(|a| a.parse().ok()).unwrap_or(5);
-    for edge in [1, 2, 4, 8] {
-        distances("spheres", crowd(Box::new(Sphere), edge), repeat);
+    let arguments = || std::env::args().skip(1).filter(|a| !a.starts_with('-'));
+    let repeat = arguments().find_map(|a| a.parse().ok()).unwrap_or(5);
+    let only = arguments().find(|a| a.parse::<usize>().is_err());
+    let wants = |part: &str| only.as_ref().is_none_or(|only| only == part);
+    if wants("distances") {
+        for edge in [1, 2, 4, 8] {
+            distances("spheres", crowd(Box::new(Sphere), edge), 128, repeat);
+        }
+        distances("cube", crowd(Box::new(Cube), 1), 128, repeat);
+        let mesh = TriangleMesh::sphere(0.5, 5).expect("a sphere");
+        distances(&format!("{} triangles", mesh.n_faces()), crowd(Box::new(mesh), 1), 48, repeat);
     }
-    distances("cube", crowd(Box::new(Cube), 1), repeat);
-    let mesh = TriangleMesh::sphere(0.5, 5).expect("a sphere");
-    distances(&format!("{} triangles", mesh.n_faces()), crowd(Box::new(mesh), 1), repeat);
-    for (edge, cells) in [(1, 10), (1, 20), (1, 40), (8, 10)] {
-        rows(edge, cells, repeat);
+    if wants("rows") {
+        for (edge, cells) in [(1, 10), (1, 20), (1, 40), (8, 10)] {
+            rows(edge, cells, repeat);
+        }
     }
 }

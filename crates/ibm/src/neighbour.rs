@@ -1,5 +1,5 @@
 //! The bodies beside a body.
-use interfaces::{Bodies, BodyId, Lattice, Point, Vector};
+use interfaces::{Aabb, Bodies, BodyId, Lattice, Point, Vector};
 
 /// A body beside the one at hand.
 #[derive(Clone, Copy, Debug)]
@@ -7,12 +7,22 @@ pub(crate) struct Neighbour {
     pub(crate) body: BodyId,
     /// From where it is to where it repeats.
     shift: Vector,
+    /// The box around it there.
+    bounds: Aabb,
 }
 
 impl Neighbour {
     /// Signed distance of `x` from it.
     pub(crate) fn distance<B: Bodies + ?Sized>(&self, bodies: &B, x: Point, band: f64) -> f64 {
         bodies.solid(self.body).signed_distance(bodies.pose(self.body).to_body(x - self.shift), band)
+    }
+
+    /// Is `x` inside it, or outside by no more than `within` \[m\]?
+    pub(crate) fn holds<B: Bodies + ?Sized>(&self, bodies: &B, x: Point, within: f64) -> bool {
+        let Aabb { min, max } = self.bounds.grown(within);
+        // A plane body's box is flat.
+        let beside = (0..2).any(|a| x[a] < min[a] || x[a] > max[a]);
+        !beside && self.distance(bodies, x, 2.0 * within + f64::MIN_POSITIVE) <= within
     }
 
     /// Lists those of `among` whose boxes may be within `cells` cells of body `b`, itself as it repeats among them.
@@ -38,7 +48,6 @@ impl Neighbour {
         });
         let periods =
             Vector::from_fn(|a, _| if a < dim { lattice.axes[a].period().unwrap_or(0.0) } else { 0.0 });
-        let turns = |a: usize| if periods[a] > 0.0 { -1..=1 } else { 0..=0 };
         for body in among {
             let there = bodies.aabb(body);
             let apart = nalgebra::center(&there.min, &there.max) - nalgebra::center(&here.min, &here.max);
@@ -46,6 +55,12 @@ impl Neighbour {
                 if periods[a] > 0.0 { -periods[a] * (apart[a] / periods[a]).round() } else { 0.0 }
             });
             let room = 0.5 * (there.extent() + here.extent()) + reach;
+            if (0..dim).any(|a| (apart + nearest)[a].abs() > room[a]) {
+                continue;
+            }
+            // The next ones are half a period away or more.
+            let turns =
+                |a: usize| if periods[a] > 0.0 && room[a] >= 0.5 * periods[a] { -1..=1 } else { 0..=0 };
             for k in turns(2) {
                 for j in turns(1) {
                     for i in turns(0) {
@@ -53,7 +68,8 @@ impl Neighbour {
                         let shift = nearest + periods.component_mul(&turn);
                         let itself = body == b && turn == Vector::zeros();
                         if !itself && (0..dim).all(|a| (apart + shift)[a].abs() <= room[a]) {
-                            found.push(Self { body, shift });
+                            let bounds = Aabb { min: there.min + shift, max: there.max + shift };
+                            found.push(Self { body, shift, bounds });
                         }
                     }
                 }

@@ -213,7 +213,7 @@ fn interpolation(lattice: &Lattice, x: Point) -> Option<[(usize, f64); 8]> {
 }
 
 /// The nodes around `x`, `None` outside a bounded side, and their weights in multilinear interpolation.
-pub(crate) fn corners(lattice: &Lattice, x: Point) -> impl Iterator<Item = (Option<usize>, f64)> + Clone {
+pub(crate) fn corners(lattice: &Lattice, x: Point) -> impl Iterator<Item = (Option<usize>, f64)> {
     let (first, part) = lattice.locate(x);
     (0..1_usize << lattice.dim).map(move |corner| {
         let up = [corner & 1, (corner >> 1) & 1, (corner >> 2) & 1];

@@ -184,7 +184,7 @@ impl WallRows {
         }
         let mut add = |cell: usize, arm: Vector, y: f64| {
             let x = pose.position + arm;
-            if !others.iter().any(|o| o.distance(bodies, x, widest) <= least) {
+            if !others.iter().any(|o| o.holds(bodies, x, least)) {
                 let normal = pose.orientation * solid.normal(pose.to_body(x), widest);
                 let (foot, points) = (arm - normal * y, [None, None]);
                 cells.push(WallCell { cell, body: b, foot, normal, y, area: 0.0, points });
@@ -233,7 +233,7 @@ impl WallRows {
         for (number, cell) in (1..SOLID).zip(cells.iter_mut()) {
             slots[cell.cell] = number;
         }
-        let wet = |x: Point, h: f64| !others.iter().any(|o| o.distance(bodies, x, h) < 0.0);
+        let wet = |x: Point| !others.iter().any(|o| o.holds(bodies, x, 0.0));
         areas.share(lattice, bodies, b, wet, |row, area| cells[row].area += area, slots);
         cells.iter().for_each(|cell| slots[cell.cell] = 0);
     }

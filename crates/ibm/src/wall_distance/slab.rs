@@ -53,6 +53,10 @@ pub(super) struct Slab {
     distances: Vec<f64>,
     /// Images of bodies that moved.
     movers: Vec<Image>,
+    /// Blocks along each axis; which of them may have changed, and how far a wall is from their cells at most.
+    shape: [usize; 3],
+    changed: Vec<bool>,
+    farthest: Vec<f64>,
     points: Vec<Point>,
     local: Vec<Point>,
     answers: Vec<f64>,
@@ -87,8 +91,7 @@ impl Slab {
         self.candidates.clear();
         self.candidates.extend(scene.images);
         let mut work = Work { scene, memory: self, values, nearest, first, done: 0 };
-        work.list_movers(&part);
-        if work.has_changed(&part) {
+        if work.note_changes(&part) {
             work.halve(part, 0);
         }
         work.done
@@ -110,40 +113,72 @@ impl<B: Bodies + ?Sized> Work<'_, B> {
         let start = nx * (j + ny * k);
         start + part[0].start..start + part[0].end
     }
-    /// The rows of a part.
-    fn rows(&self, part: &Part) -> impl Iterator<Item = Range<usize>> {
-        let part = part.clone();
-        part[2].clone().flat_map(move |k| {
-            let part = part.clone();
-            part[1].clone().map(move |j| self.row(&part, j, k))
+
+    /// The blocks of a part, in the slab.
+    fn blocks(&self, part: &Part) -> Part {
+        let block = BLOCK[self.scene.lattice.dim - 2];
+        let last = self.scene.lattice.dim - 1;
+        std::array::from_fn(|a| {
+            let first = if a == last { self.first } else { 0 };
+            (part[a].start - first) / block..(part[a].end - first).div_ceil(block)
         })
     }
-    /// The farthest that a cell of a part has a wall.
-    fn farthest(&self, part: &Part) -> f64 {
-        self.rows(part).flat_map(|row| &self.values[row]).fold(0.0, |far: f64, d| far.max(*d))
-    }
 
-    /// Lists those images of bodies that moved that may become the nearest in a part.
-    fn list_movers(&mut self, part: &Part) {
-        self.memory.movers.clear();
-        if let Some(moved) = self.scene.moved {
-            let (bounds, ..) = self.around(part);
-            let (far, dim) = (self.farthest(part), self.scene.lattice.dim);
-            let images = self.scene.images.iter();
-            let near = images.filter(|i| moved[i.body.0] && apart(&bounds, &i.bounds, dim) <= far);
-            self.memory.movers.extend(near);
+    /// Notes in which blocks of the slab the distances may have changed: those where a body that moved was the nearest or is
+    /// now no farther than what is. False if there are none.
+    fn note_changes(&mut self, slab: &Part) -> bool {
+        let Some(moved) = self.scene.moved else { return true };
+        let (dim, shape) = (self.scene.lattice.dim, self.blocks(slab).map(|r| r.len()));
+        self.memory.shape = shape;
+        let mut changed = std::mem::take(&mut self.memory.changed);
+        let mut far = std::mem::take(&mut self.memory.farthest);
+        changed.clear();
+        changed.resize(shape.iter().product(), false);
+        far.clear();
+        far.resize(changed.len(), 0.0);
+        let block = BLOCK[dim - 2];
+        for (k, j) in slab[2].clone().flat_map(|k| slab[1].clone().map(move |j| (k, j))) {
+            let row = self.row(slab, j, k);
+            let [_, beside, above] = self.blocks(&[0..1, j..j + 1, k..k + 1]).map(|r| r.start);
+            let blocks = shape[0] * (beside + shape[1] * above)..;
+            let cells = self.nearest[row.clone()].chunks(block).zip(self.values[row].chunks(block));
+            for (at, (owners, values)) in blocks.zip(cells) {
+                changed[at] |= owners.iter().any(|&owner| owner != SIDE && moved[owner as usize]);
+                far[at] = values.iter().fold(far[at], |far, d| far.max(*d));
+            }
         }
+        // Images of bodies that moved, first those near the slab.
+        let (bounds, ..) = self.around(slab);
+        let farthest = far.iter().fold(0.0, |far: f64, d| far.max(*d));
+        let Slab { movers, .. } = &mut *self.memory;
+        movers.clear();
+        let images = self.scene.images.iter().filter(|i| moved[i.body.0]);
+        movers.extend(images.filter(|i| apart(&bounds, &i.bounds, dim) <= farthest));
+        if !self.memory.movers.is_empty() {
+            for at in 0..changed.len() {
+                let number = [at % shape[0], at / shape[0] % shape[1], at / (shape[0] * shape[1])];
+                let part = std::array::from_fn(|a| {
+                    let start = slab[a].start + number[a] * block;
+                    start..(start + block).min(slab[a].end)
+                });
+                let (bounds, ..) = self.around(&part);
+                let mut movers = self.memory.movers.iter();
+                changed[at] = changed[at] || movers.any(|m| apart(&bounds, &m.bounds, dim) <= far[at]);
+            }
+        }
+        let any = changed.contains(&true);
+        (self.memory.changed, self.memory.farthest) = (changed, far);
+        any
     }
 
     /// May the distances in a part have changed?
     fn has_changed(&self, part: &Part) -> bool {
-        let Some(moved) = self.scene.moved else { return true };
-        let owners = self.rows(part).flat_map(|row| &self.nearest[row]);
-        if owners.into_iter().any(|&owner| owner != SIDE && moved[owner as usize]) {
+        if self.scene.moved.is_none() {
             return true;
         }
-        let ((bounds, ..), far) = (self.around(part), self.farthest(part));
-        self.memory.movers.iter().any(|m| apart(&bounds, &m.bounds, self.scene.lattice.dim) <= far)
+        let ([nx, ny, _], [x, y, z]) = (self.memory.shape, self.blocks(part));
+        let mut rows = z.flat_map(|k| y.clone().map(move |j| nx * (j + ny * k)));
+        rows.any(|row| self.memory.changed[row + x.start..row + x.end].contains(&true))
     }
 
     /// Computes a part, given the images from number `from` on that may be the nearest there.
@@ -155,13 +190,12 @@ impl<B: Bodies + ?Sized> Work<'_, B> {
         }
         let longest = (0..3).max_by_key(|&a| blocks[a]).unwrap_or(0);
         let whole = blocks[longest] == 1;
-        if whole && !self.has_changed(&part) {
+        if !self.has_changed(&part) {
             return;
         }
         let (_, centre, half) = self.around(&part);
         let end = self.memory.candidates.len();
         match self.nearest_at(centre, half, from..end) {
-            Found::Inside(_) if !whole && !self.has_changed(&part) => {}
             Found::Inside(body) => self.fill_inside(&part, body),
             Found::Least(least) if whole => self.fill(&part, end, least + half),
             Found::Least(_) => {

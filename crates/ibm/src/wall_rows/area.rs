@@ -26,7 +26,7 @@ impl Areas {
         self.bodies.resize_with(bodies, Elements::default);
     }
 
-    /// Shares out the surface of body `b`, so far as it is in the box and `wet` (told the place and the size of a cell), calling
+    /// Shares out the surface of body `b`, so far as it is in the box and `wet`, calling
     /// `add` with the numbers of rows and their areas; `slots` are the cells' rows plus one, 0 where there is none. An element's
     /// area goes to the rows among the cells that multilinear interpolation at its centre would use, in proportion to
     /// the weights; if there are none, to those a little farther out.
@@ -35,7 +35,7 @@ impl Areas {
         lattice: &Lattice,
         bodies: &B,
         b: BodyId,
-        wet: impl Fn(Point, f64) -> bool,
+        wet: impl Fn(Point) -> bool,
         mut add: impl FnMut(usize, f64),
         slots: &[u32],
     ) {
@@ -54,17 +54,23 @@ impl Areas {
         }
         for element in &elements.list {
             let x = pose.to_world(element.point);
-            if !inside(lattice, x) || !wet(x, least) {
+            if !inside(lattice, x) || !wet(x) {
                 continue;
             }
             let normal = pose.orientation * element.normal;
             let h = cell_edge(lattice, lattice.locate(x).0, normal);
             for step in 0..=STEPS {
+                let (mut rows, mut sum) = ([(0, 0.0); 8], 0.0);
                 let near = corners(lattice, x + normal * (0.25 * h * f64::from(step)));
-                let rows = near.filter_map(|(cell, w)| Some((slots[cell?].checked_sub(1)?, w)));
-                let sum: f64 = rows.clone().map(|(_, w)| w).sum();
+                for (slot, (cell, weight)) in rows.iter_mut().zip(near) {
+                    if let Some(row) = cell.and_then(|cell| slots[cell].checked_sub(1)) {
+                        *slot = (row as usize, weight);
+                        sum += weight;
+                    }
+                }
                 if sum > 0.0 {
-                    rows.for_each(|(row, w)| add(row as usize, element.area * w / sum));
+                    let shares = rows.iter().filter(|(_, weight)| *weight > 0.0);
+                    shares.for_each(|&(row, weight)| add(row, element.area * weight / sum));
                     break;
                 }
             }

@@ -13,7 +13,8 @@ use slab::{Image, Scene, Slab};
 ///
 /// It is as exact as the bodies' signed distances, which are asked for with as large a band as they take (a shape has to keep
 /// [`interfaces::Solid`]'s promise for any band), at any distance and over periodic sides. Cells whose centre is inside a body
-/// have the distance 0, and no others but those with the centre on a wall; without bodies and walls the distance is infinite.
+/// have the distance 0, and no others but those with the centre on a wall: who divides by it has to leave them out. Bodies beyond
+/// a bounded side count as well. Without bodies and walls the distance is infinite.
 ///
 /// The box is halved again and again down to blocks of 64 cells. On the way bodies are dropped that are farther from a part's
 /// centre than the nearest one by more than the part is wide, so that of many bodies a cell asks one or two. When bodies

@@ -300,6 +300,17 @@ fn rows_follow_the_bodies() {
     assert!(rows.rows().is_empty() && rows.covered.iter().all(|c| !c) && rows.slots.iter().all(|s| *s == 0));
 }
 
+/// However the fields of a flow are stored, with ghosts around them: rows count the cells one after the other.
+#[test]
+fn rows_do_not_depend_on_the_storage() {
+    let dense = cube_of(&stretched(true), 3);
+    let [n, ..] = dense.shape();
+    let stride = [1, n + 4, (n + 4) * (n + 4)];
+    let ghosts = Lattice { base: 2 * stride.iter().sum::<usize>(), stride, ..dense.clone() };
+    let bodies = Balls::new(3, 0.4, vec![[0.2, 1.5, 2.9]]);
+    assert_eq!(placed(&dense, &bodies).rows(), placed(&ghosts, &bodies).rows());
+}
+
 #[test]
 fn fields_that_do_not_fit_are_named() {
     let lattice = lattice(2, [0.1; 3], 3.0);

@@ -10,6 +10,7 @@ mod physics;
 mod restart;
 mod skipping;
 mod stretched;
+mod wall_rows;
 mod walls;
 
 /// Runs `f` where the examples run: inside a pool of so many threads.

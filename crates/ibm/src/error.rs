@@ -80,6 +80,24 @@ pub enum IbmError {
         /// Values there are.
         found: usize,
     },
+    /// A velocity has too few or too many components.
+    #[error(
+        "a velocity of {found} components was given for a lattice of {needed} dimensions: give one field per dimension"
+    )]
+    Components {
+        /// Dimensions of the lattice.
+        needed: usize,
+        /// Components there are.
+        found: usize,
+    },
+    /// A wall on a side that is none.
+    #[error(
+        "the sides across axis {axis} are said to be walls, but that axis is periodic or missing: name walls of bounded axes only"
+    )]
+    NoSide {
+        /// Axis, 0 for x.
+        axis: usize,
+    },
     /// A body's place is not finite.
     #[error("body {} stands at {position:?}, which is not finite; the run has diverged: take a smaller time step", body.0)]
     Lost {

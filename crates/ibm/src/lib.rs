@@ -14,6 +14,9 @@
 //! gradients given on bodies ([`Reconstruction`] is what both it and `Hfdib` use), [`Pockets`] finds fluid that bodies
 //! have closed in, and with the feature `mesh` closed triangle meshes are bodies (`TriangleMesh`).
 //!
+//! Turbulence models get the distance from bodies and walls from [`WallDistance`], and what wall functions need beside bodies
+//! from [`WallRows`].
+//!
 //! The crate works on any [`interfaces::VelocityField`] and any [`interfaces::Bodies`].
 #![deny(missing_docs)]
 
@@ -26,6 +29,7 @@ mod immersed_scalar;
 mod kernel;
 #[cfg(feature = "mesh")]
 mod mesh;
+mod neighbour;
 mod pockets;
 mod polynomial;
 mod profile;
@@ -38,6 +42,9 @@ mod surface;
 mod surface_stress;
 #[cfg(test)]
 mod testing;
+mod vicinity;
+mod wall_distance;
+mod wall_rows;
 
 pub use cut_link::cut_walls;
 pub use error::IbmError;
@@ -50,8 +57,10 @@ pub use kernel::{Kernel, WIDEST};
 pub use mesh::{MeshError, TriangleMesh};
 pub use pockets::{Pocket, Pockets};
 pub use profile::{Given, Profile, Weights};
-pub use reconstruction::{Reconstruction, SurfaceCell};
+pub use reconstruction::{FluidPoint, Reconstruction, SurfaceCell};
 pub use smooth::SmoothForcing;
 pub use solid_fraction::{FractionRule, SolidFraction, SolidNode};
 pub use surface::surface_elements;
 pub use surface_stress::{SurfaceLoads, SurfacePoint, SurfaceStress};
+pub use wall_distance::WallDistance;
+pub use wall_rows::{WallCell, WallRows};

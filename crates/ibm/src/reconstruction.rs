@@ -1,6 +1,7 @@
 //! Values in surface cells, from the surface and the fluid (figure 3).
+use crate::vicinity::Vicinity;
 use crate::{Given, Profile, SolidFraction, SolidNode};
-use interfaces::{Aabb, Bodies, BodyId, Lattice, Point, Vector};
+use interfaces::{Bodies, BodyId, Lattice, Point, Vector};
 
 /// Values of a scalar (or of one component of a vector) in the cells that a body's surface cuts
 /// (Isoz et al. 2023, figure 3, for "any intensive tensorial property").
@@ -19,31 +20,10 @@ pub struct Reconstruction {
     profile: Profile,
     given: Given,
     extrapolates: bool,
-    bodies: Vec<Rows>,
+    bodies: Vec<Vec<SurfaceCell>>,
     covered: Vec<bool>,
-    scratch: Scratch,
+    vicinity: Vicinity,
     lowered: u64,
-}
-
-/// Lists that a placement makes, kept so that the next one allocates nothing.
-#[derive(Clone, Debug, Default)]
-struct Scratch {
-    /// Boxes of all bodies where they are now.
-    now: Vec<Aabb>,
-    /// Boxes that were left or entered.
-    changed: Vec<Aabb>,
-    /// Bodies to work on.
-    work: Vec<usize>,
-    /// Bodies that those may see.
-    seen: Vec<usize>,
-}
-
-/// What is known of one body.
-#[derive(Clone, Debug, Default)]
-struct Rows {
-    rows: Vec<SurfaceCell>,
-    stamp: u64,
-    bounds: Option<Aabb>,
 }
 
 /// A cell that a surface cuts.
@@ -76,9 +56,6 @@ impl SurfaceCell {
 
 /// P₁ is looked for between these distances from S, in quarters of a cell.
 const FIRST: std::ops::RangeInclusive<u32> = 2..=12;
-/// Bodies farther apart than so many cells see nothing of one another: three to P₁, one to P₂, one for
-/// the cells around it, one that the surface cuts.
-const REACH: f64 = 6.0;
 
 impl Reconstruction {
     /// With this profile and kind of condition.
@@ -97,7 +74,7 @@ impl Reconstruction {
     }
     /// The surface cells of body `b`.
     pub fn cells(&self, b: BodyId) -> &[SurfaceCell] {
-        self.bodies.get(b.0).map_or(&[], |body| &body.rows)
+        self.bodies.get(b.0).map_or(&[], |cells| cells)
     }
 
     /// Sets the cells of body `b` in `field` to what follows from `given` at (S, normal), both from the centre
@@ -117,41 +94,21 @@ impl Reconstruction {
         bodies: &B,
         fraction: &SolidFraction,
     ) {
-        let n = fraction.n_bodies();
-        self.covered.resize(storage, false);
-        let mut scratch = std::mem::take(&mut self.scratch);
-        let Scratch { now, changed, work, seen } = &mut scratch;
-        // Boxes that were left or entered, those of bodies that are gone first.
-        changed.clear();
-        changed.extend(self.bodies.drain(n.min(self.bodies.len())..).filter_map(|rows| rows.bounds));
-        self.bodies.resize_with(n, Rows::default);
-        for (b, rows) in self.bodies.iter().enumerate() {
-            if rows.stamp != fraction.stamp(BodyId(b)) {
-                changed.extend(rows.bounds);
-                changed.push(bodies.aabb(BodyId(b)));
+        let mut vicinity = std::mem::take(&mut self.vicinity);
+        if vicinity.follow(lattice, bodies, fraction) {
+            self.covered.resize(storage, false);
+            self.bodies.resize_with(fraction.n_bodies(), Vec::new);
+            let mark = |covered: &mut [bool], to| {
+                let nodes = vicinity.seen.iter().flat_map(|&b| fraction.nodes(BodyId(b)));
+                nodes.for_each(|node| covered[node.index] = to);
+            };
+            mark(&mut self.covered, true);
+            for &b in &vicinity.work {
+                self.place_body(lattice, bodies, BodyId(b), fraction);
             }
+            mark(&mut self.covered, false);
         }
-        if changed.is_empty() {
-            self.scratch = scratch;
-            return;
-        }
-        now.clear();
-        now.extend((0..n).map(|b| bodies.aabb(BodyId(b))));
-        work.clear();
-        work.extend((0..n).filter(|&b| changed.iter().any(|c| near(lattice, c, &now[b]))));
-        seen.clear();
-        seen.extend((0..n).filter(|&b| work.iter().any(|&w| near(lattice, &now[w], &now[b]))));
-        let mark = |covered: &mut [bool], to| {
-            seen.iter().flat_map(|&b| fraction.nodes(BodyId(b))).for_each(|node| covered[node.index] = to);
-        };
-        mark(&mut self.covered, true);
-        for &b in work.iter() {
-            self.place_body(lattice, bodies, BodyId(b), fraction);
-            let rows = &mut self.bodies[b];
-            (rows.stamp, rows.bounds) = (fraction.stamp(BodyId(b)), Some(now[b]));
-        }
-        mark(&mut self.covered, false);
-        self.scratch = scratch;
+        self.vicinity = vicinity;
     }
 
     fn place_body<B: Bodies + ?Sized>(
@@ -163,31 +120,26 @@ impl Reconstruction {
     ) {
         let (solid, pose, root) = (bodies.solid(b), bodies.pose(b), 1.0 / lattice.dim as f64);
         let Self { profile, given, extrapolates, bodies: all, covered, lowered, .. } = self;
-        let (nodes, rows) = (fraction.nodes(b), &mut all[b.0].rows);
+        let (nodes, rows) = (fraction.nodes(b), &mut all[b.0]);
         rows.clear();
         // Twice what is there now, so that a moving body allocates nothing.
         if rows.capacity() < nodes.len() {
             rows.reserve(2 * nodes.len());
         }
         for node in nodes.iter().filter(|n| n.fraction < 1.0) {
-            let h = node.volume.powf(root);
-            let normal = pose.orientation * solid.normal(pose.to_body(pose.position + node.arm), h);
+            let band = node.volume.powf(root);
+            let normal = pose.orientation * solid.normal(pose.to_body(pose.position + node.arm), band);
+            let h = cell_edge(lattice, lattice.node(node.index), normal);
             let foot = node.arm - normal * node.distance;
-            // The first point on the normal that sees free fluid only.
-            let free = |s: f64| {
-                let stencil = interpolation(lattice, pose.position + foot + normal * s)?;
-                stencil.iter().all(|&(i, w)| w == 0.0 || !covered[i]).then_some((s, stencil))
-            };
-            let first = FIRST.into_iter().find_map(|i| free(0.25 * h * f64::from(i)));
-            let second = first.and_then(|(s, _)| free(s + h));
-            let points = [first.map(|p| p.0), second.map(|p| p.0)];
+            let seen = fluid_points(lattice, pose.position + foot, normal, h, covered);
+            let points = seen.map(|p| p.map(|p| p.distance));
             *lowered += u64::from(points.iter().flatten().count() < profile.points(*given));
             let at = if *extrapolates { node.distance } else { node.distance.max(0.0) };
             let weights = profile.weights(*given, at, points[0], points[1]);
             let mut fluid = [(lattice.base, 0.0); 16];
-            for (p, stencil) in [first, second].into_iter().enumerate() {
+            for (p, point) in seen.iter().enumerate() {
                 let weight = weights.map_or(0.0, |w| w.points[p]);
-                for (at, (i, w)) in stencil.iter().flat_map(|(_, stencil)| stencil).enumerate() {
+                for (at, (i, w)) in point.iter().flat_map(|point| &point.stencil).enumerate() {
                     fluid[8 * p + at] = (*i, w * weight);
                 }
             }
@@ -203,32 +155,71 @@ impl Reconstruction {
     }
 }
 
-/// Are two boxes so near that what one covers may matter to the other?
-fn near(lattice: &Lattice, a: &Aabb, b: &Aabb) -> bool {
-    (0..lattice.dim).all(|axis| {
-        let nodes = &lattice.axes[axis];
-        let mut apart = 0.5 * (a.min[axis] + a.max[axis] - b.min[axis] - b.max[axis]);
-        if let Some(period) = nodes.period() {
-            apart -= period * (apart / period).round();
-        }
-        let [_, widest] = nodes.spacings(b.min[axis], b.max[axis]);
-        // Twice, since cells may grow away from the body.
-        apart.abs() <= 0.5 * (a.extent()[axis] + b.extent()[axis]) + 2.0 * REACH * widest
-    })
+/// A point in the fluid on a body's normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FluidPoint {
+    /// Distance from the surface \[m\].
+    pub distance: f64,
+    /// Storage indices and weights of the nodes that it sees.
+    pub stencil: [(usize, f64); 8],
+}
+
+impl FluidPoint {
+    /// What it sees of a `field`.
+    pub fn value(&self, field: &[f64]) -> f64 {
+        self.stencil.iter().map(|&(i, w)| w * field[i]).sum()
+    }
+}
+
+/// How wide the cell of `node` is along `normal` \[m\]: √Σ(nₐhₐ)², its edge wherever its edges are equal.
+pub(crate) fn cell_edge(lattice: &Lattice, node: [isize; 3], normal: Vector) -> f64 {
+    let widths = lattice.widths(node);
+    (0..lattice.dim).map(|a| (normal[a] * widths[a]).powi(2)).sum::<f64>().sqrt()
+}
+
+/// P₁ and P₂ on the `normal` through the point `surface`, for cells of edge `h` and nodes that are `covered`.
+pub(crate) fn fluid_points(
+    lattice: &Lattice,
+    surface: Point,
+    normal: Vector,
+    h: f64,
+    covered: &[bool],
+) -> [Option<FluidPoint>; 2] {
+    // A shape may have no normal there.
+    if h <= 0.0 {
+        return [None; 2];
+    }
+    // The first point on the normal that sees free fluid only.
+    let free = |distance: f64| {
+        let mut stencil = interpolation(lattice, surface + normal * distance)?;
+        let free = stencil.iter().all(|&(i, w)| w == 0.0 || !covered[i]);
+        // What has no weight is not looked at: it may be no number.
+        let (some, _) = *stencil.iter().find(|(_, w)| *w > 0.0)?;
+        stencil.iter_mut().filter(|(_, w)| *w == 0.0).for_each(|(i, _)| *i = some);
+        free.then_some(FluidPoint { distance, stencil })
+    };
+    let first = FIRST.into_iter().find_map(|i| free(0.25 * h * f64::from(i)));
+    [first, first.and_then(|p| free(p.distance + h))]
 }
 
 /// Multilinear interpolation at `x`: up to eight (index, weight) pairs, or `None` outside a
 /// bounded side.
 fn interpolation(lattice: &Lattice, x: Point) -> Option<[(usize, f64); 8]> {
     let mut out = [(lattice.base, 0.0); 8];
-    let (first, part) = lattice.locate(x);
-    for corner in 0..1 << lattice.dim {
-        let up = [corner & 1, (corner >> 1) & 1, (corner >> 2) & 1];
-        let index = lattice.index(std::array::from_fn(|a| first[a] + up[a] as isize))?;
-        let weight = (0..lattice.dim).map(|a| if up[a] == 1 { part[a] } else { 1.0 - part[a] }).product();
-        out[corner] = (index, weight);
+    for (slot, (index, weight)) in out.iter_mut().zip(corners(lattice, x)) {
+        *slot = (index?, weight);
     }
     Some(out)
+}
+
+/// The nodes around `x`, `None` outside a bounded side, and their weights in multilinear interpolation.
+pub(crate) fn corners(lattice: &Lattice, x: Point) -> impl Iterator<Item = (Option<usize>, f64)> {
+    let (first, part) = lattice.locate(x);
+    (0..1_usize << lattice.dim).map(move |corner| {
+        let up = [corner & 1, (corner >> 1) & 1, (corner >> 2) & 1];
+        let index = lattice.index(std::array::from_fn(|a| first[a] + up[a] as isize));
+        (index, (0..lattice.dim).map(|a| if up[a] == 1 { part[a] } else { 1.0 - part[a] }).product())
+    })
 }
 
 #[cfg(test)]

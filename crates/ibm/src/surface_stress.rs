@@ -1,4 +1,5 @@
 //! What the fluid does to a body's surface, from the fields beside it.
+use crate::neighbour::{Neighbour, inside};
 use crate::polynomial::{Fit, Sample, fit};
 use crate::solid_fraction::check;
 use crate::{IbmError, surface_elements};
@@ -121,7 +122,10 @@ impl<'a> SurfaceStress<'a> {
         }
         let (pose, twist, dim) = (bodies.pose(b), bodies.twist(b), self.velocity.dim());
         let arms: Vec<Vector> = elements.iter().map(|e| pose.orientation * e.point.coords).collect();
-        let others = self.neighbours(bodies, b);
+        let cells = self.clearance.max(PRESSED) + REACH[dim - 2];
+        let mut others = Vec::new();
+        let all = (0..bodies.n_bodies()).map(BodyId);
+        Neighbour::list(self.lattice, bodies, b, cells, all, &mut others);
         let clear = [self.clearance.max(PRESSED), self.clearance.max(BESIDE)];
         let pressure = Nearby::new(self.lattice, self.pressure, bodies, b, &others, clear[0], &[]);
         let components: Vec<Nearby> = (0..dim)
@@ -151,69 +155,6 @@ impl<'a> SurfaceStress<'a> {
         };
         Ok(SurfaceLoads { points: elements.par_iter().zip(&arms).filter_map(stressed).collect() })
     }
-
-    /// The bodies that may be beside body `b`, itself as it repeats among them.
-    fn neighbours(&self, bodies: &dyn Bodies, b: BodyId) -> Vec<Neighbour> {
-        let dim = self.lattice.dim;
-        let here = bodies.aabb(b);
-        let reach = Vector::from_fn(|a, _| {
-            if a < dim {
-                let [_, widest] = self.lattice.axes[a].spacings(here.min[a], here.max[a]);
-                2.0 * (self.clearance.max(PRESSED) + REACH[dim - 2]) * widest
-            } else {
-                0.0
-            }
-        });
-        let periods =
-            Vector::from_fn(|a, _| if a < dim { self.lattice.axes[a].period().unwrap_or(0.0) } else { 0.0 });
-        let turns = |a: usize| if periods[a] > 0.0 { -1..=1 } else { 0..=0 };
-        let mut found = Vec::new();
-        for body in (0..bodies.n_bodies()).map(BodyId) {
-            let there = bodies.aabb(body);
-            let apart = nalgebra::center(&there.min, &there.max) - nalgebra::center(&here.min, &here.max);
-            let nearest = Vector::from_fn(|a, _| {
-                if periods[a] > 0.0 { -periods[a] * (apart[a] / periods[a]).round() } else { 0.0 }
-            });
-            let room = 0.5 * (there.extent() + here.extent()) + reach;
-            for k in turns(2) {
-                for j in turns(1) {
-                    for i in turns(0) {
-                        let turn = Vector::new(f64::from(i), f64::from(j), f64::from(k));
-                        let shift = nearest + periods.component_mul(&turn);
-                        let itself = body == b && turn == Vector::zeros();
-                        if !itself && (0..dim).all(|a| (apart + shift)[a].abs() <= room[a]) {
-                            found.push(Neighbour { body, shift });
-                        }
-                    }
-                }
-            }
-        }
-        found
-    }
-}
-
-/// A body beside the one at hand.
-#[derive(Clone, Copy)]
-struct Neighbour {
-    body: BodyId,
-    /// From where it is to where it repeats.
-    shift: Vector,
-}
-
-impl Neighbour {
-    fn distance(&self, bodies: &dyn Bodies, x: Point, band: f64) -> f64 {
-        bodies.solid(self.body).signed_distance(bodies.pose(self.body).to_body(x - self.shift), band)
-    }
-}
-
-/// Is a place inside the bounded sides?
-fn inside(lattice: &Lattice, x: Point) -> bool {
-    (0..lattice.dim).all(|a| {
-        let nodes = &lattice.axes[a];
-        let last = nodes.len() as isize - 1;
-        let edge = |i: isize, sign: f64| nodes.place(i) + 0.5 * sign * nodes.width(i);
-        nodes.is_periodic() || (edge(0, -1.0)..=edge(last, 1.0)).contains(&x[a])
-    })
 }
 
 /// The nodes of one lattice in the fluid around a body.

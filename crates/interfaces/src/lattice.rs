@@ -32,6 +32,13 @@ impl Lattice {
             stride: std::array::from_fn(|a| stride.get(a).copied().unwrap_or(0)),
         }
     }
+    /// The same nodes with values stored one after the other, x fastest, from 0.
+    #[must_use]
+    pub fn dense(&self) -> Self {
+        let [nx, ny, _] = self.shape();
+        let stride = [1, nx, if self.dim == 2 { 0 } else { nx * ny }];
+        Self { base: 0, stride, ..self.clone() }
+    }
     /// Nodes along each axis that carry an unknown.
     pub fn shape(&self) -> [usize; 3] {
         std::array::from_fn(|a| self.axes[a].len())

@@ -2,8 +2,7 @@
 //! [`Aabb`], [`Periods`]), how they move ([`Twist`]) and are pushed ([`Wrench`]), what a body
 //! owes its neighbours ([`Solid`], [`Kinematics`], [`Bodies`], [`Dynamics`]), how a flow shows
 //! its velocity ([`Lattice`], [`Nodes`], [`VelocityField`]), what a restart needs ([`Checkpoint`]), what a turbulence model asks of a flow
-//! ([`Transport`], [`Closure`]) and the
-//! container of the files that ParaView reads ([`vtk`]).
+//! ([`Transport`], [`Closure`]) and is told of walls ([`WallRow`]), and the container of the files that ParaView reads ([`vtk`]).
 //!
 //! The numerical crates depend on this one and on none of each other, so each can be taken
 //! alone; they meet because a type of one implements a trait of this crate that another asks for.
@@ -27,6 +26,7 @@ mod restart;
 mod solid;
 mod transport;
 pub mod vtk;
+mod wall_row;
 
 pub use bodies::{Bodies, BodyId, Dynamics, Freedom, Inertia, Kinematics, Load};
 pub use cut_walls::{CutComponent, CutFace, CutNode, CutWalls, Link, SolidPoint};
@@ -36,3 +36,4 @@ pub use nodes::Nodes;
 pub use restart::{Checkpoint, RestartError};
 pub use solid::{Solid, SurfaceElement};
 pub use transport::{Closure, Equation, SolveError, SolveInfo, Transport};
+pub use wall_row::{WallPoint, WallRow};

@@ -143,6 +143,10 @@ fn main() {
     let sphere = std::f64::consts::PI / 6.0;
     let one = |solid: Box<dyn Solid>| Equal { solid, poses: vec![Pose::at([1.0; 3])] };
     let mesh = |name: &str, times, cells| {
+        // Not made for nothing.
+        if !table.wants(&format!("{} triangles{name}, {cells} cells per D", 20 << (2 * times))) {
+            return;
+        }
         let mesh = TriangleMesh::sphere(0.5, times).expect("a sphere");
         let (volume, name) =
             (mesh.volume(), format!("{} triangles{name}, {cells} cells per D", mesh.n_faces()));
@@ -170,6 +174,9 @@ fn main() {
     let name = "sphere, the paper's rule, 20 cells per D";
     table.row(name, one(Box::new(Sphere)), [20, 2], sphere, FractionRule::Centroid);
 
+    if !table.wants("at rest") {
+        return;
+    }
     let poses =
         (0..512).map(|i| Pose::at([i % 8, i / 8 % 8, i / 64].map(|x| 1.2 * f64::from(x) + 0.6))).collect();
     let (bodies, lattice) = (Equal { solid: Box::new(Sphere), poses }, lattice(10, 10));

@@ -2,6 +2,7 @@
 use crate::subcells::Cell;
 use crate::{FractionRule, SolidNode, cell_fraction};
 use interfaces::{Bodies, BodyId, Lattice, Point, Rotation, Solid, Vector};
+use std::ops::Range;
 
 /// Nodes along an edge of a block, which one query may tell to be all solid or all fluid.
 const BLOCK: usize = 4;
@@ -13,7 +14,8 @@ pub(crate) struct Projector {
     /// Signed distances in the body's box, x fastest.
     distances: Vec<f64>,
     points: Vec<Point>,
-    slots: Vec<usize>,
+    /// Which of the distances were asked for.
+    rows: Vec<Range<usize>>,
     answers: Vec<f64>,
 }
 
@@ -35,6 +37,7 @@ struct Column {
 /// over neighbours h away? Across an edge it is the squared cosine of half the edge's angle; beside one, where a
 /// neighbour along the surface is past it, above 1. On a sphere it is between 1 − ⅔(h/R)² and 1, so that
 /// much is allowed for the curvature `bend`, if it is not that of an edge itself (1/R no more than 1/5h).
+#[inline]
 fn is_smooth(square: f64, bend: f64, h: f64) -> bool {
     let least = 1.0 - EDGE - 2.0 / 3.0 * (bend * h).powi(2).min(0.04);
     (least..1.0025).contains(&square)
@@ -66,16 +69,15 @@ impl Projector {
         }
         let widest = [0, 1, 2].map(|a| self.columns[a].iter().fold(0.0, |m: f64, c| m.max(c.width)));
         let widest = Vector::from(widest).component_mul(&plane(dim));
-        // A cut cell's centre is within half a diagonal of the surface, its neighbours a cell further.
-        let band = 1.01 * (0.5 * widest.norm() + widest.max());
         let to_body = pose.orientation.inverse();
-        self.distances(solid, to_body, band, dim);
+        self.distances(solid, to_body, widest, dim);
 
         let room: usize = shape.iter().product();
         if nodes.capacity() < room {
             nodes.reserve(room + room / 4);
         }
         let stride = [1, shape[0], shape[0] * shape[1]];
+        let reach = 0.5 * widest.norm();
         let inner = |a: usize| if a < dim { 1..shape[a] - 1 } else { 0..1 };
         for k in inner(2) {
             for j in inner(1) {
@@ -86,6 +88,9 @@ impl Projector {
                     let Some(along) = x.offset else { continue };
                     let at = i + stride[1] * j + stride[2] * k;
                     let distance = self.distances[at];
+                    if distance >= reach {
+                        continue;
+                    }
                     let h = Vector::new(x.width, y.width, z.width).component_mul(&plane(dim));
                     let reach2 = 0.25 * h.norm_squared();
                     if distance > 0.0 && distance * distance >= reach2 {
@@ -122,74 +127,88 @@ impl Projector {
         }
     }
 
-    /// Fills in the distances: exact where a cut cell needs them, of the right sign and not less than
-    /// half a diagonal elsewhere.
-    fn distances(&mut self, solid: &dyn Solid, to_body: Rotation, band: f64, dim: usize) {
-        let [ex, ey, ez] = [Vector::x(), Vector::y(), Vector::z()].map(|e| to_body * e);
+    /// Fills in the distances: exact where a cut cell needs them, of the right sign and not less than half a diagonal (of the
+    /// `widest` cell) elsewhere.
+    fn distances(&mut self, solid: &dyn Solid, to_body: Rotation, widest: Vector, dim: usize) {
+        // A cut cell's centre is within half a diagonal of the surface, its neighbours a cell further.
+        let band = 1.01 * (0.5 * widest.norm() + widest.max());
+        let turned = [Vector::x(), Vector::y(), Vector::z()].map(|e| to_body * e);
         let shape = [0, 1, 2].map(|a| self.columns[a].len());
-        let blocks = shape.map(|n| n.div_ceil(BLOCK));
-        let span = |a: usize, block: usize| block * BLOCK..((block + 1) * BLOCK).min(shape[a]);
-        let [columns_x, columns_y, columns_z] = &self.columns;
-        // Blocks: centre and half diagonal between their outermost nodes.
-        let middle = |columns: &[Column], r: std::ops::Range<usize>| {
-            let (low, high) = (columns[r.start].arm, columns[r.end - 1].arm);
-            (0.5 * (low + high), 0.5 * (high - low))
-        };
-        let mut farthest = 0.0_f64;
-        let all = blocks.iter().product();
-        self.points.clear();
-        self.slots.clear();
-        for n in 0..all {
-            let block = winding(n, blocks);
-            let (x, hx) = middle(columns_x, span(0, block[0]));
-            let (y, hy) = middle(columns_y, span(1, block[1]));
-            let (z, hz) =
-                if dim == 2 { (columns_z[0].arm, 0.0) } else { middle(columns_z, span(2, block[2])) };
-            farthest = farthest.max(hx * hx + hy * hy + hz * hz);
-            self.points.push(Point::from(ex * x + ey * y + ez * z));
-        }
-        // Cells of blocks farther away are not cut, nor are their neighbours' neighbours asked for.
-        let far = farthest.sqrt() + band;
-        self.answers.clear();
-        self.answers.resize(all, 0.0);
-        // In a body not much wider all blocks are near the surface.
-        let extent = solid.aabb().extent();
-        let narrowest = if dim == 2 { extent.x.min(extent.y) } else { extent.min() };
-        if far < 0.25 * narrowest {
-            solid.signed_distances(&self.points, far, &mut self.answers);
-        }
         self.points.clear();
         self.distances.clear();
         self.distances.resize(shape.iter().product(), 0.0);
+        // Cells of blocks farther away are not cut, nor are their neighbours' neighbours asked for.
+        let far = 0.5 * (BLOCK - 1) as f64 * widest.norm() + band;
+        let extent = solid.aabb().extent();
+        let narrowest = if dim == 2 { extent.x.min(extent.y) } else { extent.min() };
+        if far < 0.25 * narrowest {
+            self.blocks(solid, turned, band, far);
+            return;
+        }
+        // In a body not much wider all blocks are near the surface.
+        let [columns_x, columns_y, columns_z] = &self.columns;
+        for z in columns_z {
+            for y in columns_y {
+                let side = turned[1] * y.arm + turned[2] * z.arm;
+                self.points.extend(columns_x.iter().map(|x| Point::from(side + turned[0] * x.arm)));
+            }
+        }
+        solid.signed_distances(&self.points, band, &mut self.distances);
+    }
+
+    /// The same, block by block.
+    fn blocks(&mut self, solid: &dyn Solid, turned: [Vector; 3], band: f64, far: f64) {
+        let shape = [0, 1, 2].map(|a| self.columns[a].len());
+        let blocks = shape.map(|n| n.div_ceil(BLOCK));
+        let span = |a: usize, block: usize| block * BLOCK..((block + 1) * BLOCK).min(shape[a]);
+        let columns = &self.columns;
+        // Between a block's outermost nodes.
+        let middle = |a: usize, block: usize| {
+            let r = span(a, block);
+            turned[a] * (0.5 * (columns[a][r.start].arm + columns[a][r.end - 1].arm))
+        };
+        let all = blocks.iter().product();
+        for n in 0..all {
+            let block = winding(n, blocks);
+            self.points.push(Point::from(middle(0, block[0]) + middle(1, block[1]) + middle(2, block[2])));
+        }
+        self.answers.resize(all, 0.0);
+        solid.signed_distances(&self.points, far, &mut self.answers);
+        self.points.clear();
+        self.rows.clear();
         let stride = [1, shape[0], shape[0] * shape[1]];
         for n in 0..all {
             let block = winding(n, blocks);
             let decided = self.answers[n].abs() >= far;
             let value = band.copysign(self.answers[n]);
+            let along = span(0, block[0]);
             for k in span(2, block[2]) {
                 for j in span(1, block[1]) {
                     let row = stride[1] * j + stride[2] * k;
                     if decided {
-                        self.distances[row..][span(0, block[0])].fill(value);
+                        self.distances[row..][along.clone()].fill(value);
                         continue;
                     }
-                    let side = ey * columns_y[j].arm + ez * columns_z[k].arm;
-                    for i in span(0, block[0]) {
-                        self.slots.push(row + i);
-                        self.points.push(Point::from(side + ex * columns_x[i].arm));
-                    }
+                    let side = turned[1] * columns[1][j].arm + turned[2] * columns[2][k].arm;
+                    let points = columns[0][along.clone()].iter().map(|x| side + turned[0] * x.arm);
+                    self.points.extend(points.map(Point::from));
+                    self.rows.push(row + along.start..row + along.end);
                 }
             }
         }
         self.answers.resize(self.points.len(), 0.0);
         solid.signed_distances(&self.points, band, &mut self.answers);
-        for (slot, d) in self.slots.iter().zip(&self.answers) {
-            self.distances[*slot] = *d;
+        let mut answers = self.answers.iter();
+        for row in &self.rows {
+            for (distance, answer) in self.distances[row.clone()].iter_mut().zip(&mut answers) {
+                *distance = *answer;
+            }
         }
     }
 }
 
 /// The n-th block on a way on which each is next to the one before.
+#[inline]
 fn winding(n: usize, shape: [usize; 3]) -> [usize; 3] {
     let (row, layer) = (n / shape[0], n / (shape[0] * shape[1]));
     let turn = |i: usize, back: bool, n: usize| if back { n - 1 - i } else { i };
@@ -197,6 +216,7 @@ fn winding(n: usize, shape: [usize; 3]) -> [usize; 3] {
 }
 
 /// Ones along the axes that a lattice of `dim` dimensions has.
+#[inline]
 fn plane(dim: usize) -> Vector {
     Vector::new(1.0, 1.0, if dim == 2 { 0.0 } else { 1.0 })
 }

@@ -38,7 +38,7 @@ pub fn plane_fraction(d: f64, n: Vector, h: Vector) -> f64 {
 ///
 /// A surface that bulges leaves its tangent plane by ½κ|x_t|² at x_t from the foot point of the centre, κ the mean
 /// curvature there. To first order in κ the cell then loses as much as if the plane were moved inward by the mean of that
-/// over its own cut through the cell ([`spread`]). A plane alone would make a disc's λ sum to too much by h²/12R², a sphere's
+/// over its own cut through the cell (`spread`). A plane alone would make a disc's λ sum to too much by h²/12R², a sphere's
 /// by h²/4R².
 #[inline]
 pub fn cell_fraction(d: f64, n: Vector, curvature: f64, h: Vector) -> f64 {

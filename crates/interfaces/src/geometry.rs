@@ -23,6 +23,7 @@ impl Pose {
         Self { position: position.into(), orientation: Rotation::identity() }
     }
     /// A world point in the body's frame.
+    #[inline]
     pub fn to_body(&self, x: Point) -> Point {
         Point::from(self.orientation.inverse_transform_vector(&(x - self.position)))
     }
@@ -43,6 +44,7 @@ pub struct Twist {
 
 impl Twist {
     /// Velocity of the material point at `arm` from the centre of mass: U + Ω × r \[m/s\].
+    #[inline]
     pub fn at(&self, arm: Vector) -> Vector {
         self.linear + self.angular.cross(&arm)
     }

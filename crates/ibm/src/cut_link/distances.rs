@@ -58,11 +58,11 @@ impl Ticks {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Near {
     /// Its number along each axis.
-    pub(crate) node: [usize; 3],
+    pub(crate) node: [u32; 3],
     /// Signed distance to the nearest body (only its sign is exact beyond the band).
     pub(crate) distance: f64,
     /// That body.
-    pub(crate) body: usize,
+    pub(crate) body: u32,
     /// From that body's centre of mass \[m\].
     pub(crate) arm: Vector,
 }
@@ -77,17 +77,26 @@ pub(crate) struct Distances {
     pub(crate) near: Vec<Near>,
     /// Distances below this are exact \[m\].
     pub(crate) band: f64,
+    /// Largest distance of neighbours along an axis \[m\].
+    pub(crate) widest: f64,
     /// Bodies that reach into the box but hold no node.
     pub(crate) unseen: Vec<BodyId>,
 }
 
 const FAR: u32 = u32::MAX;
 
+impl Near {
+    pub(crate) fn body(&self) -> BodyId {
+        BodyId(self.body as usize)
+    }
+}
+
 impl Distances {
     pub(crate) fn new<B: Bodies + ?Sized>(axes: [Ticks; 3], dim: usize, bodies: &B) -> Self {
         let shape = axes.each_ref().map(Ticks::len);
         let widest = Vector::from_fn(|a, _| if a < dim { axes[a].widest() } else { 0.0 });
-        let band = 2.0 * widest.norm();
+        // What is cut, its corners and its neighbours are no farther from the surface than a diagonal.
+        let band = 1.01 * widest.norm();
         let mut slots = vec![FAR; shape.iter().product()];
         let mut near: Vec<Near> = Vec::new();
         let (mut points, mut found, mut unseen) = (Vec::new(), Vec::new(), Vec::new());
@@ -100,19 +109,28 @@ impl Distances {
             });
             let reaches = (0..dim).all(|a| axes[a].reaches(bounds.min[a], bounds.max[a]));
             let mut seen = !reaches;
-            for &(k, z) in &columns[2] {
-                for &(j, y) in &columns[1] {
-                    points.clear();
-                    points.extend(columns[0].iter().map(|&(_, x)| pose.to_body(Point::new(x, y, z))));
-                    found.resize(points.len(), 0.0);
-                    solid.signed_distances(&points, band, &mut found);
-                    for (&(i, x), &distance) in columns[0].iter().zip(&found) {
+            let arms =
+                [0, 1, 2].map(|a| columns[a].iter().map(|&(_, x)| x - pose.position[a]).collect::<Vec<_>>());
+            let to_body = pose.orientation.inverse().to_rotation_matrix();
+            let [ex, ey, ez] = [0, 1, 2].map(|a| to_body.matrix().column(a).into_owned());
+            near.reserve(columns.iter().map(Vec::len).product());
+            for (&(k, _), z) in columns[2].iter().zip(&arms[2]) {
+                points.clear();
+                for y in &arms[1] {
+                    let side = ey * *y + ez * *z;
+                    points.extend(arms[0].iter().map(|x| Point::from(side + ex * *x)));
+                }
+                found.resize(points.len(), 0.0);
+                solid.signed_distances(&points, band, &mut found);
+                for ((&(j, _), y), found) in columns[1].iter().zip(&arms[1]).zip(found.chunks(arms[0].len()))
+                {
+                    for ((&(i, _), x), &distance) in columns[0].iter().zip(&arms[0]).zip(found) {
                         if distance >= band {
                             continue;
                         }
                         seen |= distance <= 0.0;
-                        let arm = Point::new(x, y, z) - pose.position;
-                        let this = Near { node: [i, j, k], distance, body: b, arm };
+                        let arm = Vector::new(*x, *y, *z);
+                        let this = Near { node: [i, j, k].map(|i| i as u32), distance, body: b as u32, arm };
                         let slot = &mut slots[i + shape[0] * (j + shape[1] * k)];
                         match *slot {
                             FAR => {
@@ -130,7 +148,7 @@ impl Distances {
             }
         }
         let periodic = axes.each_ref().map(|axis| axis.period.is_some());
-        let mut out = Self { shape, periodic, slots, near, band, unseen };
+        let mut out = Self { shape, periodic, slots, near, band, widest: widest.max(), unseen };
         out.sort();
         out
     }
@@ -138,7 +156,10 @@ impl Distances {
     /// Puts `near` in order, whatever the order of the bodies.
     fn sort(&mut self) {
         let shape = self.shape;
-        let number = |node: [usize; 3]| node[0] + shape[0] * (node[1] + shape[1] * node[2]);
+        let number = |node: [u32; 3]| {
+            let [i, j, k] = node.map(|i| i as usize);
+            i + shape[0] * (j + shape[1] * k)
+        };
         self.near.sort_by_key(|near| number(near.node));
         for (slot, near) in self.near.iter().enumerate() {
             self.slots[number(near.node)] = slot as u32;
@@ -150,9 +171,12 @@ impl Distances {
         let mut number = 0;
         for a in (0..3).rev() {
             let n = self.shape[a] as isize;
-            let i = if self.periodic[a] { node[a].rem_euclid(n) } else { node[a] };
+            let mut i = node[a];
             if !(0..n).contains(&i) {
-                return None;
+                if !self.periodic[a] {
+                    return None;
+                }
+                i = i.rem_euclid(n);
             }
             number = number * self.shape[a] + i as usize;
         }

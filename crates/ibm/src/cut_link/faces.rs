@@ -19,31 +19,36 @@ struct Half {
 impl<B: Bodies + ?Sized> Cutter<'_, B> {
     /// The faces that are not wholly open.
     pub(super) fn faces(&self) -> Vec<CutFace> {
-        let face = |near| {
-            let face = if self.dim == 2 { self.edge(near) } else { self.polygon(near) }?;
-            Some(self.moved(face, near))
-        };
-        self.nodes.near.iter().filter_map(face).collect()
+        let mut out = Vec::with_capacity(self.nodes.near.len());
+        for near in &self.nodes.near {
+            let face = if self.dim == 2 { self.edge(near) } else { self.polygon(near) };
+            out.extend(face.map(|face| self.moved(face, near)));
+        }
+        out
     }
 
     /// The velocity of a face of which the velocity relative to the wall is known. The wall's velocity is that of a rigid body,
     /// on either side of it.
     fn moved(&self, face: CutFace, near: &Near) -> CutFace {
         let lattice = self.velocity.lattice(self.c);
-        let node = lattice.position(near.node.map(|i| i as isize));
+        let own = self.wall_velocity(near.body(), near.arm);
         let wall = |index: usize| {
+            if index == face.index {
+                return own;
+            }
             let mut arm = near.arm;
-            let there = lattice.position(lattice.node(index));
+            let there = lattice.node(index);
             for a in 0..self.dim {
-                let away = there[a] - node[a];
-                let turns = lattice.axes[a].period().map_or(0.0, |period| period * (away / period).round());
+                let nodes = &lattice.axes[a];
+                let away = nodes.place(there[a]) - nodes.place(near.node[a] as isize);
+                let turns = nodes.period().map_or(0.0, |period| period * (away / period).round());
                 arm[a] += away - turns;
             }
-            self.wall_velocity(near.body, arm)
+            self.wall_velocity(near.body(), arm)
         };
         let terms = face.terms.iter().filter(|term| term.1 != 0.0);
         let taken: f64 = terms.map(|&(index, weight)| weight * wall(index)).sum();
-        CutFace { constant: wall(face.index) - taken, ..face }
+        CutFace { constant: own - taken, ..face }
     }
 
     /// The corner of the face of `node` that is above it along the axes where `up` is 1.
@@ -63,6 +68,10 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
         let lattice = self.velocity.lattice(self.c);
         let (node, along) = (near.node.map(|i| i as isize), 1 - self.c);
         let index = lattice.index(node)?;
+        let width = lattice.axes[along].width(node[along]);
+        if near.distance.abs() > 0.5 * width {
+            return (near.distance < 0.0).then(|| closed(index));
+        }
         let ends = [0, 1].map(|side| {
             let mut up = [0; 3];
             up[along] = side;
@@ -74,7 +83,6 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
             self.fluid(at)
         };
         let mut face = closed(index);
-        let width = lattice.axes[along].width(node[along]);
         for side in 0..2 {
             let mut step = Vector::zeros();
             step[along] = (side as f64 - 0.5) * width;
@@ -85,7 +93,7 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
                     Half { open: 0.5, own: 0.375, neighbour: 0.125 }
                 }
                 (true, None) => Half { open: 0.5, own: 0.5, neighbour: 0.0 },
-                (true, Some(end)) => self.half_to_the_wall(end, step),
+                (true, Some(end)) => self.half_to_the_wall(near, end, step),
                 (false, None) => self.half_from_the_wall(near, step, next.is_some()),
                 (false, Some(_)) => Half::default(),
             };
@@ -112,10 +120,10 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
     }
 
     /// From the node in the fluid along `step` to an end inside: linear up to the wall.
-    fn half_to_the_wall(&self, end: &Near, step: Vector) -> Half {
+    fn half_to_the_wall(&self, near: &Near, end: &Near, step: Vector) -> Half {
         let arm = end.arm - step;
-        let start = self.distance(end.body, arm).max(0.0);
-        let t = self.crossing(end.body, arm, step, [start, end.distance]);
+        let start = self.distance_at(near, end.body(), arm).max(0.0);
+        let t = self.crossing(end.body(), arm, step, [start, end.distance]);
         Half { open: 0.5 * t, own: 0.25 * t, neighbour: 0.0 }
     }
 
@@ -123,8 +131,8 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
     /// is `open` + ½ away and seen at the middle of what is open.
     fn half_from_the_wall(&self, near: &Near, step: Vector, next: bool) -> Half {
         let arm = near.arm + step;
-        let end = self.distance(near.body, arm);
-        let t = if end > 0.0 { self.crossing(near.body, arm, -step, [end, near.distance]) } else { 0.0 };
+        let end = self.distance(near.body(), arm);
+        let t = if end > 0.0 { self.crossing(near.body(), arm, -step, [end, near.distance]) } else { 0.0 };
         let open = 0.5 * t;
         Half { open, own: 0.0, neighbour: if next { 0.5 * open * open / (open + 0.5) } else { 0.0 } }
     }
@@ -135,6 +143,10 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
         let node = near.node.map(|i| i as isize);
         let index = lattice.index(node)?;
         let axes = [(self.c + 1) % 3, (self.c + 2) % 3];
+        let [w, v] = axes.map(|a| lattice.axes[a].width(node[a]));
+        if near.distance * near.distance > 0.25 * (w * w + v * v) {
+            return (near.distance < 0.0).then(|| closed(index));
+        }
         let mut corners = [0.0; 4];
         for (k, distance) in corners.iter_mut().enumerate() {
             let mut up = [0; 3];

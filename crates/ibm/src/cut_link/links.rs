@@ -1,5 +1,6 @@
 //! Links that the surface cuts.
 use super::Cutter;
+use super::distances::Near;
 use interfaces::{Bodies, CutNode, Link, Vector};
 
 /// A wall is never nearer than this share of a link.
@@ -10,7 +11,8 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
     pub(super) fn links(&self) -> Vec<CutNode> {
         let lattice = self.velocity.lattice(self.c);
         let mut out = Vec::new();
-        for near in self.nodes.near.iter().filter(|near| near.distance > 0.0) {
+        let beside = |near: &&Near| near.distance > 0.0 && near.distance <= self.nodes.widest;
+        for near in self.nodes.near.iter().filter(beside) {
             let node = near.node.map(|i| i as isize);
             let mut links = [[None; 2]; 3];
             for a in 0..self.dim {
@@ -21,20 +23,20 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
                     let mut step = Vector::zeros();
                     step[a] = lattice.axes[a].place(beyond[a]) - lattice.axes[a].place(node[a]);
                     let arm = inside.arm - step;
-                    let start = self.distance(inside.body, arm);
+                    let start = self.distance_at(near, inside.body(), arm);
                     let fraction = if start > 0.0 {
-                        self.crossing(inside.body, arm, step, [start, inside.distance])
+                        self.crossing(inside.body(), arm, step, [start, inside.distance])
                     } else {
                         0.0
                     };
-                    let velocity = self.wall_velocity(inside.body, arm + fraction * step);
+                    let velocity = self.wall_velocity(inside.body(), arm + fraction * step);
                     *link = Some(Link { fraction: fraction.max(LEAST), velocity });
                 }
             }
             if links.iter().flatten().any(Option::is_some)
                 && let Some(index) = lattice.index(node)
             {
-                out.push(CutNode { index, body: near.body, arm: near.arm, links });
+                out.push(CutNode { index, body: near.body().0, arm: near.arm, links });
             }
         }
         out

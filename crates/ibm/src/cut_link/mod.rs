@@ -5,7 +5,7 @@ mod links;
 mod plane;
 
 use crate::IbmError;
-use distances::{Distances, Ticks};
+use distances::{Distances, Near, Ticks};
 use interfaces::{Bodies, BodyId, CutComponent, CutWalls, Point, SolidPoint, Vector, VelocityField};
 
 /// How bodies at rest (or turning in themselves) cut a staggered grid: where links between velocity nodes meet the
@@ -66,41 +66,56 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
     /// The nodes inside.
     fn solid(&self) -> Vec<SolidPoint> {
         let lattice = self.velocity.lattice(self.c);
-        let inside = self.nodes.near.iter().filter(|near| near.distance <= 0.0);
-        let point = |near: &distances::Near| {
-            let index = lattice.index(near.node.map(|i| i as isize))?;
-            let velocity = self.wall_velocity(near.body, near.arm);
-            Some(SolidPoint { index, velocity, body: near.body, arm: near.arm })
-        };
-        inside.filter_map(point).collect()
+        let mut out = Vec::with_capacity(self.nodes.near.len());
+        for near in self.nodes.near.iter().filter(|near| near.distance <= 0.0) {
+            if let Some(index) = lattice.index(near.node.map(|i| i as isize)) {
+                let velocity = self.wall_velocity(near.body(), near.arm);
+                out.push(SolidPoint { index, velocity, body: near.body().0, arm: near.arm });
+            }
+        }
+        out
     }
 
     /// The component of the velocity of body `b` at `arm` from its centre of mass.
-    fn wall_velocity(&self, b: usize, arm: Vector) -> f64 {
-        self.bodies.twist(BodyId(b)).at(arm)[self.c]
+    fn wall_velocity(&self, b: BodyId, arm: Vector) -> f64 {
+        self.bodies.twist(b).at(arm)[self.c]
     }
 
     /// Signed distance of body `b` at `arm` from its centre of mass.
-    fn distance(&self, b: usize, arm: Vector) -> f64 {
-        let at = self.bodies.pose(BodyId(b)).orientation.inverse_transform_vector(&arm);
-        self.bodies.solid(BodyId(b)).signed_distance(Point::from(at), self.nodes.band)
+    fn distance(&self, b: BodyId, arm: Vector) -> f64 {
+        let at = self.bodies.pose(b).orientation.inverse_transform_vector(&arm);
+        self.bodies.solid(b).signed_distance(Point::from(at), self.nodes.band)
+    }
+
+    /// The same, known already if `near` is that body there.
+    fn distance_at(&self, near: &Near, b: BodyId, arm: Vector) -> f64 {
+        let known = near.body() == b
+            && (near.arm - arm).amax() < self.nodes.widest
+            && near.distance < self.nodes.band;
+        if known { near.distance } else { self.distance(b, arm) }
     }
 
     /// Where the surface of body `b` cuts the way from `arm` (in the fluid) along `step`, as a share of it: the root of
-    /// the distance, by false position (Illinois).
-    fn crossing(&self, b: usize, arm: Vector, step: Vector, ends: [f64; 2]) -> f64 {
+    /// the distance, by false position (Anderson & Björck 1973, BIT 13, 253).
+    fn crossing(&self, b: BodyId, arm: Vector, step: Vector, ends: [f64; 2]) -> f64 {
+        let (solid, turn) = (self.bodies.solid(b), self.bodies.pose(b).orientation.inverse());
+        let (from, step) = (Point::from(turn * arm), turn * step);
         let ([mut low, mut high], [mut at_low, mut at_high]) = ([0.0, 1.0], ends);
         let mut t = 0.0;
+        // What is left of the value of an end that stays, by that of the end that moves from `old` to `new`.
+        let less = |new: f64, old: f64| if new < old { 1.0 - new / old } else { 0.5 };
         for _ in 0..MOST {
             t = (low * at_high - high * at_low) / (at_high - at_low);
-            let d = self.distance(b, arm + t * step);
+            let d = solid.signed_distance(from + t * step, self.nodes.band);
             if d.abs() <= CLOSE * (ends[0] - ends[1]).abs() {
                 break;
             }
             if d > 0.0 {
-                (low, at_low, at_high) = (t, d, 0.5 * at_high);
+                at_high *= less(d, at_low);
+                (low, at_low) = (t, d);
             } else {
-                (high, at_high, at_low) = (t, d, 0.5 * at_low);
+                at_low *= less(-d, -at_high);
+                (high, at_high) = (t, d);
             }
         }
         t.clamp(0.0, 1.0)

@@ -1,0 +1,140 @@
+//! What the cuts of walls at rest cost, in ns of CPU time per cut or closed face: `cargo bench -p ibm --bench cut_walls`; `-- mesh` takes only
+//! the rows with this word. A body of 5 % of a periodic box, best of several places.
+use cpu_time::ProcessTime;
+use ibm::{TriangleMesh, cut_walls};
+use interfaces::{
+    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Lattice, Nodes, Point, Pose, Rotation, Solid, Twist,
+    Vector, VelocityField,
+};
+use std::f64::consts::PI;
+
+/// A velocity field of zeros: component c on the lower faces along axis c of a periodic unit box.
+struct Staggered {
+    lattices: Vec<Lattice>,
+    values: Vec<f64>,
+}
+
+impl Staggered {
+    fn new<const D: usize>(cells: usize) -> Self {
+        let h = 1.0 / cells as f64;
+        let axis = |a, c| Nodes::uniform(if a == c { 0.0 } else { 0.5 * h }, h, cells, true);
+        let stride = std::array::from_fn(|a| cells.pow(a as u32));
+        let lattice = |c| Lattice::new(std::array::from_fn::<_, D, _>(|a| axis(a, c)), 0, stride);
+        Self { lattices: (0..D).map(lattice).collect(), values: vec![0.0; cells.pow(D as u32)] }
+    }
+}
+
+impl VelocityField for Staggered {
+    fn dim(&self) -> usize {
+        self.lattices.len()
+    }
+    fn lattice(&self, c: usize) -> &Lattice {
+        &self.lattices[c]
+    }
+    fn component(&self, _: usize) -> &[f64] {
+        &self.values
+    }
+    fn component_mut(&mut self, _: usize) -> &mut [f64] {
+        &mut self.values
+    }
+}
+
+/// A disc or sphere.
+struct Ball {
+    radius: f64,
+    dim: usize,
+}
+
+impl Solid for Ball {
+    fn signed_distance(&self, x: Point, _: f64) -> f64 {
+        x.coords.norm() - self.radius
+    }
+    fn aabb(&self) -> Aabb {
+        let mut half = Vector::repeat(self.radius);
+        if self.dim == 2 {
+            half.z = 0.0;
+        }
+        Aabb::around(Point::origin(), half)
+    }
+}
+
+/// A box of these half-widths.
+struct Brick(Vector);
+
+impl Solid for Brick {
+    fn signed_distance(&self, x: Point, _: f64) -> f64 {
+        let q = x.coords.abs() - self.0;
+        q.map(|q| q.max(0.0)).norm() + q.max().min(0.0)
+    }
+    fn aabb(&self) -> Aabb {
+        Aabb::around(Point::origin(), self.0)
+    }
+}
+
+/// One body at rest.
+struct One {
+    solid: Box<dyn Solid>,
+    pose: Pose,
+}
+
+impl Kinematics for One {
+    fn n_bodies(&self) -> usize {
+        1
+    }
+    fn pose(&self, _: BodyId) -> Pose {
+        self.pose
+    }
+    fn twist(&self, _: BodyId) -> Twist {
+        Twist::default()
+    }
+}
+
+impl Bodies for One {
+    fn solid(&self, _: BodyId) -> &dyn Solid {
+        &*self.solid
+    }
+    fn inertia(&self, _: BodyId) -> Inertia {
+        Inertia { mass: 1.0, volume: 1.0, tensor: nalgebra::Matrix3::identity() }
+    }
+    fn freedom(&self, _: BodyId) -> Freedom {
+        Freedom::NONE
+    }
+}
+
+fn row<const D: usize>(name: &str, cells: usize, solid: impl Solid + 'static) {
+    let only = std::env::args().skip(1).find(|a| !a.starts_with('-'));
+    if only.is_some_and(|o| !name.contains(&o)) {
+        return;
+    }
+    let field = Staggered::new::<D>(cells);
+    let flat = if D == 2 { 0.0 } else { 1.0 };
+    let mut body = One { solid: Box::new(solid), pose: Pose::at([0.5, 0.5, 0.5 * flat]) };
+    let (mut best, mut faces, mut links) = (f64::INFINITY, 0, 0);
+    for step in 0..20 {
+        let s = f64::from(step);
+        body.pose.position += Vector::new(0.13, 0.17, 0.11 * flat) / cells as f64;
+        body.pose.orientation = Rotation::from_euler_angles(0.3 * s * flat, 0.2 * s * flat, 0.7 * s);
+        let start = ProcessTime::now();
+        let walls = cut_walls(&field, &body).expect("a body that the grid sees");
+        let time = start.elapsed().as_secs_f64();
+        faces = walls.components.iter().map(|c| c.faces.len()).sum();
+        links = walls.components.iter().map(|c| c.links.len()).sum();
+        best = best.min(time * 1e9 / faces as f64);
+    }
+    println!(
+        "{name:<10} {:>7} {faces:>8} faces {links:>8} nodes {best:>8.1} ns/face",
+        format!("{cells}^{D}")
+    );
+}
+
+fn main() {
+    for cells in [128, 256, 512] {
+        row::<2>("disc", cells, Ball { radius: (0.05 / PI).sqrt(), dim: 2 });
+    }
+    let radius = (0.0375 / PI).cbrt();
+    for cells in [32, 64, 128] {
+        row::<3>("sphere", cells, Ball { radius, dim: 3 });
+        row::<3>("cube", cells, Brick(Vector::repeat(0.5 * 0.05_f64.cbrt())));
+        row::<3>("mesh", cells, TriangleMesh::sphere(radius, 5).expect("a sphere"));
+    }
+}

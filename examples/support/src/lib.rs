@@ -5,6 +5,7 @@
 pub mod axes;
 pub mod channel_cylinder;
 pub mod cpu;
+pub mod eccentric_cylinders;
 pub mod free_stream;
 pub mod moved_body;
 pub mod picture;

@@ -3,7 +3,8 @@ use crate::Outcome;
 use fv_mesh::Projection;
 use ibm::Forcing;
 use interfaces::{
-    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Point, Pose, Rotation, Solid, Twist, Vector,
+    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Point, Pose, Rotation, Solid, SurfaceElement, Twist,
+    Vector,
 };
 use std::sync::Arc;
 
@@ -130,5 +131,19 @@ impl Solid for Banks {
     }
     fn aabb(&self) -> Aabb {
         Aabb::around(Point::origin(), Vector::new(0.5 * self.lengths[0], 0.5 * self.lengths[1], 0.0))
+    }
+    /// Both lines along the channel from one corner of the box to where they close; some of it lies in the box's images.
+    fn surface(&self, spacing: f64, offset: f64) -> Option<Vec<SurfaceElement>> {
+        let ([along, across], length) = (self.axes(), self.lengths[0].hypot(self.lengths[1]));
+        let n = (length / spacing).round();
+        let element = |i: usize, side: f64| {
+            let (s, d) = ((i as f64 + 0.5) / n * length - 0.5 * length, side * (0.5 * self.width - offset));
+            let at = [0, 1].map(|a| s * along[a] + d * across[a]);
+            let normal = Vector::new(-side * across[0], -side * across[1], 0.0);
+            SurfaceElement { point: Point::new(at[0], at[1], 0.0), normal, area: length / n }
+        };
+        Some(
+            [-1.0, 1.0].into_iter().flat_map(|side| (0..n as usize).map(move |i| element(i, side))).collect(),
+        )
     }
 }

@@ -1,0 +1,64 @@
+//! Steady flows past bodies of exact or published drag: eccentric cylinders.
+use crate::STEADY;
+use example_support::Outcome;
+use example_support::cpu::Stopwatch;
+use example_support::eccentric_cylinders::EccentricCylinders;
+use example_support::walled_flows::{settle, surface_loads, velocity_errors};
+
+pub(crate) fn eccentric() -> Outcome<()> {
+    println!(
+        "\nCreeping flow between eccentric cylinders (Wannier 1950), the inner one turns: largest and rms error of the velocity over the \
+         speed of its surface, errors of the torque on it and of the force across the line of centres; force along it over that; by the \
+         stress on its surface"
+    );
+    println!(
+        "{:>6} {:>6} {:>10} {:>6} {:>10} {:>6} {:>9} {:>9} {:>10} {:>9} {:>9} {:>7} {:>7}",
+        "cells",
+        "moved",
+        "max",
+        "order",
+        "rms",
+        "order",
+        "torque",
+        "force",
+        "along",
+        "torque",
+        "force",
+        "steps",
+        "CPU s"
+    );
+    for shift in [0.0, 0.3] {
+        let mut last = [f64::NAN; 2];
+        for cells in [32, 64, 128] {
+            let watch = Stopwatch::start();
+            let mut case = EccentricCylinders::new(cells, [shift, 0.7 * shift])?;
+            settle(&mut case.flow, [0.0; 2], [5e-3, STEADY], |flow| {
+                flow.wall_impulses()[0].torque.z / flow.last_dt()
+            })?;
+            let load = case.flow.wall_impulses()[0] * (1.0 / case.flow.last_dt());
+            let errors =
+                velocity_errors(&case.flow, |x| case.exact(x)).map(|e| e * EccentricCylinders::SCALE);
+            let order = [0, 1].map(|i| (last[i] / errors[i]).log2());
+            last = errors;
+            let [force, torque] = case.exact_load();
+            let surface = surface_loads(&case.flow, &case.bodies, 0, 0.0)?.total();
+            let [there, _] = case.parts([surface.force.x, surface.force.y]);
+            let [across, along] = case.parts([load.force.x, load.force.y]);
+            println!(
+                "{cells:>6} {shift:>6} {:>10.2e} {:>6.2} {:>10.2e} {:>6.2} {:>8.3}% {:>8.3}% {:>10.1e} {:>8.2}% {:>8.2}% {:>7} {:>7.2}",
+                errors[0],
+                order[0],
+                errors[1],
+                order[1],
+                100.0 * (load.torque.z / torque - 1.0),
+                100.0 * (across / force - 1.0),
+                along / force,
+                100.0 * (surface.torque.z / torque - 1.0),
+                100.0 * (there / force - 1.0),
+                case.flow.steps(),
+                watch.elapsed().cpu
+            );
+        }
+    }
+    Ok(())
+}

@@ -26,7 +26,9 @@ fn main() -> Outcome<()> {
         ("eccentric", steady::eccentric),
         ("spheres", spheres),
         ("cylinder", cylinder),
+        ("duct", steady::duct),
         ("stream", stream),
+        ("sphere", steady::sphere),
         ("cost", cost::table),
     ])
 }

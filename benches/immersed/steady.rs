@@ -1,8 +1,10 @@
-//! Steady flows past bodies of exact or published drag: eccentric cylinders.
+//! Steady flows past bodies of exact or published drag: eccentric cylinders, a cylinder across a duct, a sphere in a stream.
 use crate::STEADY;
 use example_support::Outcome;
 use example_support::cpu::Stopwatch;
+use example_support::duct_cylinder::{self, DRAG, DROP, LIFT};
 use example_support::eccentric_cylinders::EccentricCylinders;
+use example_support::sphere_stream;
 use example_support::walled_flows::{settle, surface_loads, velocity_errors};
 
 pub(crate) fn eccentric() -> Outcome<()> {
@@ -58,6 +60,67 @@ pub(crate) fn eccentric() -> Outcome<()> {
                 case.flow.steps(),
                 watch.elapsed().cpu
             );
+        }
+    }
+    Ok(())
+}
+
+pub(crate) fn duct() -> Outcome<()> {
+    println!(
+        "\nCylinder across a duct, Re 20, cut links with QUICK on gathered cells: Cd {DRAG} and Cl {LIFT} wanted, Δp in {DROP:?}"
+    );
+    println!(
+        "{:>6} {:>8} {:>11} {:>9} {:>8} {:>9} {:>10} {:>8} {:>8} {:>9} {:>7} {:>8}",
+        "per D", "cells", "moved", "Cd", "error", "surface", "Cl", "error", "surface", "Δp", "steps", "CPU s"
+    );
+    for shift in [[0.0, 0.0], [0.37, 0.3]] {
+        let mut coarser = None;
+        // What is fine takes half an hour.
+        for per_diameter in if shift[0] > 0.0 { vec![10, 14, 20] } else { vec![10] } {
+            let found = duct_cylinder::run(per_diameter, shift, coarser.as_ref())?;
+            let ([drag, lift], [drag_there, lift_there]) = (found.coefficients, found.surface);
+            println!(
+                "{per_diameter:>6} {:>8} {:>5.2} {:>5.2} {drag:>9.5} {:>7.3}% {:>8.2}% {lift:>10.6} {:>7.1}% {:>7.1}% {:>9.5} {:>7} {:>8.1}",
+                found.cells,
+                shift[0],
+                shift[1],
+                100.0 * (drag / DRAG - 1.0),
+                100.0 * (drag_there / DRAG - 1.0),
+                100.0 * (lift / LIFT - 1.0),
+                100.0 * (lift_there / LIFT - 1.0),
+                found.drop,
+                found.steps,
+                found.cpu
+            );
+            coarser = Some(found.flow);
+        }
+    }
+    Ok(())
+}
+
+pub(crate) fn sphere() -> Outcome<()> {
+    println!(
+        "\nSphere in a free stream, cut links with QUICK on gathered cells, a quarter of it; the drag by the stress on its surface"
+    );
+    println!(
+        "{:>4} {:>6} {:>8} {:>8} {:>9} {:>8} {:>6} {:>7} {:>8}",
+        "Re", "per D", "cells", "Cd", "surface", "wake/D", "time", "steps", "CPU s"
+    );
+    for reynolds in [25.0, 100.0, 200.0] {
+        let mut coarser = None;
+        for per_diameter in [10, 14, 20] {
+            let found = sphere_stream::run(reynolds, per_diameter, 0.37, coarser.as_ref())?;
+            println!(
+                "{reynolds:>4} {per_diameter:>6} {:>8} {:>8.4} {:>8.2}% {:>8.3} {:>6.0} {:>7} {:>8.1}",
+                found.cells,
+                found.drag,
+                100.0 * (found.surface / found.drag - 1.0),
+                found.wake,
+                found.time,
+                found.steps,
+                found.cpu
+            );
+            coarser = Some(found.flow);
         }
     }
     Ok(())

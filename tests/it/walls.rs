@@ -2,12 +2,13 @@
 use crate::with_threads;
 use example_support::eccentric_cylinders::EccentricCylinders;
 use example_support::prescribed_bodies::PrescribedBodies;
+use example_support::unfolded::whole_surface_loads;
 use example_support::walled_flows::{
     COUETTE_TORQUE, ForcedChannel, SphereArray, TurnedChannel, couette, couette_velocity, put_walls, settle,
     surface_loads, velocity_errors,
 };
 use siltflow::coupling::{Particles, Simulation, WeightBalance};
-use siltflow::dem::{Disc, Material, RigidBodies};
+use siltflow::dem::{Disc, Material, RigidBodies, Sphere};
 use siltflow::flow::{CartesianGrid, Fluid, Projection, Side};
 use siltflow::ibm::SmoothForcing;
 use siltflow::interfaces::{BodyId, Freedom, Kinematics, Periods, Pose, Twist, Vector, VelocityField};
@@ -90,6 +91,31 @@ fn creeping_flow_between_eccentric_cylinders() {
     let [worst, rms] =
         velocity_errors(&case.flow, |x| case.exact(x)).map(|error| error * EccentricCylinders::SCALE);
     assert!(worst < 3.5e-3 && rms < 1.7e-3, "{worst} {rms}");
+}
+
+/// A quarter of a sphere between two planes of symmetry bears a quarter of the force, in cells that its walls and the sides of the
+/// box cut both, and all its surface can be told from it.
+#[test]
+fn a_quarter_of_a_sphere_bears_a_quarter() {
+    let run = |cells: [usize; 3], lengths: [f64; 3], origin: [f64; 3]| {
+        let grid = CartesianGrid::new(cells, lengths).unwrap().with_origin(origin).unwrap();
+        let sides = [Side::Periodic.both(), Side::FreeSlip.both(), Side::FreeSlip.both()];
+        let fluid = Fluid { density: 1.0, viscosity: 0.05 };
+        let mut flow = Projection::new(grid, sides, fluid).unwrap();
+        let sphere = PrescribedBodies::default().with(Sphere::new(0.5).unwrap(), [0.013, 0.0, 0.0], 0.0);
+        put_walls(&mut flow, &sphere).unwrap();
+        (0..30).for_each(|_| flow.advance(0.01, [1.0, 0.0, 0.0]).unwrap());
+        let force = flow.wall_impulses()[0].force * (1.0 / flow.last_dt());
+        (flow, sphere, force)
+    };
+    let (whole, sphere, force) = run([24; 3], [2.0; 3], [-1.0; 3]);
+    let (quarter, _, part) = run([24, 12, 12], [2.0, 1.0, 1.0], [-1.0, 0.0, 0.0]);
+    assert!(force.x > 0.1 && (4.0 * part.x / force.x - 1.0).abs() < 1e-6, "{force} {part}");
+    let loads = surface_loads(&whole, &sphere, 0, 0.0).unwrap().total().force;
+    let spacing = 2.0 / 24.0;
+    let unfolded =
+        whole_surface_loads(&quarter, [false, true, true], &sphere, spacing).unwrap().total().force;
+    assert!((unfolded - loads).norm() < 1e-4 * loads.norm(), "{unfolded} {loads}");
 }
 
 /// A simple-cubic array of spheres: K is 15.4 at φ 0.343 (Zick & Homsy 1982). Measured: −0.99 % at 12 cells per diameter.

@@ -6,6 +6,7 @@ use interfaces::{
     Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Point, Pose, Rotation, Solid, SurfaceElement, Twist,
     Vector,
 };
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Some solids, with their place and motion.
@@ -97,6 +98,40 @@ impl Solid for Bore {
     }
     fn aabb(&self) -> Aabb {
         Aabb::around(Point::origin(), Vector::new(self.half[0], self.half[1], 0.0))
+    }
+}
+
+/// A cylinder along the axis z that reaches through the whole of a box.
+#[derive(Clone, Copy, Debug)]
+pub struct Post {
+    /// Its radius \[m\].
+    pub radius: f64,
+    /// Half of the box's height \[m\].
+    pub half: f64,
+}
+
+impl Solid for Post {
+    fn signed_distance(&self, x: Point, _: f64) -> f64 {
+        x.x.hypot(x.y) - self.radius
+    }
+    fn aabb(&self) -> Aabb {
+        Aabb::around(Point::origin(), Vector::new(self.radius, self.radius, self.half))
+    }
+    /// Of what is inside the box.
+    fn surface(&self, spacing: f64, offset: f64) -> Option<Vec<SurfaceElement>> {
+        let (radius, height) = (self.radius + offset, 2.0 * self.half);
+        let (around, along) = (4.0 * (0.25 * TAU * radius / spacing).round(), (height / spacing).round());
+        let area = TAU * radius * height / (around * along);
+        let element = |i: usize| {
+            let (sin, cos) = (TAU * (i % around as usize) as f64 / around).sin_cos();
+            let z = ((i / around as usize) as f64 + 0.5) / along * height - self.half;
+            SurfaceElement {
+                point: Point::new(radius * cos, radius * sin, z),
+                normal: Vector::new(cos, sin, 0.0),
+                area,
+            }
+        };
+        Some((0..(around * along) as usize).map(element).collect())
     }
 }
 

@@ -4,7 +4,7 @@ use example_support::Outcome;
 use example_support::cpu::Stopwatch;
 use example_support::duct_cylinder::{self, DRAG, DROP, LIFT};
 use example_support::eccentric_cylinders::EccentricCylinders;
-use example_support::sphere_stream;
+use example_support::sphere_stream::{self, REFERENCES};
 use example_support::walled_flows::{settle, surface_loads, velocity_errors};
 
 pub(crate) fn eccentric() -> Outcome<()> {
@@ -100,22 +100,37 @@ pub(crate) fn duct() -> Outcome<()> {
 
 pub(crate) fn sphere() -> Outcome<()> {
     println!(
-        "\nSphere in a free stream, cut links with QUICK on gathered cells, a quarter of it; the drag by the stress on its surface"
+        "\nSphere in a free stream, cut links with QUICK on gathered cells, a quarter of it: errors of the drag against Johnson & Patel \
+         and against axisymmetric solutions, as that of the wake; the drag by the stress on its surface"
     );
     println!(
-        "{:>4} {:>6} {:>8} {:>8} {:>9} {:>8} {:>6} {:>7} {:>8}",
-        "Re", "per D", "cells", "Cd", "surface", "wake/D", "time", "steps", "CPU s"
+        "{:>4} {:>6} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8} {:>6} {:>7} {:>8}",
+        "Re",
+        "per D",
+        "cells",
+        "Cd",
+        "J & P",
+        "axisymm",
+        "surface",
+        "wake/D",
+        "axisymm",
+        "time",
+        "steps",
+        "CPU s"
     );
-    for reynolds in [25.0, 100.0, 200.0] {
+    for [reynolds, published, drag, wake] in REFERENCES {
         let mut coarser = None;
         for per_diameter in [10, 14, 20] {
             let found = sphere_stream::run(reynolds, per_diameter, 0.37, coarser.as_ref())?;
             println!(
-                "{reynolds:>4} {per_diameter:>6} {:>8} {:>8.4} {:>8.2}% {:>8.3} {:>6.0} {:>7} {:>8.1}",
+                "{reynolds:>4} {per_diameter:>6} {:>8} {:>8.4} {:>7.2}% {:>7.2}% {:>8.2}% {:>8.3} {:>7.1}% {:>6.0} {:>7} {:>8.1}",
                 found.cells,
                 found.drag,
+                100.0 * (found.drag / published - 1.0),
+                100.0 * (found.drag / drag - 1.0),
                 100.0 * (found.surface / found.drag - 1.0),
                 found.wake,
+                100.0 * (found.wake / wake - 1.0),
                 found.time,
                 found.steps,
                 found.cpu

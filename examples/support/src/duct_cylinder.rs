@@ -24,8 +24,8 @@ pub const LIFT: f64 = 0.009401;
 /// Between these lies the pressure drop across the cylinder in the middle plane \[Pa\] (Schäfer & Turek 1996).
 pub const DROP: [f64; 2] = [0.165, 0.175];
 
-/// The flow is steady when drag and pressure drop change by less than this part of themselves in one unit of time (a flow of mean
-/// speed passes two diameters), from `LEAST` on where it started from rest-like flow, from `AGAIN` on where from a coarser one.
+/// The flow is steady when the drag changes by less than this part of itself in one unit of time (a flow of mean speed passes two
+/// diameters), from `LEAST` on where it started from the inflow everywhere, from `AGAIN` on where from a coarser flow.
 const STEADY: f64 = 2e-5;
 const LEAST: f64 = 6.0;
 const AGAIN: f64 = 2.0;

@@ -25,6 +25,12 @@ const LEAST: f64 = 16.0;
 const AGAIN: f64 = 6.0;
 const MOST: f64 = 100.0;
 
+/// Reynolds number, drag coefficient (Johnson & Patel 1999, J. Fluid Mech. 378, 19), and drag coefficient and length of the wake
+/// \[D\] of axisymmetric solutions of the stream function and the vorticity (30 D around, second order, extrapolated from
+/// 180 × 108 and 240 × 144 cells along ln r and the angle).
+pub const REFERENCES: [[f64; 4]; 3] =
+    [[25.0, 2.366, 2.367, 0.071], [100.0, 1.102, 1.089, 0.870], [200.0, 0.790, 0.773, 1.436]];
+
 /// What one run gives.
 pub struct Found {
     /// The flow at its end.

@@ -102,16 +102,20 @@ pub fn run(per_diameter: usize, shift: [f64; 2], coarser: Option<&Projection<3>>
     };
     let loads = whole_surface_loads(&flow, [false, false, true], &bodies, h)?;
     let total = loads.total().force * (0.5 * coefficient);
-    // In the middle of the duct.
-    let end = |sign: f64| {
-        let place = |p: &ibm::SurfacePoint| sign * p.normal.x - p.arm.z.abs() / HEIGHT;
-        loads.points.iter().max_by(|p, q| place(p).total_cmp(&place(q))).map_or(f64::NAN, |p| p.pressure)
+    // At the stagnation points in the middle plane: the parabola through the pressures one, two and three cells before them.
+    let sampler = Sampler::new(flow.grid(), flow.sides());
+    let end = |sign: f64| -> Outcome<f64> {
+        let at = |cells: f64| {
+            sampler.at(flow.pressure(), [PLACE[0] + sign * (0.5 * DIAMETER + cells * h), PLACE[1], 0.0])
+        };
+        Ok(3.0 * (at(1.0)? - at(2.0)?) + at(3.0)?)
     };
+    let drop = end(-1.0)? - end(1.0)?;
     Ok(Found {
         cells,
         coefficients: [force.x, force.y],
         surface: [total.x, total.y],
-        drop: end(-1.0) - end(1.0),
+        drop,
         steps: flow.steps(),
         cpu: watch.elapsed().cpu,
         flow,

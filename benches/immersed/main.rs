@@ -2,16 +2,18 @@
 //! simple-cubic arrays of spheres, the cylinder of Schäfer & Turek; and what walls cost. On one thread: `cargo bench --bench
 //! immersed`, or with the names of cases after `--`.
 mod cost;
+mod steady;
 
 use example_support::channel_cylinder::{self, Cells, DRAG, Found, LIFT, Way};
 use example_support::cpu::Stopwatch;
 use example_support::free_stream;
 use example_support::walled_flows::{
-    COUETTE_TORQUE, SphereArray, TurnedChannel, couette, couette_velocity, settle, surface_loads,
-    velocity_errors,
+    COUETTE_TORQUE, ForcedChannel, SphereArray, TurnedChannel, couette, couette_velocity, settle,
+    surface_loads, velocity_errors,
 };
 use example_support::{Outcome, run_cases};
 use siltflow::flow::Convection;
+use siltflow::ibm::{Kernel, SmoothForcing};
 
 /// Flows are steady when they change by less than this part.
 const STEADY: f64 = 1e-6;
@@ -19,10 +21,14 @@ const STEADY: f64 = 1e-6;
 fn main() -> Outcome<()> {
     run_cases(&[
         ("channel", channel),
+        ("forced-channel", forced_channel),
         ("couette", cylinders),
+        ("eccentric", steady::eccentric),
         ("spheres", spheres),
         ("cylinder", cylinder),
+        ("duct", steady::duct),
         ("stream", stream),
+        ("sphere", steady::sphere),
         ("cost", cost::table),
     ])
 }
@@ -45,6 +51,33 @@ fn channel() -> Outcome<()> {
                 channel.faces,
                 watch.elapsed().cpu
             );
+        }
+    }
+    Ok(())
+}
+
+fn forced_channel() -> Outcome<()> {
+    println!(
+        "\nThe same by smooth forcing: error of the flow rate of the channel; what flows in the banks, too, over it"
+    );
+    println!(
+        "{:>14} {:>6} {:>6} {:>9} {:>9} {:>7}",
+        "kernel", "angle", "cells", "channel", "with banks", "CPU s"
+    );
+    for kernel in [Kernel::Yang, Kernel::QuinticSpline] {
+        for degrees in [10.0, 20.0, 30.0, 40.0] {
+            for cells in [10, 20, 40] {
+                let watch = Stopwatch::start();
+                let forcing = SmoothForcing::new(1.0).with_kernel(kernel);
+                let [rate, all] = ForcedChannel::new(degrees, cells, forcing)?.rates(STEADY)?;
+                println!(
+                    "{:>14} {degrees:>6} {cells:>6} {:>8.3}% {:>8.3}% {:>7.2}",
+                    format!("{kernel:?}"),
+                    100.0 * (rate - 1.0),
+                    100.0 * (all - 1.0),
+                    watch.elapsed().cpu
+                );
+            }
         }
     }
     Ok(())

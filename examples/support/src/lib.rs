@@ -5,14 +5,18 @@
 pub mod axes;
 pub mod channel_cylinder;
 pub mod cpu;
+pub mod duct_cylinder;
+pub mod eccentric_cylinders;
 pub mod free_stream;
 pub mod moved_body;
 pub mod picture;
 pub mod prescribed_bodies;
 pub mod progress;
 pub mod scene;
+pub mod sphere_stream;
 pub mod startup_theory;
 pub mod table;
+pub mod unfolded;
 pub mod walled_flows;
 
 /// What may go wrong in an example or a bench.

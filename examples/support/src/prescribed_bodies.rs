@@ -3,8 +3,10 @@ use crate::Outcome;
 use fv_mesh::Projection;
 use ibm::Forcing;
 use interfaces::{
-    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Point, Pose, Rotation, Solid, Twist, Vector,
+    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Point, Pose, Rotation, Solid, SurfaceElement, Twist,
+    Vector,
 };
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Some solids, with their place and motion.
@@ -99,6 +101,40 @@ impl Solid for Bore {
     }
 }
 
+/// A cylinder along the axis z that reaches through the whole of a box.
+#[derive(Clone, Copy, Debug)]
+pub struct Post {
+    /// Its radius \[m\].
+    pub radius: f64,
+    /// Half of the box's height \[m\].
+    pub half: f64,
+}
+
+impl Solid for Post {
+    fn signed_distance(&self, x: Point, _: f64) -> f64 {
+        x.x.hypot(x.y) - self.radius
+    }
+    fn aabb(&self) -> Aabb {
+        Aabb::around(Point::origin(), Vector::new(self.radius, self.radius, self.half))
+    }
+    /// Of what is inside the box.
+    fn surface(&self, spacing: f64, offset: f64) -> Option<Vec<SurfaceElement>> {
+        let (radius, height) = (self.radius + offset, 2.0 * self.half);
+        let (around, along) = (4.0 * (0.25 * TAU * radius / spacing).round(), (height / spacing).round());
+        let area = TAU * radius * height / (around * along);
+        let element = |i: usize| {
+            let (sin, cos) = (TAU * (i % around as usize) as f64 / around).sin_cos();
+            let z = ((i / around as usize) as f64 + 0.5) / along * height - self.half;
+            SurfaceElement {
+                point: Point::new(radius * cos, radius * sin, z),
+                normal: Vector::new(cos, sin, 0.0),
+                area,
+            }
+        };
+        Some((0..(around * along) as usize).map(element).collect())
+    }
+}
+
 /// All of a doubly periodic box but a channel along its diagonal and the channel's images.
 #[derive(Clone, Copy, Debug)]
 pub struct Banks {
@@ -130,5 +166,19 @@ impl Solid for Banks {
     }
     fn aabb(&self) -> Aabb {
         Aabb::around(Point::origin(), Vector::new(0.5 * self.lengths[0], 0.5 * self.lengths[1], 0.0))
+    }
+    /// Both lines along the channel from one corner of the box to where they close; some of it lies in the box's images.
+    fn surface(&self, spacing: f64, offset: f64) -> Option<Vec<SurfaceElement>> {
+        let ([along, across], length) = (self.axes(), self.lengths[0].hypot(self.lengths[1]));
+        let n = (length / spacing).round();
+        let element = |i: usize, side: f64| {
+            let (s, d) = ((i as f64 + 0.5) / n * length - 0.5 * length, side * (0.5 * self.width - offset));
+            let at = [0, 1].map(|a| s * along[a] + d * across[a]);
+            let normal = Vector::new(-side * across[0], -side * across[1], 0.0);
+            SurfaceElement { point: Point::new(at[0], at[1], 0.0), normal, area: length / n }
+        };
+        Some(
+            [-1.0, 1.0].into_iter().flat_map(|side| (0..n as usize).map(move |i| element(i, side))).collect(),
+        )
     }
 }

@@ -2,8 +2,8 @@
 use crate::Outcome;
 use crate::prescribed_bodies::{Banks, Bore, PrescribedBodies};
 use dem::{Disc, Sphere};
-use fv_mesh::{CartesianGrid, Fluid, Projection, Side};
-use ibm::{SurfaceLoads, SurfaceStress, cut_walls};
+use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Side};
+use ibm::{Forcing, SmoothForcing, SolidFraction, SurfaceLoads, SurfaceStress, cut_walls};
 use interfaces::{BodyId, VelocityField};
 use std::f64::consts::PI;
 
@@ -47,7 +47,17 @@ pub fn surface_loads<const D: usize>(
 pub fn settle<const D: usize>(
     flow: &mut Projection<D>,
     force: [f64; D],
+    times: [f64; 2],
+    value: impl Fn(&mut Projection<D>) -> f64,
+) -> Outcome<f64> {
+    settle_by(flow, times, |flow, dt| Ok(flow.advance(dt, force)?), value)
+}
+
+/// The same with steps of another kind.
+fn settle_by<const D: usize>(
+    flow: &mut Projection<D>,
     [interval, tolerance]: [f64; 2],
+    mut step: impl FnMut(&mut Projection<D>, f64) -> Outcome<()>,
     value: impl Fn(&mut Projection<D>) -> f64,
 ) -> Outcome<f64> {
     let mut last = f64::INFINITY;
@@ -55,7 +65,7 @@ pub fn settle<const D: usize>(
         let end = flow.time() + interval;
         while flow.time() < end {
             let dt = flow.stable_dt(0.4);
-            flow.advance(dt, force)?;
+            step(flow, dt)?;
         }
         let now = value(flow);
         if (now - last).abs() < tolerance * now.abs() {
@@ -137,25 +147,15 @@ impl TurnedChannel {
     /// # Errors
     /// Those of the walls and of the flow.
     pub fn new(degrees: f64, cells: usize) -> Outcome<Self> {
-        let h = 1.0 / cells as f64;
-        let slope = degrees.to_radians();
-        let count = [2.0 / slope.sin(), 2.0 / slope.cos()].map(|length| (length / h).round());
-        let lengths = count.map(|n| n * h);
-        let grid = CartesianGrid::new(count.map(|n| n as usize), lengths)?;
-        let grid = grid.with_origin(lengths.map(|l| -0.5 * l))?;
-        let fluid = Fluid { density: 1.0, viscosity: VISCOSITY };
-        let flow = Projection::new(grid, Side::Periodic.everywhere(), fluid)?;
-        let banks = Banks { lengths, width: 1.0 };
-        let place = [0.0123 * h, 0.0371 * h];
+        let (flow, banks, place, bodies) = turned(degrees, cells)?;
         let mut channel = Self { flow, faces: 0, banks, place };
-        let bodies = PrescribedBodies::default().with(banks, [place[0], place[1], 0.0], 0.0);
         channel.faces = put_walls(&mut channel.flow, &bodies)?;
         channel.flow.set_velocity(|x| exact_in(&banks, place, x));
         Ok(channel)
     }
     /// The force per mass that drives it \[m/s²\].
     pub fn force(&self) -> [f64; 2] {
-        self.banks.axes()[0].map(|a| a * 12.0 * VISCOSITY)
+        pull(&self.banks)
     }
     /// The parabola, zero in the banks.
     pub fn exact(&self, x: [f64; 2]) -> [f64; 2] {
@@ -171,6 +171,93 @@ impl TurnedChannel {
             let total = flow.statistics().volume_flow;
             (total.x * along[0] + total.y * along[1]) / lengths[0].hypot(lengths[1])
         })
+    }
+}
+
+/// The force per mass that drives a mean velocity of 1 \[m/s²\].
+fn pull(banks: &Banks) -> [f64; 2] {
+    banks.axes()[0].map(|a| a * 12.0 * VISCOSITY)
+}
+
+/// A periodic box with banks of a channel; the place of the banks, too.
+fn turned(degrees: f64, cells: usize) -> Outcome<(Projection<2>, Banks, [f64; 2], PrescribedBodies)> {
+    let h = 1.0 / cells as f64;
+    let slope = degrees.to_radians();
+    let count = [2.0 / slope.sin(), 2.0 / slope.cos()].map(|length| (length / h).round());
+    let lengths = count.map(|n| n * h);
+    let grid = CartesianGrid::new(count.map(|n| n as usize), lengths)?;
+    let grid = grid.with_origin(lengths.map(|l| -0.5 * l))?;
+    let fluid = Fluid { density: 1.0, viscosity: VISCOSITY };
+    let flow = Projection::new(grid, Side::Periodic.everywhere(), fluid)?.with_diffusion(Diffusion::Explicit);
+    let banks = Banks { lengths, width: 1.0 };
+    let place = [0.0123 * h, 0.0371 * h];
+    let bodies = PrescribedBodies::default().with(banks, [place[0], place[1], 0.0], 0.0);
+    Ok((flow, banks, place, bodies))
+}
+
+/// The turned channel by [`SmoothForcing`]; the force acts on the fluid alone.
+pub struct ForcedChannel {
+    /// The flow, which starts with the exact velocity.
+    pub flow: Projection<2>,
+    forcing: SmoothForcing,
+    bodies: PrescribedBodies,
+    banks: Banks,
+    /// 1 − λ at the nodes of either component.
+    open: [Vec<f64>; 2],
+}
+
+impl ForcedChannel {
+    /// Turned by about `degrees`, `cells` across.
+    ///
+    /// # Errors
+    /// Those of the flow and of λ.
+    pub fn new(degrees: f64, cells: usize, forcing: SmoothForcing) -> Outcome<Self> {
+        let (mut flow, banks, place, bodies) = turned(degrees, cells)?;
+        flow.set_velocity(|x| exact_in(&banks, place, x));
+        let mut open = [Vec::new(), Vec::new()];
+        for (c, open) in open.iter_mut().enumerate() {
+            let mut inside = SolidFraction::new();
+            inside.update(flow.velocity().lattice(c), &bodies)?;
+            open.resize(flow.velocity().component(c).len(), 1.0);
+            // The banks go on in the images of the box: nodes beside its sides may come twice.
+            inside.nodes(BodyId(0)).iter().for_each(|node| open[node.index] = 1.0 - node.fraction);
+        }
+        Ok(Self { flow, forcing, bodies, banks, open })
+    }
+    /// Advances until the flow is steady; answers the flow rate of the channel, and of all the box.
+    ///
+    /// # Errors
+    /// Those of flow and forcing.
+    pub fn rates(&mut self, tolerance: f64) -> Outcome<[f64; 2]> {
+        let Self { flow, forcing, bodies, banks, open } = self;
+        let ([along, _], pull) = (banks.axes(), pull(banks));
+        let length = banks.lengths[0].hypot(banks.lengths[1]);
+        let cell: f64 = flow.grid().spacing().into_iter().product();
+        let rate = |flow: &Projection<2>| {
+            let through = |c: usize| -> f64 {
+                let lattice = flow.velocity().lattice(c);
+                let u = flow.velocity().component(c);
+                let [nx, ny, _] = lattice.shape();
+                let nodes =
+                    (0..nx * ny).filter_map(|i| lattice.index([(i % nx) as isize, (i / nx) as isize, 0]));
+                nodes.map(|i| open[c][i] * u[i]).sum()
+            };
+            cell * (through(0) * along[0] + through(1) * along[1]) / length
+        };
+        let step = |flow: &mut Projection<2>, dt: f64| -> Outcome<()> {
+            flow.predict(dt, [0.0; 2])?;
+            for c in 0..2 {
+                let u = flow.velocity_mut().component_mut(c);
+                u.iter_mut().zip(&open[c]).for_each(|(u, open)| *u += dt * pull[c] * open);
+            }
+            forcing.place(flow.velocity(), bodies)?;
+            forcing.force(flow.velocity_mut(), bodies);
+            flow.project(dt)?;
+            Ok(flow.finish(dt)?)
+        };
+        let channel = settle_by(flow, [0.05 / VISCOSITY, tolerance], step, |flow| rate(flow))?;
+        let total = flow.statistics().volume_flow;
+        Ok([channel, (total.x * along[0] + total.y * along[1]) / length])
     }
 }
 

@@ -1,5 +1,5 @@
 //! Wall distances and wall rows of bodies in a flow, as a turbulence model on `fv-mesh` gets them.
-use example_support::still_bodies::StillBodies;
+use example_support::prescribed_bodies::PrescribedBodies;
 use siltflow::dem::Disc;
 use siltflow::flow::{Axis, CartesianGrid, CellTransport, Fluid, Projection, Side, Sides, TransportParams};
 use siltflow::ibm::{WallCell, WallDistance, WallRows};
@@ -20,7 +20,8 @@ fn a_turbulence_model_gets_distances_and_rows() {
         Projection::new(grid.clone(), sides.clone(), Fluid { density: 1.0, viscosity: 1e-3 }).unwrap();
     flow.set_velocity(|x| [SHEAR * x[1], 0.0]);
     let sides = Sides::new(sides).unwrap();
-    let bodies = StillBodies::default().with(Disc::new(RADIUS).unwrap(), [CENTRE[0], CENTRE[1], 0.0], 2.0);
+    let bodies =
+        PrescribedBodies::default().with(Disc::new(RADIUS).unwrap(), [CENTRE[0], CENTRE[1], 0.0], 2.0);
     let lattice = grid.lattice(None, &sides);
 
     let mut cells = CellTransport::new(&grid, &sides, TransportParams::default()).unwrap();

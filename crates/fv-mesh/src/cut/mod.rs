@@ -63,8 +63,9 @@ impl<const D: usize> Walls<D> {
         })
     }
 
-    /// Tells the nodes inside the solid its velocity.
-    pub(crate) fn start(&self, velocity: &mut [Field<D>; D]) {
+    /// Tells the nodes inside the solid its velocity; there is no pressure in it.
+    pub(crate) fn start(&self, velocity: &mut [Field<D>; D], pressure: &mut Field<D>) {
+        self.pressure.start(pressure);
         for (component, u) in self.cuts.components.iter().zip(velocity) {
             component.solid.iter().for_each(|point| u.data_mut()[point.index] = point.velocity);
         }

@@ -52,6 +52,8 @@ pub(crate) struct CutPressure {
     pub(crate) iterations: usize,
     /// Cells of which no velocity is computed.
     orphans: Vec<Orphan>,
+    /// Dense numbers and storage indices of the cells inside the solid.
+    solid: Vec<(usize, usize)>,
 }
 
 /// K⁻¹ is kept if it has at most so many entries per cell of the grid: its product then costs less than a few of the box's
@@ -73,7 +75,7 @@ impl CutPressure {
         metrics: &Metrics<D>,
         boundaries: &Boundaries<D>,
     ) -> Self {
-        let Regions { cells, orphans, floating } = Regions::new(cuts, grid, metrics, boundaries);
+        let Regions { cells, orphans, solid, floating } = Regions::new(cuts, grid, metrics, boundaries);
         let row = grid.cells()[0];
         let start = |r: usize| cells.partition_point(|cut| cut.cell < r * row);
         let m = cells.len();
@@ -91,6 +93,7 @@ impl CutPressure {
             recent: None,
             iterations: 0,
             orphans,
+            solid: solid.into_iter().map(|cell| (cell, grid.place(grid.cell(cell)))).collect(),
         }
     }
 
@@ -187,6 +190,8 @@ impl CutPressure {
             };
             let goal = goal * goal * scale;
             if enough || square(&self.residual) <= goal {
+                // What the box's equation makes of the solid would bear on sides of the box that it touches.
+                self.solid.iter().for_each(|&(cell, _)| phi[cell] = 0.0);
                 return Ok(());
             }
             if corrections > 0 {
@@ -270,6 +275,11 @@ impl CutPressure {
         for (cut, source) in self.cells[cells.clone()].iter().zip(&sources[cells]) {
             row[cut.cell - r * self.row] += source;
         }
+    }
+
+    /// Takes the pressure out of the solid.
+    pub(super) fn start<const D: usize>(&self, pressure: &mut Field<D>) {
+        self.solid.iter().for_each(|&(_, at)| pressure.data_mut()[at] = 0.0);
     }
 
     /// Gives the cells of which no velocity is computed the mean pressure of their neighbours.

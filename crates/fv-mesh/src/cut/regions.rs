@@ -11,6 +11,8 @@ pub(super) struct Regions {
     pub(super) cells: Vec<CutCell>,
     /// Cells of which no velocity is computed, in order.
     pub(super) orphans: Vec<Orphan>,
+    /// Dense numbers of the cells with closed faces only, in order.
+    pub(super) solid: Vec<usize>,
     /// No pressure is given at any side.
     pub(super) floating: bool,
 }
@@ -77,7 +79,10 @@ impl Regions {
             closed.iter_mut().for_each(|c| c.1 /= volume);
             CutCell { cell, volume, closed, scale: whole / (whole - shut), floats: roots.floats(cell) }
         });
-        Self { cells: cells.collect(), orphans, floating: roots.floating.is_some() }
+        let cells = cells.collect();
+        let mut solid: Vec<usize> = solid.into_iter().collect();
+        solid.sort_unstable();
+        Self { cells, orphans, solid, floating: roots.floating.is_some() }
     }
 }
 

@@ -34,7 +34,7 @@ impl<const D: usize> Projection<D> {
     }
 
     fn place(&mut self, cuts: CutWalls) -> Result<(), FlowError> {
-        let FlowState { grid, metrics, boundaries, velocity, .. } = &mut self.state;
+        let FlowState { grid, metrics, boundaries, velocity, pressure, .. } = &mut self.state;
         check(&cuts, grid, metrics)?;
         match &mut self.walls {
             Some(walls) if walls.cuts.same_shape(&cuts) => walls.cuts = cuts,
@@ -45,9 +45,10 @@ impl<const D: usize> Projection<D> {
             }
         }
         if let Some(walls) = &self.walls {
-            walls.start(&mut velocity.components);
+            walls.start(&mut velocity.components, pressure);
         }
         self.state.fill_velocity();
+        self.state.fill_pressure();
         self.state.measure_rates();
         Ok(())
     }

@@ -190,7 +190,9 @@ pub fn passing<const D: usize>(
 /// Those of grid, flow and forcing.
 pub fn turning(per_diameter: usize, forcing: Box<dyn Forcing>, diffusion: Diffusion) -> Outcome<f64> {
     let (edge, h) = (8.0, 1.0 / per_diameter as f64);
-    let axis = |shift| gathered(edge, h, [0.5 * edge - 1.3, 0.5 * edge + 1.3], 1.15, shift);
+    // Equal cells as far as the widest kernel reaches.
+    let patch = [-1.0, 1.0].map(|side| 0.5 * edge + side * (0.5 + 10.0 * h));
+    let axis = |shift| gathered(edge, h, patch, 1.15, shift);
     let grid = CartesianGrid::from_axes([axis(0.37)?, axis(0.3)?, axis(0.11)?])?;
     let flow = Projection::new(grid, Side::WALL.everywhere(), Fluid { density: 1.0, viscosity: 1.0 })?
         .with_diffusion(diffusion);

@@ -63,7 +63,7 @@ const DENSE: usize = 40;
 /// Residuals of K σ, over its terms, below which σ is good …
 const EXACT: f64 = 1e-11;
 /// … and those at which iterations stop, at the latest after so many …
-const TOLERANCE: f64 = 1e-7;
+const TOLERANCE: f64 = 1e-6;
 const MOST: usize = 200;
 /// … unless what is found then is so many times worse.
 const SLACK: f64 = 10.0;

@@ -292,7 +292,7 @@ proptest! {
         for dense in [true, false] {
             let worst = largest_residual(sides[seed].clone(), [7, 6], &opens, dense);
             // All faces may be open by a tenth only: a condition number of some thousands.
-            prop_assert!(worst < if dense { 1e-11 } else { 1e-6 }, "{worst}");
+            prop_assert!(worst < if dense { 1e-11 } else { 1e-5 }, "{worst}");
         }
         let worst = largest_residual([Side::Periodic.both(), Side::WALL.both(), Side::WALL.both()], [4, 5, 3], &opens, true);
         prop_assert!(worst < 1e-11, "{worst}");

@@ -1,12 +1,12 @@
 //! What the cuts of walls at rest cost, in ns of CPU time per cut or closed face: `cargo bench -p ibm --bench cut_walls`; `-- mesh` takes only
 //! the rows with this word. A body of 5 % of a periodic box, best of several places.
+mod support;
+
 use cpu_time::ProcessTime;
 use ibm::{TriangleMesh, cut_walls};
-use interfaces::{
-    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Lattice, Nodes, Point, Pose, Rotation, Solid, Twist,
-    Vector, VelocityField,
-};
+use interfaces::{Lattice, Nodes, Pose, Rotation, Solid, Vector, VelocityField};
 use std::f64::consts::PI;
+use support::{Ball, Brick, Equal};
 
 /// A velocity field of zeros: component c on the lower faces along axis c of a periodic unit box.
 struct Staggered {
@@ -39,68 +39,6 @@ impl VelocityField for Staggered {
     }
 }
 
-/// A disc or sphere.
-struct Ball {
-    radius: f64,
-    dim: usize,
-}
-
-impl Solid for Ball {
-    fn signed_distance(&self, x: Point, _: f64) -> f64 {
-        x.coords.norm() - self.radius
-    }
-    fn aabb(&self) -> Aabb {
-        let mut half = Vector::repeat(self.radius);
-        if self.dim == 2 {
-            half.z = 0.0;
-        }
-        Aabb::around(Point::origin(), half)
-    }
-}
-
-/// A box of these half-widths.
-struct Brick(Vector);
-
-impl Solid for Brick {
-    fn signed_distance(&self, x: Point, _: f64) -> f64 {
-        let q = x.coords.abs() - self.0;
-        q.map(|q| q.max(0.0)).norm() + q.max().min(0.0)
-    }
-    fn aabb(&self) -> Aabb {
-        Aabb::around(Point::origin(), self.0)
-    }
-}
-
-/// One body at rest.
-struct One {
-    solid: Box<dyn Solid>,
-    pose: Pose,
-}
-
-impl Kinematics for One {
-    fn n_bodies(&self) -> usize {
-        1
-    }
-    fn pose(&self, _: BodyId) -> Pose {
-        self.pose
-    }
-    fn twist(&self, _: BodyId) -> Twist {
-        Twist::default()
-    }
-}
-
-impl Bodies for One {
-    fn solid(&self, _: BodyId) -> &dyn Solid {
-        &*self.solid
-    }
-    fn inertia(&self, _: BodyId) -> Inertia {
-        Inertia { mass: 1.0, volume: 1.0, tensor: nalgebra::Matrix3::identity() }
-    }
-    fn freedom(&self, _: BodyId) -> Freedom {
-        Freedom::NONE
-    }
-}
-
 fn row<const D: usize>(name: &str, cells: usize, solid: impl Solid + 'static) {
     let only = std::env::args().skip(1).find(|a| !a.starts_with('-'));
     if only.is_some_and(|o| !name.contains(&o)) {
@@ -108,12 +46,12 @@ fn row<const D: usize>(name: &str, cells: usize, solid: impl Solid + 'static) {
     }
     let field = Staggered::new::<D>(cells);
     let flat = if D == 2 { 0.0 } else { 1.0 };
-    let mut body = One { solid: Box::new(solid), pose: Pose::at([0.5, 0.5, 0.5 * flat]) };
+    let mut body = Equal { solid: Box::new(solid), poses: vec![Pose::at([0.5, 0.5, 0.5 * flat])] };
     let (mut best, mut faces, mut links) = (f64::INFINITY, 0, 0);
     for step in 0..20 {
         let s = f64::from(step);
-        body.pose.position += Vector::new(0.13, 0.17, 0.11 * flat) / cells as f64;
-        body.pose.orientation = Rotation::from_euler_angles(0.3 * s * flat, 0.2 * s * flat, 0.7 * s);
+        body.poses[0].position += Vector::new(0.13, 0.17, 0.11 * flat) / cells as f64;
+        body.poses[0].orientation = Rotation::from_euler_angles(0.3 * s * flat, 0.2 * s * flat, 0.7 * s);
         let start = ProcessTime::now();
         let walls = cut_walls(&field, &body).expect("a body that the grid sees");
         let time = start.elapsed().as_secs_f64();

@@ -7,67 +7,15 @@
 //! 3. Tessellated spheres against triangles.
 //! 4. Cubes, and the paper's rule.
 //! 5. Bodies at rest.
+mod support;
+
 use cpu_time::ProcessTime;
 use ibm::{FractionRule, SolidFraction, TriangleMesh};
-use interfaces::{
-    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Lattice, Nodes, Point, Pose, Rotation, Solid, Twist,
-    Vector,
-};
+use interfaces::{BodyId, Lattice, Nodes, Pose, Rotation, Solid, Vector};
+use support::{Ball, Brick, Equal};
 
-/// Equal bodies.
-struct Equal {
-    solid: Box<dyn Solid>,
-    poses: Vec<Pose>,
-}
-
-impl Kinematics for Equal {
-    fn n_bodies(&self) -> usize {
-        self.poses.len()
-    }
-    fn pose(&self, b: BodyId) -> Pose {
-        self.poses[b.0]
-    }
-    fn twist(&self, _: BodyId) -> Twist {
-        Twist::default()
-    }
-}
-
-impl Bodies for Equal {
-    fn solid(&self, _: BodyId) -> &dyn Solid {
-        &*self.solid
-    }
-    fn inertia(&self, _: BodyId) -> Inertia {
-        Inertia { mass: 1.0, volume: 1.0, tensor: nalgebra::Matrix3::identity() }
-    }
-    fn freedom(&self, _: BodyId) -> Freedom {
-        Freedom::NONE
-    }
-}
-
-/// A sphere of diameter 1.
-struct Sphere;
-
-impl Solid for Sphere {
-    fn signed_distance(&self, x: Point, _: f64) -> f64 {
-        x.coords.norm() - 0.5
-    }
-    fn aabb(&self) -> Aabb {
-        Aabb::around(Point::origin(), Vector::repeat(0.5))
-    }
-}
-
-/// A cube of edge 1.
-struct Cube;
-
-impl Solid for Cube {
-    fn signed_distance(&self, x: Point, _: f64) -> f64 {
-        let q = x.coords.abs() - Vector::repeat(0.5);
-        q.map(|q| q.max(0.0)).norm() + q.max().min(0.0)
-    }
-    fn aabb(&self) -> Aabb {
-        Aabb::around(Point::origin(), Vector::repeat(0.5))
-    }
-}
+/// Of diameter 1.
+const SPHERE: Ball = Ball { radius: 0.5, dim: 3 };
 
 /// A periodic box of edge `length` with so many cells per metre.
 fn lattice(cells: usize, length: usize) -> Lattice {
@@ -154,13 +102,13 @@ fn main() {
     };
     for cells in [10, 20, 40] {
         let name = format!("one sphere, {cells} cells per D");
-        table.row(&name, one(Box::new(Sphere)), [cells, 2], sphere, FractionRule::CutVolume);
+        table.row(&name, one(Box::new(SPHERE)), [cells, 2], sphere, FractionRule::CutVolume);
         mesh("", 5, cells);
     }
     for edge in [2, 4, 8] {
         let centres = (0..edge * edge * edge).map(|i| [i % edge, i / edge % edge, i / (edge * edge)]);
         let poses = centres.map(|c| Pose::at(c.map(|x| 1.2 * x as f64 + 0.6))).collect();
-        let bodies = Equal { solid: Box::new(Sphere), poses };
+        let bodies = Equal { solid: Box::new(SPHERE), poses };
         let name = format!("{} spheres, 10 cells per D", edge * edge * edge);
         table.row(&name, bodies, [10, 2 * edge], sphere, FractionRule::CutVolume);
     }
@@ -169,17 +117,17 @@ fn main() {
     }
     for cells in [10, 20, 40] {
         let name = format!("cube, {cells} cells per edge");
-        table.row(&name, one(Box::new(Cube)), [cells, 2], 1.0, FractionRule::CutVolume);
+        table.row(&name, one(Box::new(Brick(Vector::repeat(0.5)))), [cells, 2], 1.0, FractionRule::CutVolume);
     }
     let name = "sphere, the paper's rule, 20 cells per D";
-    table.row(name, one(Box::new(Sphere)), [20, 2], sphere, FractionRule::Centroid);
+    table.row(name, one(Box::new(SPHERE)), [20, 2], sphere, FractionRule::Centroid);
 
     if !table.wants("at rest") {
         return;
     }
     let poses =
         (0..512).map(|i| Pose::at([i % 8, i / 8 % 8, i / 64].map(|x| 1.2 * f64::from(x) + 0.6))).collect();
-    let (bodies, lattice) = (Equal { solid: Box::new(Sphere), poses }, lattice(10, 10));
+    let (bodies, lattice) = (Equal { solid: Box::new(SPHERE), poses }, lattice(10, 10));
     let mut fraction = SolidFraction::new();
     fraction.update(&lattice, &bodies).expect("bodies on a grid");
     let start = ProcessTime::now();

@@ -4,84 +4,15 @@
 //! 1. Distances of all cells from 1 to 512 spheres and a cube on 128³ cells, and from a mesh on 48³: from scratch, after all bodies
 //!    moved, after one moved, at rest.
 //! 2. Rows around a sphere and 512 of them: placed, filled, at rest.
+mod support;
+
 use cpu_time::ProcessTime;
 use ibm::{TriangleMesh, WallDistance, WallRows};
-use interfaces::{
-    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Lattice, Nodes, Point, Pose, Rotation, Solid,
-    SurfaceElement, Twist, Vector,
-};
+use interfaces::{Lattice, Nodes, Pose, Rotation, Solid, Vector};
+use support::{Ball, Brick, Equal};
 
-/// Equal bodies.
-struct Equal {
-    solid: Box<dyn Solid>,
-    poses: Vec<Pose>,
-}
-
-impl Kinematics for Equal {
-    fn n_bodies(&self) -> usize {
-        self.poses.len()
-    }
-    fn pose(&self, b: BodyId) -> Pose {
-        self.poses[b.0]
-    }
-    fn twist(&self, _: BodyId) -> Twist {
-        Twist::default()
-    }
-}
-
-impl Bodies for Equal {
-    fn solid(&self, _: BodyId) -> &dyn Solid {
-        &*self.solid
-    }
-    fn inertia(&self, _: BodyId) -> Inertia {
-        Inertia { mass: 1.0, volume: 1.0, tensor: nalgebra::Matrix3::identity() }
-    }
-    fn freedom(&self, _: BodyId) -> Freedom {
-        Freedom::NONE
-    }
-}
-
-/// A sphere of diameter 1.
-struct Sphere;
-
-impl Solid for Sphere {
-    fn signed_distance(&self, x: Point, _: f64) -> f64 {
-        x.coords.norm() - 0.5
-    }
-    fn normal(&self, x: Point, _: f64) -> Vector {
-        x.coords.try_normalize(0.0).unwrap_or_default()
-    }
-    fn aabb(&self) -> Aabb {
-        Aabb::around(Point::origin(), Vector::repeat(0.5))
-    }
-    /// Equal areas on a Fibonacci spiral.
-    fn surface(&self, spacing: f64, offset: f64) -> Option<Vec<SurfaceElement>> {
-        let r = 0.5 + offset;
-        let all = 4.0 * std::f64::consts::PI * r * r;
-        let n = (all / (spacing * spacing)).ceil();
-        let element = |i: u32| {
-            let z = 1.0 - (2.0 * f64::from(i) + 1.0) / n;
-            let (sin, cos) = (2.399_963_229_728_653 * f64::from(i)).sin_cos();
-            let around = (1.0 - z * z).sqrt();
-            let normal = Vector::new(around * cos, around * sin, z);
-            SurfaceElement { point: Point::from(r * normal), normal, area: all / n }
-        };
-        Some((0..n as u32).map(element).collect())
-    }
-}
-
-/// A cube of edge 1.
-struct Cube;
-
-impl Solid for Cube {
-    fn signed_distance(&self, x: Point, _: f64) -> f64 {
-        let q = x.coords.abs() - Vector::repeat(0.5);
-        q.map(|q| q.max(0.0)).norm() + q.max().min(0.0)
-    }
-    fn aabb(&self) -> Aabb {
-        Aabb::around(Point::origin(), Vector::repeat(0.5))
-    }
-}
+/// Of diameter 1.
+const SPHERE: Ball = Ball { radius: 0.5, dim: 3 };
 
 /// A periodic cube of `n` cells per edge, `length` wide.
 fn lattice(n: usize, length: f64) -> Lattice {
@@ -145,7 +76,7 @@ fn distances(name: &str, mut bodies: Equal, n: usize, repeat: usize) {
 }
 
 fn rows(edge: usize, cells_per_diameter: usize, repeat: usize) {
-    let mut bodies = crowd(Box::new(Sphere), edge);
+    let mut bodies = crowd(Box::new(SPHERE), edge);
     let length = (1.25 * edge as f64).max(2.5);
     let n = (length * cells_per_diameter as f64).round() as usize;
     let lattice = lattice(n, length);
@@ -183,9 +114,9 @@ fn main() {
     let wants = |part: &str| only.as_ref().is_none_or(|only| only == part);
     if wants("distances") {
         for edge in [1, 2, 4, 8] {
-            distances("spheres", crowd(Box::new(Sphere), edge), 128, repeat);
+            distances("spheres", crowd(Box::new(SPHERE), edge), 128, repeat);
         }
-        distances("cube", crowd(Box::new(Cube), 1), 128, repeat);
+        distances("cube", crowd(Box::new(Brick(Vector::repeat(0.5))), 1), 128, repeat);
         let mesh = TriangleMesh::sphere(0.5, 5).expect("a sphere");
         distances(&format!("{} triangles", mesh.n_faces()), crowd(Box::new(mesh), 1), 48, repeat);
     }

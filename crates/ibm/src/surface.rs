@@ -118,8 +118,8 @@ impl<'a> Marcher<'a> {
         let middle = Point::from(point / area);
         // The middle of a bent piece is a little behind the surface.
         let behind = self.solid.signed_distance(middle, self.band) - self.offset;
-        let least = 0.25 * self.spacing;
-        Some(SurfaceElement { point: middle - normal * behind.clamp(-least, least), normal, area })
+        let farthest = 0.25 * self.spacing;
+        Some(SurfaceElement { point: middle - normal * behind.clamp(-farthest, farthest), normal, area })
     }
 }
 

@@ -1,3 +1,4 @@
+use super::recent::Recent;
 use super::*;
 use crate::boundary::Boundaries;
 use crate::flow_state::each_cell;
@@ -202,6 +203,29 @@ fn walls_that_stay_cost_nothing() {
     assert!(flow.wall_impulses().is_empty());
 }
 
+/// The pressure equation with so much open of the faces inside a unit box, and the box's solver.
+fn cut_pressure<const D: usize>(
+    grid: &CartesianGrid<D>,
+    sides: [[Side; 2]; D],
+    mut open: impl FnMut(usize, [usize; D]) -> f64,
+) -> (CutPressure, Pressure<D>, CutWalls) {
+    let sides = Sides::new(sides).unwrap();
+    let periodic = std::array::from_fn(|a| sides.periodic(a));
+    let metrics = Metrics::new(grid, periodic);
+    let boundaries = Boundaries::new(grid, sides, &metrics).unwrap();
+    let mut walls = CutWalls { n_bodies: 1, ..CutWalls::default() };
+    for c in 0..D {
+        each_cell(grid, |index, cell| {
+            let open = open(c, cell);
+            if (periodic[c] || cell[c] > 0) && open < 1.0 {
+                walls.components[c].faces.push(face(index, open));
+            }
+        });
+    }
+    let solver = Pressure::new(grid, &boundaries, PressureSolver::Auto).unwrap();
+    (CutPressure::new(&walls, grid, &metrics, &boundaries), solver, walls)
+}
+
 /// Solves with random faces cut, then applies the operator: the largest residual over the largest term.
 fn largest_residual<const D: usize>(
     sides: [[Side; 2]; D],
@@ -210,24 +234,11 @@ fn largest_residual<const D: usize>(
     dense: bool,
 ) -> f64 {
     let grid = CartesianGrid::new(cells, [1.0; D]).unwrap();
-    let sides = Sides::new(sides).unwrap();
-    let metrics = Metrics::new(&grid, std::array::from_fn(|a| sides.periodic(a)));
-    let boundaries = Boundaries::new(&grid, sides, &metrics).unwrap();
-    let mut solver = Pressure::new(&grid, &boundaries, PressureSolver::Auto).unwrap();
-    let mut walls = CutWalls { n_bodies: 1, ..CutWalls::default() };
-    let mut shares: [HashMap<usize, f64>; D] = std::array::from_fn(|_| HashMap::new());
+    let periodic: [bool; D] = std::array::from_fn(|a| matches!(sides[a][0], Side::Periodic));
     let mut opens = opens.iter().cycle();
-    for c in 0..D {
-        each_cell(&grid, |index, cell| {
-            let inside = metrics.periodic[c] || cell[c] > 0;
-            let open = *opens.next().unwrap();
-            if inside && open < 1.0 {
-                walls.components[c].faces.push(face(index, open));
-                shares[c].insert(index, open);
-            }
-        });
-    }
-    let mut pressure = CutPressure::new(&walls, &grid, &metrics, &boundaries);
+    let (mut pressure, mut solver, walls) = cut_pressure(&grid, sides, |_, _| *opens.next().unwrap());
+    let shares: [HashMap<usize, f64>; D] =
+        std::array::from_fn(|c| walls.components[c].faces.iter().map(|f| (f.index, f.open)).collect());
     let mut phi = vec![0.0; grid.n_cells()];
     if dense {
         pressure.invert(&mut solver, &mut phi).unwrap();
@@ -247,7 +258,7 @@ fn largest_residual<const D: usize>(
             for up in [false, true] {
                 let mut next = cell;
                 let last = cells[a] - 1;
-                next[a] = match (up, cell[a], metrics.periodic[a]) {
+                next[a] = match (up, cell[a], periodic[a]) {
                     (true, i, false) if i == last => continue,
                     (false, 0, false) => continue,
                     (true, i, _) => {
@@ -297,6 +308,32 @@ proptest! {
         let worst = largest_residual([Side::Periodic.both(), Side::WALL.both(), Side::WALL.both()], [4, 5, 3], &opens, true);
         prop_assert!(worst < 1e-11, "{worst}");
     }
+}
+
+/// Iterations from nothing around a ball do not grow with the grid.
+#[test]
+fn finer_cells_take_no_more_iterations() {
+    let iterations = [12, 24, 48].map(|n: usize| {
+        let grid = CartesianGrid::new([n; 3], [1.0; 3]).unwrap();
+        let inside = |cell: [usize; 3]| {
+            let x = cell.map(|i| (i as f64 + 0.5) / n as f64 - 0.5);
+            x.iter().map(|x| x * x).sum::<f64>() < 0.09
+        };
+        let (mut pressure, mut solver, _) = cut_pressure(&grid, Side::Periodic.everywhere(), |c, cell| {
+            let mut below = cell;
+            below[c] = (cell[c] + n - 1) % n;
+            f64::from(u8::from(!inside(cell) && !inside(below)))
+        });
+        pressure.recent = Some(Recent::new(pressure.missing.len()));
+        // A jet that the ball parts.
+        let mut phi = vec![0.0; n * n * n];
+        let source = |x: usize| f64::from(u8::from(x == 0)) - f64::from(u8::from(x == n / 4));
+        let fill = |_: usize, row: &mut [f64]| row.iter_mut().enumerate().for_each(|(x, f)| *f = source(x));
+        pressure.solve(&mut solver, fill, &mut phi).unwrap();
+        pressure.iterations
+    });
+    println!("iterations at 12³, 24³, 48³: {iterations:?}");
+    assert!(iterations[0] > 5 && iterations[2] <= iterations[0] + 3, "{iterations:?}");
 }
 
 /// A region that walls close in has the pressure that its own sources make, and passes nothing on.

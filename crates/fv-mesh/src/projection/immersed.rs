@@ -12,7 +12,7 @@ impl<const D: usize> Projection<D> {
     /// viscosities do not see the walls. The pressure solver should be the direct one: an iterative one has to be as exact as
     /// the faces' equation is to be solved.
     ///
-    /// Walls that are where the last ones were cost nothing; new ones take a solution of the pressure equation per cut face,
+    /// Walls that are where the last ones were cost nothing; new ones take a solution of the pressure equation per cut cell,
     /// unless there are many.
     ///
     /// # Errors

@@ -3,9 +3,9 @@ use crate::boundary::{Boundaries, Extrapolation, Lines};
 use crate::grid::GHOSTS;
 use crate::kernels::layers_per_task;
 use crate::metrics::Metrics;
+use crate::parts::each_pair;
 use crate::{CartesianGrid, Field};
 use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
 /// Solves (1 − κ_x L_x)(1 − κ_y L_y)(1 − κ_z L_z) δ = r for the change δ of one velocity component, L_a the second
 /// difference along axis a, κ = ½ν dt (Crank–Nicolson; factorisation error of order dt³: Kim & Moin 1985). Axes with
@@ -238,20 +238,19 @@ impl<const D: usize> Sweeps<D> {
         }
         let per_task = layers_per_task(self.grid.cells()[D - 1]);
         let grid = &self.grid;
-        delta.layers_mut().par_chunks_mut(layer * per_task).zip(&mut self.scratch).for_each(
-            |(layers, scratch)| {
-                if a == 0 {
-                    Arch::new().dispatch(AlongX { grid, factor, layers, scratch });
-                    return;
-                }
-                let s = grid.stride()[1];
-                for layer in layers.chunks_exact_mut(layer) {
-                    let sums = &mut scratch[..grid.cells()[0]];
-                    let rows = |i: usize| (GHOSTS + first + i) * s + GHOSTS;
-                    Arch::new().dispatch(Sweep { factor, data: layer, rows, sums });
-                }
-            },
-        );
+        each_pair(delta.layers_mut(), &mut self.scratch, [layer * per_task, 1], &|_, layers, scratch| {
+            let scratch = &mut scratch[0];
+            if a == 0 {
+                Arch::new().dispatch(AlongX { grid, factor, layers, scratch });
+                return;
+            }
+            let s = grid.stride()[1];
+            for layer in layers.chunks_exact_mut(layer) {
+                let sums = &mut scratch[..grid.cells()[0]];
+                let rows = |i: usize| (GHOSTS + first + i) * s + GHOSTS;
+                Arch::new().dispatch(Sweep { factor, data: layer, rows, sums });
+            }
+        });
     }
 
     /// Solves line by line, where the ends differ from line to line.

@@ -39,6 +39,7 @@ mod metrics;
 mod momentum_matrix;
 pub mod operators;
 mod output;
+mod parts;
 mod per_dimension;
 mod piso;
 pub mod poisson;

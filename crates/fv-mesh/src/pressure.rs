@@ -2,7 +2,7 @@
 use crate::CartesianGrid;
 use crate::boundary::{Boundaries, FaceKind};
 use crate::poisson::multigrid::{MultigridCg, MultigridParams};
-use crate::poisson::{AxisBounds, Poisson, PoissonAxis, PoissonChoice, PoissonError, PoissonInfo};
+use crate::poisson::{AxisBounds, Poisson, PoissonAxis, PoissonChoice, PoissonError, PoissonInfo, Rows};
 
 /// Solver of the pressure equation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -115,10 +115,7 @@ impl<const D: usize> Pressure<D> {
     }
 
     /// Solves for the right-hand side that `fill` makes row by row; `phi` holds the last correction and receives the new one.
-    pub(crate) fn solve_rows<F>(&mut self, fill: F, phi: &mut [f64]) -> Result<(), PoissonError>
-    where
-        F: Fn(usize, &mut [f64]) + Sync,
-    {
+    pub(crate) fn solve_rows(&mut self, fill: Rows<'_>, phi: &mut [f64]) -> Result<(), PoissonError> {
         self.info = match &mut self.solver {
             Solver::Direct(solver) => solver.solve_rows(fill, phi)?,
             Solver::Multigrid(solver) => solver.solve_rows(fill, phi, true)?,

@@ -2,9 +2,9 @@
 use super::{Expression, GridMismatch, Operand, RowExpression, RowPlace};
 use crate::grid::GHOSTS;
 use crate::kernels::layers_per_task;
+use crate::parts::each_part;
 use crate::{CartesianGrid, Field, Integrals};
 use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
 impl<const D: usize> Field<D> {
     /// The field f(x) at the centres x \[m\] of the cells; ghosts are 0.
@@ -85,16 +85,16 @@ impl<const D: usize> Field<D> {
         let layer = grid.stride()[D - 1];
         let layers = grid.cells()[D - 1];
         let per_task = layers_per_task(layers);
-        let run = |(task, out): (usize, &mut [f64])| {
+        let run = |task: usize, out: &mut [f64]| {
             let first = task * per_task;
             let end = (first + per_task).min(layers);
             let start = (GHOSTS + first) * layer;
             Arch::new().dispatch(Evaluate { grid: &grid, expression, f: &f, layers: first..end, start, out });
         };
         if grid.n_cells() < WORTH_THREADS {
-            self.layers_mut().chunks_mut(layer * per_task).enumerate().for_each(run);
+            self.layers_mut().chunks_mut(layer * per_task).enumerate().for_each(|(task, out)| run(task, out));
         } else {
-            self.layers_mut().par_chunks_mut(layer * per_task).enumerate().for_each(run);
+            each_part(self.layers_mut(), layer * per_task, &run);
         }
     }
 }

@@ -3,12 +3,11 @@ use super::recent::Recent;
 use super::regions::{CutCell, Orphan, Regions};
 use crate::boundary::Boundaries;
 use crate::metrics::Metrics;
-use crate::poisson::PoissonError;
+use crate::poisson::{PoissonError, Rows};
 use crate::pressure::Pressure;
 use crate::{CartesianGrid, Field, FlowError};
-use faer::Mat;
-use faer::linalg::solvers::DenseSolveCore;
 use interfaces::CutWalls;
+use monomorphic::Mat;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -26,7 +25,7 @@ use std::ops::Range;
 /// others. Cells of the solid keep the box's equation, and nothing in the fluid depends on them: σ is a layer of sources along the
 /// walls whose normal derivative is given, an integral equation of the second kind (Hsiao & Wendland 2008, *Boundary Integral
 /// Equations*, § 1.4). So the condition number of K does not depend on the cells' size. (Dipoles on the closed faces, whose matrix is
-/// symmetric, take as many iterations as there are cells along the walls: seven times as many at 64³.)
+/// symmetric, have one that grows with the number of cells along the walls.)
 ///
 /// Few cells: K⁻¹ is kept, and a solution takes two of the box's (the capacitance matrix method: Buzbee, Dorr, George & Golub
 /// 1971). Many: [`Recent`] starts from the last σ and what is known of K from the last solutions, one of the box's for each new
@@ -129,7 +128,7 @@ impl CutPressure {
             self.product.iter().enumerate().for_each(|(i, value)| matrix[(i, j)] = *value);
         }
         phi.fill(0.0);
-        let inverse = matrix.partial_piv_lu().inverse();
+        let inverse = monomorphic::inverse(matrix.as_ref());
         let inverse: Vec<f64> = (0..m * m).map(|k| inverse[(k / m, k % m)]).collect();
         if !inverse.iter().all(|value| value.is_finite()) {
             return Err(FlowError::Walls { cells: m });
@@ -150,7 +149,7 @@ impl CutPressure {
             row.fill(0.0);
             self.add_sources(r, &self.direction, row);
         };
-        solver.solve_rows(rows, phi)?;
+        solver.solve_rows(&rows, phi)?;
         for ((product, source), cut) in self.product.iter_mut().zip(&mut self.direction).zip(&self.cells) {
             *product = cut.scale * (*source - cut.taken(phi)) + mean;
             *source += mean;
@@ -162,21 +161,18 @@ impl CutPressure {
     ///
     /// # Errors
     /// Those of the solver; [`PoissonError::NotConverged`].
-    pub(crate) fn solve<const D: usize, F>(
+    pub(crate) fn solve<const D: usize>(
         &mut self,
         solver: &mut Pressure<D>,
-        fill: F,
+        fill: Rows<'_>,
         phi: &mut [f64],
-    ) -> Result<(), PoissonError>
-    where
-        F: Fn(usize, &mut [f64]) + Sync,
-    {
+    ) -> Result<(), PoissonError> {
         let whole = |this: &Self, solver: &mut Pressure<D>, phi: &mut [f64]| {
             let rows = |r: usize, row: &mut [f64]| {
                 fill(r, row);
                 this.add_sources(r, &this.missing, row);
             };
-            solver.solve_rows(rows, phi)
+            solver.solve_rows(&rows, phi)
         };
         self.iterations = 0;
         let mut corrections = 0;

@@ -249,7 +249,7 @@ fn largest_residual<const D: usize>(
     f.iter_mut().for_each(|f| *f -= mean);
     let n = cells[0];
     pressure
-        .solve(&mut solver, |r, row: &mut [f64]| row.copy_from_slice(&f[r * n..][..n]), &mut phi)
+        .solve(&mut solver, &|r, row: &mut [f64]| row.copy_from_slice(&f[r * n..][..n]), &mut phi)
         .unwrap();
     let (mut worst, mut scale) = (0.0_f64, 0.0_f64);
     each_cell(&grid, |index, cell| {
@@ -329,7 +329,7 @@ fn finer_cells_take_no_more_iterations() {
         let mut phi = vec![0.0; n * n * n];
         let source = |x: usize| f64::from(u8::from(x == 0)) - f64::from(u8::from(x == n / 4));
         let fill = |_: usize, row: &mut [f64]| row.iter_mut().enumerate().for_each(|(x, f)| *f = source(x));
-        pressure.solve(&mut solver, fill, &mut phi).unwrap();
+        pressure.solve(&mut solver, &fill, &mut phi).unwrap();
         pressure.iterations
     });
     println!("iterations at 12³, 24³, 48³: {iterations:?}");

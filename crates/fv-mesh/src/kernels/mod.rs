@@ -9,13 +9,13 @@ mod tests;
 pub(crate) use advance::{Advance, LIMITED, LINEAR, Momentum, flux, upwinded};
 pub(crate) use eddy::add_eddy_stress;
 pub(crate) use project::{
-    Conductance, add_dense, change, copy_dense, correct_component, divergence_row,
+    Conductance, add_dense, change, copy_dense, correct_component, divergence, divergence_row,
     subtract_second_differences,
 };
 
 use crate::grid::GHOSTS;
+use crate::parts::{each_pair, each_part};
 use crate::{CartesianGrid, Field};
-use rayon::prelude::*;
 
 /// Layers of the last axis that one task works on.
 pub(crate) fn layers_per_task(layers: usize) -> usize {
@@ -32,7 +32,7 @@ pub(crate) fn for_rows<const D: usize>(
     let layer = grid.stride()[D - 1];
     let (layers, rows) = (grid.cells()[D - 1], grid.rows_per_layer());
     let per_task = layers_per_task(layers);
-    field.layers_mut().par_chunks_mut(layer * per_task).enumerate().for_each(|(task, part)| {
+    each_part(field.layers_mut(), layer * per_task, &|task, part| {
         let first = task * per_task;
         let end = (first + per_task).min(layers);
         f(first * rows..end * rows, (GHOSTS + first) * layer, part);
@@ -49,15 +49,11 @@ pub(crate) fn for_layers<const D: usize>(
     let layer = grid.stride()[D - 1];
     let (layers, rows) = (grid.cells()[D - 1], grid.rows_per_layer());
     let per_task = layers_per_task(layers);
-    a.layers_mut()
-        .par_chunks_mut(layer * per_task)
-        .zip(b.layers_mut().par_chunks_mut(layer * per_task))
-        .enumerate()
-        .for_each(|(task, (a, b))| {
-            let first = task * per_task;
-            let end = (first + per_task).min(layers);
-            f(first * rows..end * rows, (GHOSTS + first) * layer, a, b);
-        });
+    each_pair(a.layers_mut(), b.layers_mut(), [layer * per_task; 2], &|task, a, b| {
+        let first = task * per_task;
+        let end = (first + per_task).min(layers);
+        f(first * rows..end * rows, (GHOSTS + first) * layer, a, b);
+    });
 }
 
 /// Cell numbers along the axes other than x of row `r` = j + n_y k.

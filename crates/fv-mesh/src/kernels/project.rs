@@ -3,9 +3,9 @@ use super::{face_row, for_rows, layers_per_task, row_place};
 use crate::field::row_start;
 use crate::grid::GHOSTS;
 use crate::metrics::Metrics;
+use crate::parts::each_part;
 use crate::{CartesianGrid, Field};
 use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
 /// Divergence of the cells of row `r` times `scale`.
 #[inline(always)]
@@ -30,6 +30,32 @@ pub(crate) fn divergence_row<const D: usize>(
         }
         out[i] = sum;
     }
+}
+
+/// [`divergence_row`] times `scale`, compiled for the processor at hand.
+pub(crate) fn divergence<const D: usize>(
+    grid: &CartesianGrid<D>,
+    metrics: &Metrics<D>,
+    velocity: &[Field<D>; D],
+    scale: f64,
+) -> impl Fn(usize, &mut [f64]) + Sync {
+    struct Row<'a, const D: usize> {
+        grid: &'a CartesianGrid<D>,
+        metrics: &'a Metrics<D>,
+        r: usize,
+        velocity: &'a [Field<D>; D],
+        scale: f64,
+        out: &'a mut [f64],
+    }
+    impl<const D: usize> WithSimd for Row<'_, D> {
+        type Output = ();
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, _: S) {
+            divergence_row(self.grid, self.metrics, self.r, self.velocity, self.scale, self.out);
+        }
+    }
+    let arch = Arch::new();
+    move |r, out| arch.dispatch(Row { grid, metrics, r, velocity, scale, out })
 }
 
 /// What the velocity on a face answers to a gradient of φ.
@@ -162,14 +188,12 @@ pub(crate) fn change<const D: usize>(grid: &CartesianGrid<D>, factor: f64, u: &F
     let layer = grid.stride()[D - 1];
     let per_task = layers_per_task(grid.cells()[D - 1]);
     let (range, _) = u.layer_range();
-    out.layers_mut()
-        .par_chunks_mut(layer * per_task)
-        .zip(u.data()[range].par_chunks(layer * per_task))
-        .for_each(|(out, u)| {
-            for (out, u) in out.iter_mut().zip(u) {
-                *out += factor * u;
-            }
-        });
+    let (u, length) = (&u.data()[range], layer * per_task);
+    each_part(out.layers_mut(), length, &|task, out| {
+        for (out, u) in out.iter_mut().zip(&u[task * length..]) {
+            *out += factor * u;
+        }
+    });
 }
 
 /// p −= Σ_a κ_a ∂²φ/∂x_a², the ghosts of φ filled.

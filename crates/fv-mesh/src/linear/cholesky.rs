@@ -2,13 +2,7 @@
 use super::direct::{self, Pattern};
 use super::error::check_length;
 use super::{DirectInfo, DirectParams, LinearError, LinearOperator, Matrix};
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::solvers::LltError;
-use faer::sparse::SparseColMatRef;
-use faer::sparse::linalg::cholesky::{
-    LltRef, SymbolicCholesky, SymbolicCholeskyRaw, factorize_symbolic_cholesky,
-};
-use faer::{Conj, MatMut, Par, Side};
+use monomorphic::Cholesky;
 
 /// P A Pᵀ = L Lᵀ of a symmetric positive definite matrix with a fill-reducing order, by `faer`. The order is found
 /// once per pattern.
@@ -16,9 +10,7 @@ pub struct SparseCholesky {
     pattern: Pattern,
     /// Places (i, j) and (j, i) of the entries above the diagonal.
     mirrored: Vec<[usize; 2]>,
-    symbolic: SymbolicCholesky<usize>,
-    factor: Vec<f64>,
-    memory: MemBuffer,
+    factors: Cholesky,
     residual: Vec<f64>,
     ready: bool,
 }
@@ -32,7 +24,6 @@ impl SparseCholesky {
     /// # Errors
     /// [`LinearError::Memory`], and as [`refactor`](Self::refactor).
     pub fn new(matrix: &Matrix) -> Result<Self, LinearError> {
-        let memory_error = |_| LinearError::Memory { n: matrix.n(), entries: matrix.as_sprs().nnz() };
         let mut mirrored = Vec::new();
         for row in 0..matrix.n() {
             let start = matrix.parts().0[row];
@@ -42,27 +33,10 @@ impl SparseCholesky {
                 }
             }
         }
-        let symbolic = factorize_symbolic_cholesky(
-            direct::transposed(matrix),
-            Side::Lower,
-            Default::default(),
-            Default::default(),
-        )
-        .map_err(|_| memory_error(()))?;
-        let need =
-            symbolic
-                .factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default())
-                .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
-        let memory = MemBuffer::try_new(need).map_err(|_| memory_error(()))?;
-        let mut cholesky = Self {
-            pattern: Pattern::new(matrix),
-            mirrored,
-            factor: vec![0.0; symbolic.len_val()],
-            symbolic,
-            memory,
-            residual: vec![0.0; matrix.n()],
-            ready: false,
-        };
+        let factors = Cholesky::new(direct::pattern(matrix)).map_err(|e| direct::failure(matrix, e))?;
+        let pattern = Pattern::new(matrix);
+        let residual = vec![0.0; matrix.n()];
+        let mut cholesky = Self { pattern, mirrored, factors, residual, ready: false };
         cholesky.refactor(matrix)?;
         Ok(cholesky)
     }
@@ -77,31 +51,11 @@ impl SparseCholesky {
         direct::check_entries(matrix)?;
         self.check_symmetry(matrix)?;
         self.ready = false;
-        let transposed = SparseColMatRef::new(direct::transposed(matrix), matrix.as_sprs().data());
-        let result = self.symbolic.factorize_numeric_llt(
-            &mut self.factor,
-            transposed,
-            Side::Lower,
-            Default::default(),
-            Par::Seq,
-            MemStack::new(&mut self.memory),
-            Default::default(),
-        );
-        match result {
-            Ok(_) => {
-                self.ready = true;
-                Ok(())
-            }
-            Err(LltError::NonPositivePivot { index }) => {
-                let place = match self.symbolic.raw() {
-                    // Counted from one.
-                    SymbolicCholeskyRaw::Simplicial(_) => index - 1,
-                    SymbolicCholeskyRaw::Supernodal(_) => index,
-                };
-                let row = self.symbolic.perm().map_or(place, |p| p.arrays().0[place]);
-                Err(LinearError::NotPositiveDefinite { row })
-            }
-        }
+        self.factors
+            .factorize(direct::pattern(matrix), matrix.as_sprs().data())
+            .map_err(|e| direct::failure(matrix, e))?;
+        self.ready = true;
+        Ok(())
     }
 
     fn check_symmetry(&self, matrix: &Matrix) -> Result<(), LinearError> {
@@ -141,15 +95,7 @@ impl SparseCholesky {
         if !self.ready {
             return Err(LinearError::Singular { step: 0 });
         }
-        let Self { symbolic, factor, memory, residual, .. } = self;
-        direct::solve_refined(matrix, b, x, residual, params, |v| {
-            let n = v.len();
-            LltRef::new(symbolic, factor).solve_in_place_with_conj(
-                Conj::No,
-                MatMut::from_column_major_slice_mut(v, n, 1),
-                Par::Seq,
-                MemStack::new(memory),
-            );
-        })
+        let Self { factors, residual, .. } = self;
+        direct::solve_refined(matrix, b, x, residual, params, |v| factors.solve(v))
     }
 }

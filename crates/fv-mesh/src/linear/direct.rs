@@ -1,7 +1,7 @@
 //! What the direct solvers have in common.
 use super::criterion::Criterion;
 use super::{LinearError, LinearOperator, Matrix, vector};
-use faer::sparse::SymbolicSparseColMatRef;
+use monomorphic::FactorError;
 
 /// Tolerances of a direct solve: it ends when ‖b − A x‖ ≤ max(relative ‖b‖, absolute), at once as a rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,10 +53,19 @@ impl Pattern {
     }
 }
 
-/// The rows of A as the columns of its transpose.
-pub(super) fn transposed(matrix: &Matrix) -> SymbolicSparseColMatRef<'_, usize> {
+/// For `monomorphic`.
+pub(super) fn pattern(matrix: &Matrix) -> monomorphic::Pattern<'_> {
     let (starts, columns, _) = matrix.parts();
-    SymbolicSparseColMatRef::new_checked(matrix.n(), matrix.n(), starts, None, columns)
+    monomorphic::Pattern { starts, columns }
+}
+
+/// What to say of a matrix without factors.
+pub(super) fn failure(matrix: &Matrix, error: FactorError) -> LinearError {
+    match error {
+        FactorError::Memory => LinearError::Memory { n: matrix.n(), entries: matrix.as_sprs().nnz() },
+        FactorError::NotPositive { row } => LinearError::NotPositiveDefinite { row },
+        FactorError::Singular { step } => LinearError::Singular { step },
+    }
 }
 
 /// The first entry that is not finite.

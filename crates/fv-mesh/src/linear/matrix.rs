@@ -1,7 +1,7 @@
 //! A sparse matrix whose pattern is fixed.
 use super::error::check_length;
 use super::{GaussSeidelSweep, LinearError, LinearOperator, Sweep};
-use rayon::prelude::*;
+use crate::parts::each_part;
 use sprs::CsMat;
 use std::cmp::Ordering;
 
@@ -252,7 +252,7 @@ impl Matrix {
         if out.len() <= ROWS {
             return run(0, out);
         }
-        out.par_chunks_mut(ROWS).enumerate().for_each(|(task, out)| run(task * ROWS, out));
+        each_part(out, ROWS, &|task, out| run(task * ROWS, out));
     }
 
     /// Smallest a_P − Σ_N |a_N| over a_P: not negative if the matrix is diagonally dominant by rows.

@@ -86,9 +86,9 @@ pub(crate) fn assemble<const D: usize>(
 
 fn of_component<const D: usize, const KIND: u8, const EDDY: bool>(c: usize, job: Job<D>, part: Part<D>) {
     match c {
-        0 => split::<D, 0, KIND, EDDY>(job, part),
-        1 => split::<D, 1, KIND, EDDY>(job, part),
-        _ => split::<D, 2, KIND, EDDY>(job, part),
+        0 => split(job, part, run::<D, 0, KIND, EDDY>),
+        1 => split(job, part, run::<D, 1, KIND, EDDY>),
+        _ => split(job, part, run::<D, 2, KIND, EDDY>),
     }
 }
 
@@ -136,13 +136,18 @@ impl<'a, const D: usize> Part<'a, D> {
     }
 }
 
-fn split<const D: usize, const C: usize, const KIND: u8, const EDDY: bool>(job: Job<D>, part: Part<D>) {
+/// Calls `run` for parts of at most [`ROWS`] rows.
+fn split<const D: usize>(job: Job<D>, part: Part<D>, run: fn(Job<D>, Part<D>)) {
     let rows = part.sums.len();
     if rows <= ROWS {
-        return Arch::new().dispatch(Rows::<D, C, KIND, EDDY> { job, part });
+        return run(job, part);
     }
     let (low, high) = part.split(rows / 2, job.grid.cells()[0]);
-    rayon::join(|| split::<D, C, KIND, EDDY>(job, low), || split::<D, C, KIND, EDDY>(job, high));
+    rayon::join(|| split(job, low, run), || split(job, high, run));
+}
+
+fn run<const D: usize, const C: usize, const KIND: u8, const EDDY: bool>(job: Job<D>, part: Part<D>) {
+    Arch::new().dispatch(Rows::<D, C, KIND, EDDY> { job, part });
 }
 
 struct Rows<'a, const D: usize, const C: usize, const KIND: u8, const EDDY: bool> {

@@ -2,9 +2,9 @@
 //! result does not depend on the number of threads.
 use crate::grid::GHOSTS;
 use crate::kernels::layers_per_task;
+use crate::parts::each_part;
 use crate::{CartesianGrid, Field};
 use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
 /// Fills rows along x.
 pub(crate) trait RowKernel<const D: usize>: Sync {
@@ -46,7 +46,7 @@ fn run<const D: usize>(
     out: &mut [f64],
 ) {
     let per_task = layers_per_task(extent[D - 1]);
-    out.par_chunks_mut(shape[0] * per_task).enumerate().for_each(|(task, out)| {
+    each_part(out, shape[0] * per_task, &|task, out| {
         Arch::new().dispatch(Run { grid, extent, kernel, shape, first: task * per_task, out });
     });
 }

@@ -4,7 +4,7 @@ use super::layers::{Backward, Forward, Layout, Scratch};
 use super::modes::Modes;
 use super::transform::AxisTransform;
 use super::tridiagonal::{BlockSolve, LANES, Sweep};
-use super::{AxisBounds, PoissonError, PoissonInfo, PoissonSolver, column};
+use super::{AxisBounds, PoissonError, PoissonInfo, PoissonSolver, Rows, column, rows_of};
 use pulp::bytemuck;
 use rayon::prelude::*;
 use rustfft::num_complex::Complex;
@@ -23,7 +23,10 @@ const CHUNKS: usize = 16;
 /// The residual is a few times what rounding φ costs, 2e-16 (|f| + |φ| Σ 1/h²), at its maximum. It is
 /// larger, though still small, in a box hundreds of times longer along a transformed axis than along a
 /// last axis with Dirichlet ends.
-pub struct DirectPoisson<const D: usize> {
+pub struct DirectPoisson<const D: usize>(Passes);
+
+/// What a solve needs and does, in any dimension.
+struct Passes {
     layout: Layout,
     last: AxisBounds,
     sweep: Sweep,
@@ -96,7 +99,7 @@ impl<const D: usize> DirectPoisson<D> {
         let sweep = Sweep::new(layers, bounds[D - 1], scale, &modes, lambda);
 
         let chunk = complex_layers.div_ceil(CHUNKS);
-        Ok(Self {
+        Ok(Self(Passes {
             last: bounds[D - 1],
             singular: bare && column::free(bounds[D - 1]),
             bare,
@@ -107,7 +110,7 @@ impl<const D: usize> DirectPoisson<D> {
             scratch: (0..complex_layers.div_ceil(chunk)).map(|_| Scratch::new(&x, y.as_ref())).collect(),
             layout: Layout { x, y, modes, nx, rows, layers, chunk },
             sweep,
-        })
+        }))
     }
 
     /// Solves for the right-hand side that `fill` makes row by row: `fill(r, row)` has to write all
@@ -123,28 +126,35 @@ impl<const D: usize> DirectPoisson<D> {
     where
         F: Fn(usize, &mut [f64]) + Sync,
     {
-        self.check_length(phi)?;
-        self.transform(fill);
-        let info = self.take_column()?;
-        self.sweep();
-        self.transform_back(phi);
-        Ok(info)
+        self.0.check_length(phi)?;
+        self.0.transform(&fill);
+        self.0.finish(phi)
     }
+}
 
+impl Passes {
     fn check_length(&self, field: &[f64]) -> Result<(), PoissonError> {
         let cells = self.layout.nx * self.layout.rows * self.layout.layers;
         if field.len() == cells { Ok(()) } else { Err(PoissonError::Length { length: field.len(), cells }) }
     }
 
     /// Right-hand side to spectra.
-    fn transform<F: Fn(usize, &mut [f64]) + Sync>(&mut self, fill: F) {
+    fn transform(&mut self, fill: Rows<'_>) {
         let layout = &self.layout;
         let stride = layout.modes.layer_stride;
         let chunks = self.spectra.par_chunks_mut(layout.chunk * stride);
         chunks.zip(&mut self.scratch).enumerate().for_each(|(c, (spectra, scratch))| {
             let first = c * layout.chunk;
-            pulp::Arch::new().dispatch(Forward { layout, first, fill: &fill, spectra, scratch });
+            pulp::Arch::new().dispatch(Forward { layout, first, fill, spectra, scratch });
         });
+    }
+
+    /// Spectra to φ.
+    fn finish(&mut self, phi: &mut [f64]) -> Result<PoissonInfo, PoissonError> {
+        let info = self.take_column()?;
+        self.sweep();
+        self.transform_back(phi);
+        Ok(info)
     }
 
     /// Gathers the mode that is constant across the layers, makes sure that the right-hand side is
@@ -203,7 +213,7 @@ impl<const D: usize> DirectPoisson<D> {
 
 impl<const D: usize> std::fmt::Debug for DirectPoisson<D> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Layout { nx, rows, layers, .. } = self.layout;
+        let Layout { nx, rows, layers, .. } = self.0.layout;
         let cells = if D == 3 { vec![nx, rows, layers] } else { vec![nx, layers] };
         f.debug_struct("DirectPoisson").field("cells", &cells).finish_non_exhaustive()
     }
@@ -211,12 +221,8 @@ impl<const D: usize> std::fmt::Debug for DirectPoisson<D> {
 
 impl<const D: usize> PoissonSolver<D> for DirectPoisson<D> {
     fn solve(&mut self, rhs_in_phi_out: &mut [f64]) -> Result<PoissonInfo, PoissonError> {
-        self.check_length(rhs_in_phi_out)?;
-        let (nx, rhs) = (self.layout.nx, &*rhs_in_phi_out);
-        self.transform(|r, row| row.copy_from_slice(&rhs[r * nx..(r + 1) * nx]));
-        let info = self.take_column()?;
-        self.sweep();
-        self.transform_back(rhs_in_phi_out);
-        Ok(info)
+        self.0.check_length(rhs_in_phi_out)?;
+        self.0.transform(&rows_of(rhs_in_phi_out, self.0.layout.nx));
+        self.0.finish(rhs_in_phi_out)
     }
 }

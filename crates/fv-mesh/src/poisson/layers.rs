@@ -1,4 +1,5 @@
 //! From rows of the right-hand side to transformed layers and back.
+use super::Rows;
 use super::modes::Modes;
 use super::transform::AxisTransform;
 use pulp::{Simd, WithSimd};
@@ -44,18 +45,18 @@ impl Scratch {
 }
 
 /// Transforms a chunk of complex layers.
-pub(super) struct Forward<'a, F> {
+pub(super) struct Forward<'a> {
     pub(super) layout: &'a Layout,
     /// First complex layer.
     pub(super) first: usize,
-    pub(super) fill: &'a F,
+    pub(super) fill: Rows<'a>,
     pub(super) spectra: &'a mut [Complex<f64>],
     pub(super) scratch: &'a mut Scratch,
 }
 
 // A type rather than a closure: `pulp` compiles the body of `with_simd` for the processor at hand, while
 // a closure that could be called twice is called through a shim that is not.
-impl<F: Fn(usize, &mut [f64])> WithSimd for Forward<'_, F> {
+impl WithSimd for Forward<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -108,13 +109,7 @@ impl Layout {
     /// Fills and transforms complex layer `s`, which carries layer s as real and its mirror across
     /// the centre of the last axis as imaginary part.
     #[inline(always)]
-    fn transform_layer(
-        &self,
-        s: usize,
-        layer: &mut [Complex<f64>],
-        scratch: &mut Scratch,
-        fill: &impl Fn(usize, &mut [f64]),
-    ) {
+    fn transform_layer(&self, s: usize, layer: &mut [Complex<f64>], scratch: &mut Scratch, fill: Rows<'_>) {
         let mirror = self.layers - 1 - s;
         let (a, b) = scratch.rows.split_at_mut(self.nx);
         for j in 0..self.rows {

@@ -46,6 +46,14 @@ pub use direct::DirectPoisson;
 pub use poisson_axis::PoissonAxis;
 pub use separable::SeparablePoisson;
 
+/// Makes rows of a right-hand side: `fill(r, row)`. Not a type parameter, so that the solvers are compiled once.
+pub(crate) type Rows<'a> = &'a (dyn Fn(usize, &mut [f64]) + Sync);
+
+/// Rows of a dense field with `n` cells along x.
+fn rows_of(field: &[f64], n: usize) -> impl Fn(usize, &mut [f64]) + Sync {
+    move |r, row| row.copy_from_slice(&field[r * n..][..n])
+}
+
 /// What holds at the two ends of an axis. "Low" and "high" order the ends along the axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisBounds {

@@ -3,8 +3,9 @@
 //! They act on complex data that carry two real fields at once, one as real and one as imaginary
 //! part. Being linear over the complex numbers they need not tell the two apart.
 use super::AxisBounds;
+use monomorphic::fourier_transforms;
+use rustfft::Fft;
 use rustfft::num_complex::Complex;
-use rustfft::{Fft, FftPlanner};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -25,14 +26,14 @@ pub(super) struct AxisTransform {
 
 impl AxisTransform {
     pub(super) fn new(n: usize, bounds: AxisBounds) -> Self {
-        let mut planner = FftPlanner::new();
+        let [forward, inverse] = fourier_transforms(n);
         let quarter = |k: usize| Complex::from_polar(1.0, -PI * k as f64 / (2 * n) as f64);
         let walls = bounds != AxisBounds::Periodic;
         Self {
             bounds,
             n,
-            forward: planner.plan_fft_forward(n),
-            inverse: planner.plan_fft_inverse(n),
+            forward,
+            inverse,
             twist: if walls { (0..=n / 2).map(quarter).collect() } else { Vec::new() },
         }
     }

@@ -88,7 +88,7 @@ impl<const D: usize> Projection<D> {
             flow.rest_pressure = vec![0.0; rhs.len()];
             let n = flow.state.grid.cells()[0];
             let rows = |r: usize, row: &mut [f64]| row.copy_from_slice(&rhs[r * n..(r + 1) * n]);
-            flow.pressure_solver.solve_rows(rows, &mut flow.rest_pressure)?;
+            flow.pressure_solver.solve_rows(&rows, &mut flow.rest_pressure)?;
         }
         flow.reset_pressure();
         Ok(flow)
@@ -248,25 +248,16 @@ impl<const D: usize> Projection<D> {
         let FlowState { grid, metrics, boundaries, fluid, velocity, pressure, .. } = &mut self.state;
         let velocity = &mut velocity.components;
         let scale = fluid.density / dt;
-        let solved = match &mut self.walls {
-            None => self.pressure_solver.solve_rows(
-                // Called from code that is compiled for the processor at hand.
-                #[inline(always)]
-                |r, row: &mut [f64]| kernels::divergence_row(grid, metrics, r, velocity, scale, row),
-                &mut self.phi,
-            ),
-            Some(walls) => {
-                let fluxes: &_ = velocity;
-                let solved = walls.pressure.solve(
-                    &mut self.pressure_solver,
-                    #[inline(always)]
-                    |r, row: &mut [f64]| kernels::divergence_row(grid, metrics, r, fluxes, scale, row),
-                    &mut self.phi,
-                );
-                walls.show_nodes(velocity);
-                solved
+        let solved = {
+            let divergence = kernels::divergence(grid, metrics, velocity, scale);
+            match &mut self.walls {
+                None => self.pressure_solver.solve_rows(&divergence, &mut self.phi),
+                Some(walls) => walls.pressure.solve(&mut self.pressure_solver, &divergence, &mut self.phi),
             }
         };
+        if let Some(walls) = &mut self.walls {
+            walls.show_nodes(velocity);
+        }
         match solved {
             Err(PoissonError::NonFinite { .. }) => return Err(self.state.diverged(dt)),
             other => other?,

@@ -1,9 +1,9 @@
 //! Integrals, norms and extremes over the cells.
 use crate::algebra::{Expression, GridMismatch, LANES, Operand, RowExpression, RowPlace};
 use crate::kernels::layers_per_task;
+use crate::parts::each_part;
 use crate::{CartesianGrid, Field};
 use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
 /// Norms of a field f in a box of volume V, each cell weighted with its volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -153,10 +153,10 @@ impl<const D: usize> Integrals<D> {
         let per_task = layers_per_task(layers);
         // At most 16 tasks.
         let mut parts = [Totals::default(); 16];
-        parts[..layers.div_ceil(per_task)].par_iter_mut().enumerate().for_each(|(task, part)| {
+        each_part(&mut parts[..layers.div_ceil(per_task)], 1, &|task, part| {
             let first = task * per_task;
             let layers = first..(first + per_task).min(layers);
-            *part = Arch::new().dispatch(Layers { integrals: self, expression: &expression, layers });
+            part[0] = Arch::new().dispatch(Layers { integrals: self, expression: &expression, layers });
         });
         Ok(parts.into_iter().fold(Totals::default(), Totals::plus))
     }

@@ -4,11 +4,11 @@ use crate::grid::GHOSTS;
 use crate::kernels::{self, Conductance, face_row, layers_per_task};
 use crate::linear::StencilMatrix;
 use crate::metrics::Metrics;
+use crate::parts::each_part;
 use crate::poisson::multigrid::{MultigridCg, MultigridParams};
 use crate::poisson::{PoissonError, PoissonInfo};
 use crate::pressure::PressureEnds;
 use crate::{CartesianGrid, Field, FlowError};
-use rayon::prelude::*;
 
 /// Least rate at which outlets answer, relative to that of the velocity inside.
 const SLOWEST: f64 = 1e-6;
@@ -75,7 +75,7 @@ impl<const D: usize> PressureCorrection<D> {
         let layer = face_layer(&self.grid, c);
         let grid = &self.grid;
         self.single = single;
-        self.beta[c].par_chunks_mut(layer * per_task).enumerate().for_each(|(task, out)| {
+        each_part(&mut self.beta[c], layer * per_task, &|task, out| {
             let first = task * per_task;
             for r in first * rows..(first + per_task).min(n[D - 1]) * rows {
                 let o = r * n[0];
@@ -143,7 +143,7 @@ impl<const D: usize> PressureCorrection<D> {
     fn write_divergence(&mut self, velocity: &[Field<D>; D]) {
         let (grid, metrics, n) = (&self.grid, &self.metrics, self.grid.cells()[0]);
         let rows = rows_per_task(grid.n_cells() / n);
-        self.divergence.par_chunks_mut(n * rows).enumerate().for_each(|(task, out)| {
+        each_part(&mut self.divergence, n * rows, &|task, out| {
             for (k, row) in out.chunks_exact_mut(n).enumerate() {
                 kernels::divergence_row(grid, metrics, task * rows + k, velocity, 1.0, row);
             }

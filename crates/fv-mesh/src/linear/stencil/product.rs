@@ -4,8 +4,8 @@ use super::super::vector::CHUNK;
 use super::super::{LinearError, LinearOperator};
 use super::StencilMatrix;
 use super::matrix::End;
+use crate::parts::each_part;
 use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
 /// The neighbours of a row along the axes but x.
 pub(super) struct Cross<'a, const D: usize> {
@@ -164,7 +164,7 @@ impl<const D: usize> StencilMatrix<D> {
             return Arch::new().dispatch(Rows { combine, matrix: self, first: 0, b, x, out });
         }
         let per_task = self.rows_per_task();
-        out.par_chunks_mut(per_task * n).enumerate().for_each(|(task, out)| {
+        each_part(out, per_task * n, &|task, out| {
             Arch::new().dispatch(Rows { combine, matrix: self, first: task * per_task, b, x, out });
         });
     }

@@ -4,8 +4,8 @@ use super::super::{GaussSeidelSweep, LinearError, LinearOperator, Sweep};
 use super::StencilMatrix;
 use super::chain::{BLOCK, Terms};
 use super::product::residual_row;
+use crate::parts::each_part;
 use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
 impl<const D: usize> GaussSeidelSweep for StencilMatrix<D> {
     fn check_diagonal(&self) -> Result<(), LinearError> {
@@ -141,7 +141,7 @@ impl<'a, const D: usize> RedBlack<'a, D> {
             return Arch::new().dispatch(Colour { matrix, first: 0, odd, b, x, out });
         }
         let per_task = matrix.rows_per_task();
-        out.par_chunks_mut(per_task * matrix.cells[0]).enumerate().for_each(|(task, out)| {
+        each_part(out, per_task * matrix.cells[0], &|task, out| {
             Arch::new().dispatch(Colour { matrix, first: task * per_task, odd, b, x, out });
         });
     }

@@ -1,5 +1,6 @@
 //! Conjugate gradients with multigrid as preconditioner.
-use super::solver::{Begun, rows_of};
+use super::super::rows_of;
+use super::solver::Begun;
 use super::{Multigrid, MultigridParams};
 use crate::poisson::PoissonAxis;
 use crate::poisson::{PoissonError, PoissonInfo, PoissonSolver};
@@ -53,7 +54,7 @@ impl<const D: usize> MultigridCg<D> {
         warm: bool,
     ) -> Result<PoissonInfo, PoissonError> {
         self.multigrid.check(phi.len())?;
-        let begun = self.multigrid.begin(fill)?;
+        let begun = self.multigrid.begin(&fill)?;
         self.iterate(begun, phi, warm)
     }
 
@@ -103,7 +104,7 @@ impl<const D: usize> MultigridCg<D> {
 impl<const D: usize> PoissonSolver<D> for MultigridCg<D> {
     fn solve(&mut self, rhs_in_phi_out: &mut [f64]) -> Result<PoissonInfo, PoissonError> {
         self.multigrid.check(rhs_in_phi_out.len())?;
-        let begun = self.multigrid.begin(rows_of(rhs_in_phi_out, self.multigrid.operator.cells[0]))?;
+        let begun = self.multigrid.begin(&rows_of(rhs_in_phi_out, self.multigrid.operator.cells[0]))?;
         self.iterate(begun, rhs_in_phi_out, false)
     }
 }

@@ -3,8 +3,8 @@
 use super::axis::AxisLevel;
 use super::level::layers_per_task;
 use super::stencil::{Real, Stencil};
+use crate::poisson::Rows;
 use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
 /// Layout, volumes and partial sums.
 pub(super) struct Sweeps {
@@ -74,6 +74,45 @@ impl<K: RowSweep<T>, T> WithSimd for Task<'_, K, T> {
     }
 }
 
+/// What some tasks write. The fields are divided alike, but for those that are not there.
+struct Parts<'a, T> {
+    /// Number of the first task.
+    first: usize,
+    /// What a task takes of `a` and `single`, and of `dense`.
+    lengths: [usize; 2],
+    a: &'a mut [f64],
+    single: &'a mut [T],
+    dense: &'a mut [f64],
+    /// One per task.
+    sums: &'a mut [[f64; 2]],
+}
+
+impl<T: Send> Parts<'_, T> {
+    /// Does the `job` to the part of each task.
+    fn each(self, job: &(dyn Fn(Parts<'_, T>) + Sync)) {
+        let Self { first, lengths, a, single, dense, sums } = self;
+        let tasks = sums.len() / 2;
+        if tasks == 0 {
+            return job(Parts { first, lengths, a, single, dense, sums });
+        }
+        let [padded, bare] = lengths.map(|length| tasks * length);
+        let (a, last_a) = a.split_at_mut(padded.min(a.len()));
+        let (single, last_single) = single.split_at_mut(padded.min(single.len()));
+        let (dense, last_dense) = dense.split_at_mut(bare.min(dense.len()));
+        let (sums, last_sums) = sums.split_at_mut(tasks);
+        let low = Parts { first, lengths, a, single, dense, sums };
+        let high = Parts {
+            first: first + tasks,
+            lengths,
+            a: last_a,
+            single: last_single,
+            dense: last_dense,
+            sums: last_sums,
+        };
+        rayon::join(|| low.each(job), || high.each(job));
+    }
+}
+
 /// Row `r` of a field; nothing of an empty one.
 #[inline(always)]
 fn part<T>(field: &mut [T], r: usize, length: usize) -> &mut [T] {
@@ -119,40 +158,19 @@ impl Sweeps {
     ) -> [f64; 2] {
         let (frame, per_task) = (&self.frame, self.per_task);
         let [n, rows, _] = frame.cells;
-        let (padded, bare) = (per_task * rows * (n + 2), per_task * rows * n);
-        let sums = self.partial.par_iter_mut().enumerate().map(|(task, sums)| (task * per_task, sums));
-        let job = |start, a, single, dense, sums| {
-            Arch::new().dispatch(Task { frame, sweep, start, a, single, dense, sums })
-        };
-        // Only fields that are there can be divided.
-        match (a.is_empty(), single.is_empty(), dense.is_empty()) {
-            (false, true, true) => a
-                .par_chunks_mut(padded)
-                .zip(sums)
-                .for_each(|(a, (start, sums))| job(start, a, &mut [], &mut [], sums)),
-            (false, false, true) => a
-                .par_chunks_mut(padded)
-                .zip(single.par_chunks_mut(padded))
-                .zip(sums)
-                .for_each(|((a, single), (start, sums))| job(start, a, single, &mut [], sums)),
-            (_, true, false) => dense
-                .par_chunks_mut(bare)
-                .zip(sums)
-                .for_each(|(dense, (start, sums))| job(start, &mut [], &mut [], dense, sums)),
-            _ => a
-                .par_chunks_mut(padded)
-                .zip(single.par_chunks_mut(padded))
-                .zip(dense.par_chunks_mut(bare))
-                .zip(sums)
-                .for_each(|(((a, single), dense), (start, sums))| job(start, a, single, dense, sums)),
-        }
+        let lengths = [per_task * rows * (n + 2), per_task * rows * n];
+        let parts = Parts { first: 0, lengths, a, single, dense, sums: &mut self.partial };
+        parts.each(&|Parts { first, a, single, dense, sums, .. }| {
+            let (start, sums) = (first * per_task, &mut sums[0]);
+            Arch::new().dispatch(Task { frame, sweep, start, a, single, dense, sums });
+        });
         self.partial.iter().fold([0.0; 2], |sum, part| [sum[0] + part[0], sum[1] + part[1]])
     }
 
     /// Writes −f to `r`; returns the mean of −f and its mean square.
-    pub(super) fn load(&mut self, fill: &(impl Fn(usize, &mut [f64]) + Sync), r: &mut [f64]) -> [f64; 2] {
-        struct Load<'a, F>(&'a F);
-        impl<F: Fn(usize, &mut [f64]) + Sync> RowSweep<f32> for Load<'_, F> {
+    pub(super) fn load(&mut self, fill: Rows<'_>, r: &mut [f64]) -> [f64; 2] {
+        struct Load<'a>(Rows<'a>);
+        impl RowSweep<f32> for Load<'_> {
             #[inline(always)]
             fn row(&self, at: At, row: Row<f32>, w: &[f64]) -> [f64; 2] {
                 let n = row.a.len() - 2;

@@ -3,8 +3,8 @@ use super::axis::{AxisLevel, Transfer};
 use super::stencil::{Real, Stencil};
 use super::transfer::{Prolong, ProlongScratch, Restrict, RestrictScratch};
 use super::weighted::{WeightedProlong, WeightedRestrict};
+use crate::parts::each_pair;
 use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
 /// Cells below which a level is one task.
 const TASK_CELLS: usize = 8192;
@@ -100,8 +100,9 @@ impl<T: Real> Level<T> {
         if let [ring] = self.rings.as_mut_slice() {
             job(0, &mut self.next, ring);
         } else {
-            let tasks = self.next.par_chunks_mut(chunk).zip(self.rings.par_iter_mut()).enumerate();
-            tasks.for_each(|(task, (out, ring))| job(task, out, ring));
+            each_pair(&mut self.next, &mut self.rings, [chunk, 1], &|task, out, ring| {
+                job(task, out, &mut ring[0])
+            });
         }
         std::mem::swap(&mut self.phi, &mut self.next);
     }
@@ -126,8 +127,10 @@ impl<T: Real> Level<T> {
         if let [scratch] = self.restrict_scratch.as_mut_slice() {
             job(0, &mut coarse.f, scratch);
         } else {
-            let tasks = coarse.f.par_chunks_mut(per_task * layer).zip(self.restrict_scratch.par_iter_mut());
-            tasks.enumerate().for_each(|(task, (out, scratch))| job(task, out, scratch));
+            let lengths = [per_task * layer, 1];
+            each_pair(&mut coarse.f, &mut self.restrict_scratch, lengths, &|task, out, scratch| {
+                job(task, out, &mut scratch[0]);
+            });
         }
     }
 
@@ -153,11 +156,10 @@ impl<T: Real> Level<T> {
         if let [scratch] = self.prolong_scratch.as_mut_slice() {
             job(0, &mut self.phi, scratch);
         } else {
-            let tasks = self.phi.par_chunks_mut(per_task * stencil.layer());
-            tasks
-                .zip(self.prolong_scratch.par_iter_mut())
-                .enumerate()
-                .for_each(|(task, (phi, scratch))| job(task, phi, scratch));
+            let lengths = [per_task * stencil.layer(), 1];
+            each_pair(&mut self.phi, &mut self.prolong_scratch, lengths, &|task, phi, scratch| {
+                job(task, phi, &mut scratch[0]);
+            });
         }
     }
 }

@@ -5,8 +5,7 @@ use super::fields::{Advance, Sweeps};
 use super::hierarchy::Hierarchy;
 use super::precision::Precision;
 use super::stencil::Stencil;
-use crate::poisson::PoissonAxis;
-use crate::poisson::{PoissonError, PoissonInfo, PoissonSolver};
+use crate::poisson::{PoissonAxis, PoissonError, PoissonInfo, PoissonSolver, Rows, rows_of};
 
 /// Geometric multigrid: V-cycles, one after the other. [`MultigridCg`](super::MultigridCg) needs fewer of them.
 pub struct Multigrid<const D: usize> {
@@ -126,7 +125,7 @@ impl<const D: usize> Multigrid<D> {
     /// [`PoissonError::Length`] and [`PoissonError::NonFinite`]; f is then left as it was.
     pub fn v_cycle(&mut self, rhs_in_phi_out: &mut [f64]) -> Result<(), PoissonError> {
         self.check(rhs_in_phi_out.len())?;
-        let begun = self.begin(rows_of(rhs_in_phi_out, self.operator.cells[0]))?;
+        let begun = self.begin(&rows_of(rhs_in_phi_out, self.operator.cells[0]))?;
         rhs_in_phi_out.fill(0.0);
         if begun.norm > 0.0 {
             self.hierarchy.cycle();
@@ -137,8 +136,8 @@ impl<const D: usize> Multigrid<D> {
     }
 
     /// Takes in f and prepares its residual for a V-cycle.
-    pub(super) fn begin(&mut self, fill: impl Fn(usize, &mut [f64]) + Sync) -> Result<Begun, PoissonError> {
-        let [mean, square] = self.sweeps.load(&fill, &mut self.r);
+    pub(super) fn begin(&mut self, fill: Rows<'_>) -> Result<Begun, PoissonError> {
+        let [mean, square] = self.sweeps.load(fill, &mut self.r);
         if !square.is_finite() {
             return Err(self.not_finite(&self.r, square));
         }
@@ -210,15 +209,10 @@ impl<const D: usize> Multigrid<D> {
     }
 }
 
-/// Rows of a dense field.
-pub(super) fn rows_of(field: &[f64], n: usize) -> impl Fn(usize, &mut [f64]) + Sync {
-    move |r, row| row.copy_from_slice(&field[r * n..][..n])
-}
-
 impl<const D: usize> PoissonSolver<D> for Multigrid<D> {
     fn solve(&mut self, rhs_in_phi_out: &mut [f64]) -> Result<PoissonInfo, PoissonError> {
         self.check(rhs_in_phi_out.len())?;
-        let mut begun = self.begin(rows_of(rhs_in_phi_out, self.operator.cells[0]))?;
+        let mut begun = self.begin(&rows_of(rhs_in_phi_out, self.operator.cells[0]))?;
         rhs_in_phi_out.fill(0.0);
         if begun.norm == 0.0 {
             begun.residual = 0.0;

@@ -1,10 +1,6 @@
 //! Eigenvalues and eigenvectors of the operator of one axis.
 use super::super::PoissonAxis;
-use faer::diag::Diag;
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::evd::{self, ComputeEigenvectors};
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, Par};
+use monomorphic::{Mat, add_product, self_adjoint_eigenvectors};
 
 /// Corrections of the eigenvectors by products of matrices: the largest angle that each may turn a
 /// pair by. What remains is left to rotations; an angle spoils the orthogonality by its square.
@@ -31,7 +27,7 @@ impl Eigen {
     pub(super) fn new(axis: &PoissonAxis) -> Option<Self> {
         let n = axis.cells();
         let gradient = Gradient::new(axis);
-        let mut vectors = decompose(&gradient.normal(n))?;
+        let mut vectors = self_adjoint_eigenvectors(gradient.normal(n).as_ref())?;
         if axis.is_free() {
             set_constant(&mut vectors, axis);
         }
@@ -94,7 +90,7 @@ fn correct(vectors: &mut Mat<f64>, gradient: &Gradient, largest: f64) {
         }
     });
     let old = vectors.clone();
-    matmul(vectors.as_mut(), Accum::Add, old.as_ref(), correction.as_ref(), 1.0, Par::Seq);
+    add_product(vectors.as_mut(), old.as_ref(), correction.as_ref());
 }
 
 /// Rotates each pair of vectors whose fluxes are not orthogonal to round-off; false if there is none.
@@ -186,25 +182,6 @@ impl Gradient {
 /// MᵀM.
 fn gram(m: &Mat<f64>) -> Mat<f64> {
     let mut out = Mat::zeros(m.ncols(), m.ncols());
-    matmul(out.as_mut(), Accum::Replace, m.transpose(), m.as_ref(), 1.0, Par::Seq);
+    add_product(out.as_mut(), m.transpose(), m.as_ref());
     out
-}
-
-/// Orthonormal eigenvectors in the order of ascending eigenvalues. On the calling thread alone, so
-/// that they do not depend on the number of threads.
-fn decompose(a: &Mat<f64>) -> Option<Mat<f64>> {
-    let n = a.nrows();
-    let (mut values, mut vectors) = (Diag::zeros(n), Mat::zeros(n, n));
-    let need =
-        evd::self_adjoint_evd_scratch::<f64>(n, ComputeEigenvectors::Yes, Par::Seq, Default::default());
-    evd::self_adjoint_evd(
-        a.as_ref(),
-        values.as_mut(),
-        Some(vectors.as_mut()),
-        Par::Seq,
-        MemStack::new(&mut MemBuffer::new(need)),
-        Default::default(),
-    )
-    .ok()?;
-    Some(vectors)
 }

@@ -10,7 +10,7 @@ mod tests;
 mod transform;
 
 use super::aligned::Aligned;
-use super::{PoissonAxis, PoissonError, PoissonInfo, PoissonSolver};
+use super::{PoissonAxis, PoissonError, PoissonInfo, PoissonSolver, Rows, rows_of};
 use layout::{Layout, Scratch};
 use rayon::prelude::*;
 use stages::{Along, Backward, Columns, Forward, Layers};
@@ -48,7 +48,10 @@ use sweep::LANES;
 /// assert!((phi[0] - 0.02).abs() < 1e-15);
 /// # Ok::<(), fv_mesh::poisson::PoissonError>(())
 /// ```
-pub struct SeparablePoisson<const D: usize> {
+pub struct SeparablePoisson<const D: usize>(Passes);
+
+/// What a solve needs and does, in any dimension.
+struct Passes {
     layout: Layout,
     /// Layer by layer.
     layers: Aligned<f64>,
@@ -83,12 +86,12 @@ impl<const D: usize> SeparablePoisson<D> {
         let swept = if D == 3 { swept_axis(&axes) } else { 2 * swept_axis(&axes) };
         let middle = if D == 3 { Some(&axes[1]) } else { None };
         let layout = Layout::new([Some(&axes[0]), middle, Some(&axes[D - 1])], swept, shift)?;
-        Ok(Self {
+        Ok(Self(Passes {
             layers: Aligned::new(layout.cells[2] * layout.stride),
             blocks: Aligned::new(layout.blocks * layout.cells[2] * LANES),
             scratch: layout.scratch(),
             layout,
-        })
+        }))
     }
 
     /// Solves for the right-hand side that `fill` makes row by row: `fill(r, row)` has to write all
@@ -104,22 +107,21 @@ impl<const D: usize> SeparablePoisson<D> {
     where
         F: Fn(usize, &mut [f64]) + Sync,
     {
-        self.check_length(phi)?;
-        let info = self.solve_modes(fill)?;
-        self.transform_back(phi);
+        self.0.check_length(phi)?;
+        let info = self.0.solve_modes(&fill)?;
+        self.0.transform_back(phi);
         Ok(info)
     }
+}
 
+impl Passes {
     fn check_length(&self, field: &[f64]) -> Result<(), PoissonError> {
         let cells = self.layout.cells.iter().product();
         if field.len() == cells { Ok(()) } else { Err(PoissonError::Length { length: field.len(), cells }) }
     }
 
     /// From the right-hand side to blocks of solutions that lack the transforms within layers.
-    fn solve_modes<F>(&mut self, fill: F) -> Result<PoissonInfo, PoissonError>
-    where
-        F: Fn(usize, &mut [f64]) + Sync,
-    {
+    fn solve_modes(&mut self, fill: Rows<'_>) -> Result<PoissonInfo, PoissonError> {
         self.transform(fill);
         for scratch in &self.scratch {
             if let Some((row, sum)) = scratch.bad {
@@ -141,12 +143,12 @@ impl<const D: usize> SeparablePoisson<D> {
     }
 
     /// Right-hand side to transformed layers.
-    fn transform<F: Fn(usize, &mut [f64]) + Sync>(&mut self, fill: F) {
+    fn transform(&mut self, fill: Rows<'_>) {
         let layout = &self.layout;
         let parts = self.layers.par_chunks_mut(layout.layers * layout.stride);
         parts.zip(&mut self.scratch).enumerate().for_each(|(p, (layers, scratch))| {
             let first = p * layout.layers;
-            pulp::Arch::new().dispatch(Forward { layout, first, fill: &fill, layers, scratch });
+            pulp::Arch::new().dispatch(Forward { layout, first, fill, layers, scratch });
         });
     }
 
@@ -209,7 +211,7 @@ pub(super) fn swept_axis<const D: usize>(axes: &[PoissonAxis; D]) -> usize {
 
 impl<const D: usize> std::fmt::Debug for SeparablePoisson<D> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let [nx, ny, nz] = self.layout.cells;
+        let [nx, ny, nz] = self.0.layout.cells;
         let cells = if D == 3 { vec![nx, ny, nz] } else { vec![nx, nz] };
         f.debug_struct("SeparablePoisson").field("cells", &cells).finish_non_exhaustive()
     }
@@ -217,10 +219,9 @@ impl<const D: usize> std::fmt::Debug for SeparablePoisson<D> {
 
 impl<const D: usize> PoissonSolver<D> for SeparablePoisson<D> {
     fn solve(&mut self, rhs_in_phi_out: &mut [f64]) -> Result<PoissonInfo, PoissonError> {
-        self.check_length(rhs_in_phi_out)?;
-        let (nx, rhs) = (self.layout.cells[0], &*rhs_in_phi_out);
-        let info = self.solve_modes(|r, row| row.copy_from_slice(&rhs[r * nx..(r + 1) * nx]))?;
-        self.transform_back(rhs_in_phi_out);
+        self.0.check_length(rhs_in_phi_out)?;
+        let info = self.0.solve_modes(&rows_of(rhs_in_phi_out, self.0.layout.cells[0]))?;
+        self.0.transform_back(rhs_in_phi_out);
         Ok(info)
     }
 }

@@ -1,20 +1,21 @@
 //! The passes of a solve over memory, each a task for `pulp` on a part of the data.
+use super::super::Rows;
 use super::layout::{Layout, Scratch};
 use super::sweep::LANES;
 use pulp::{Simd, WithSimd};
 
 /// Fills layers with the right-hand side and transforms them.
-pub(super) struct Forward<'a, F> {
+pub(super) struct Forward<'a> {
     pub(super) layout: &'a Layout,
     /// First layer.
     pub(super) first: usize,
-    pub(super) fill: &'a F,
+    pub(super) fill: Rows<'a>,
     pub(super) layers: &'a mut [f64],
     pub(super) scratch: &'a mut Scratch,
 }
 
 // A type rather than a closure: `pulp` compiles the body of `with_simd` for the processor at hand.
-impl<F: Fn(usize, &mut [f64])> WithSimd for Forward<'_, F> {
+impl WithSimd for Forward<'_> {
     type Output = ();
 
     #[inline(always)]

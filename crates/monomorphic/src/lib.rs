@@ -1,0 +1,22 @@
+//! What the other crates use of `faer` and `rustfft`, for `f64`. Both libraries are generic: the crate that calls them compiles
+//! them, which takes minutes, and so do its tests. Here they are compiled once.
+//!
+//! All of it runs on the calling thread alone, so that results do not depend on the number of threads.
+#![forbid(unsafe_code)]
+
+mod dense;
+mod sparse;
+
+pub use dense::{add_product, inverse, self_adjoint_eigenvectors};
+pub use faer::{Mat, MatMut, MatRef};
+pub use sparse::{Cholesky, FactorError, Lu, Pattern};
+
+use rustfft::{Fft, FftPlanner};
+use std::sync::Arc;
+
+/// The Fourier transforms of length `n`, forward and inverse, not normalised.
+#[must_use]
+pub fn fourier_transforms(n: usize) -> [Arc<dyn Fft<f64>>; 2] {
+    let mut planner = FftPlanner::new();
+    [planner.plan_fft_forward(n), planner.plan_fft_inverse(n)]
+}

@@ -1,6 +1,7 @@
-//! Immersed walls against exact and published values: plane Poiseuille flow turned against the grid, Taylor–Couette flow,
-//! simple-cubic arrays of spheres, the cylinder of Schäfer & Turek; and what walls cost. On one thread: `cargo bench --bench
-//! immersed`, or with the names of cases after `--`.
+//! Immersed walls against exact and published values: plane Poiseuille flow turned against the grid (`channel`; `forced-channel` with
+//! `SmoothForcing`), flow between cylinders (`couette`; `eccentric`), simple-cubic arrays of `spheres`, the cylinders of Schäfer & Turek in
+//! the plane (`cylinder`) and in a `duct`, a cylinder in a `stream`, a `sphere` in one; and what walls and forcings `cost`. On one
+//! thread: `cargo bench --bench immersed`, or with the names of cases after `--`.
 mod cost;
 mod steady;
 

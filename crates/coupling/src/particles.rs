@@ -149,8 +149,8 @@ impl<F: Forcing, B: Dynamics> Particles<F, B> {
     ) -> Option<Vector6<f64>> {
         let inertia = self.bodies.inertia(b);
         let displaced = self.density * inertia.volume;
-        let layer = self.forcing.layer(velocity, b);
-        let internal = six(self.forcing.internal_momentum(velocity, b));
+        let layer = self.forcing.layer(velocity, &self.bodies, b);
+        let internal = six(self.forcing.internal_momentum(velocity, &self.bodies, b));
         let mass = self.mass_matrix(b);
         let light = inertia.mass < 0.7 * displaced;
         let factor = self.virtual_mass.unwrap_or(if light { 0.3 } else { 0.0 });
@@ -268,7 +268,7 @@ impl<const D: usize, F: Forcing, B: Dynamics> Immersed<D> for Particles<F, B> {
         }
         timings.measure(Module::Forcing, || {
             for (b, (foreseen, _)) in scratch.iter().enumerate() {
-                let internal = six(self.forcing.internal_momentum(flow.velocity(), BodyId(b)));
+                let internal = six(self.forcing.internal_momentum(flow.velocity(), &self.bodies, BodyId(b)));
                 let s = &mut self.states[b];
                 let impulse = six(self.forcing.reaction(BodyId(b))) + internal - s.internal;
                 s.deferred = impulse - foreseen;
@@ -288,7 +288,7 @@ impl<const D: usize, F: Forcing, B: Dynamics> Immersed<D> for Particles<F, B> {
         self.states.resize(n, State::default());
         self.forcing.place(flow.velocity(), &self.bodies)?;
         for (b, s) in self.states.iter_mut().enumerate().skip(self.started) {
-            s.internal = six(self.forcing.internal_momentum(flow.velocity(), BodyId(b)));
+            s.internal = six(self.forcing.internal_momentum(flow.velocity(), &self.bodies, BodyId(b)));
         }
         self.started = n;
         Ok(())

@@ -7,12 +7,14 @@ pub(crate) fn each_part<A: Send>(a: &mut [A], length: usize, body: &(dyn Fn(usiz
     a.par_chunks_mut(length).enumerate().for_each(|(k, a)| body(k, a));
 }
 
+type OnPair<'a, A, B> = &'a (dyn Fn(usize, &mut [A], &mut [B]) + Sync);
+
 /// The same for parts of two lists.
 pub(crate) fn each_pair<A: Send, B: Send>(
     a: &mut [A],
     b: &mut [B],
     lengths: [usize; 2],
-    body: &(dyn Fn(usize, &mut [A], &mut [B]) + Sync),
+    body: OnPair<'_, A, B>,
 ) {
     let pairs = a.par_chunks_mut(lengths[0]).zip(b.par_chunks_mut(lengths[1]));
     pairs.enumerate().for_each(|(k, (a, b))| body(k, a, b));

@@ -4,40 +4,9 @@ mod support;
 
 use cpu_time::ProcessTime;
 use ibm::{TriangleMesh, cut_walls};
-use interfaces::{Lattice, Nodes, Pose, Rotation, Solid, Vector, VelocityField};
+use interfaces::{Pose, Rotation, Solid, Vector};
 use std::f64::consts::PI;
-use support::{Ball, Brick, Equal};
-
-/// A velocity field of zeros: component c on the lower faces along axis c of a periodic unit box.
-struct Staggered {
-    lattices: Vec<Lattice>,
-    values: Vec<f64>,
-}
-
-impl Staggered {
-    fn new<const D: usize>(cells: usize) -> Self {
-        let h = 1.0 / cells as f64;
-        let axis = |a, c| Nodes::uniform(if a == c { 0.0 } else { 0.5 * h }, h, cells, true);
-        let stride = std::array::from_fn(|a| cells.pow(a as u32));
-        let lattice = |c| Lattice::new(std::array::from_fn::<_, D, _>(|a| axis(a, c)), 0, stride);
-        Self { lattices: (0..D).map(lattice).collect(), values: vec![0.0; cells.pow(D as u32)] }
-    }
-}
-
-impl VelocityField for Staggered {
-    fn dim(&self) -> usize {
-        self.lattices.len()
-    }
-    fn lattice(&self, c: usize) -> &Lattice {
-        &self.lattices[c]
-    }
-    fn component(&self, _: usize) -> &[f64] {
-        &self.values
-    }
-    fn component_mut(&mut self, _: usize) -> &mut [f64] {
-        &mut self.values
-    }
-}
+use support::{Ball, Brick, Equal, Staggered};
 
 fn row<const D: usize>(name: &str, cells: usize, solid: impl Solid + 'static) {
     let only = std::env::args().skip(1).find(|a| !a.starts_with('-'));

@@ -1,7 +1,7 @@
 //! What every immersed boundary offers.
 use crate::IbmError;
 use interfaces::{Bodies, BodyId, Kinematics, Vector, VelocityField, Wrench};
-use nalgebra::{Matrix6, Vector6};
+use nalgebra::{Matrix3, Matrix6, Vector6};
 
 /// How the fluid that a forcing drags along resists a change of a body's motion: with generalised
 /// velocity v = (U, Ω), the forcing hands the body the impulse `momentum` − `mass`·v.
@@ -14,15 +14,49 @@ pub struct Layer {
 }
 
 impl Layer {
-    /// Adds one forced point at `arm`: its velocity component `c` is `found` before the forcing,
-    /// and the forcing moves the fluid mass `weight` there to the body's velocity.
-    pub(crate) fn add(&mut self, c: usize, arm: Vector, weight: f64, found: f64) {
+    /// Adds the forced points of velocity component `c`.
+    pub(crate) fn add(&mut self, c: usize, sums: &LayerSums) {
         let mut unit = Vector::zeros();
         unit[c] = 1.0;
-        let turn = arm.cross(&unit);
-        let j = Vector6::new(unit.x, unit.y, unit.z, turn.x, turn.y, turn.z);
-        self.mass += weight * j * j.transpose();
-        self.momentum += weight * found * j;
+        // J = (e, r × e), linear in the arm r.
+        let turn = sums.mass_arm.cross(&unit);
+        let cross = unit.cross_matrix();
+        self.mass[(c, c)] += sums.mass;
+        for i in 0..3 {
+            self.mass[(c, 3 + i)] += turn[i];
+            self.mass[(3 + i, c)] += turn[i];
+        }
+        let mut angular = self.mass.fixed_view_mut::<3, 3>(3, 3);
+        angular += cross * sums.mass_arms * cross.transpose();
+        self.momentum[c] += sums.momentum;
+        let mut angular = self.momentum.fixed_rows_mut::<3>(3);
+        angular += sums.momentum_arm.cross(&unit);
+    }
+}
+
+/// Sums over forced points of one velocity component: a fluid mass w at the arm r, whose velocity was û before, is moved to the
+/// body's velocity.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct LayerSums {
+    /// Σ w, Σ w r, Σ w r rᵀ.
+    mass: f64,
+    mass_arm: Vector,
+    mass_arms: Matrix3<f64>,
+    /// Σ w û, Σ w û r.
+    momentum: f64,
+    momentum_arm: Vector,
+}
+
+impl LayerSums {
+    /// Adds one point.
+    #[inline]
+    pub(crate) fn add(&mut self, arm: Vector, mass: f64, found: f64) {
+        let momentum = mass * found;
+        self.mass += mass;
+        self.mass_arm += mass * arm;
+        self.mass_arms += (mass * arm) * arm.transpose();
+        self.momentum += momentum;
+        self.momentum_arm += momentum * arm;
     }
 }
 
@@ -30,7 +64,8 @@ impl Layer {
 /// [`place`](Self::place), then [`force`](Self::force) before each of
 /// [`rounds`](Self::rounds) pressure solutions. Impulses are per step, about each body's centre.
 pub trait Forcing: Send {
-    /// Takes note of where the bodies are; only those that moved cost anything.
+    /// Takes note of where the bodies are; only those that moved cost anything. What tells of them below is asked for with
+    /// the bodies where they are then.
     ///
     /// # Errors
     /// [`IbmError`] for bodies that this forcing cannot represent on this grid.
@@ -42,12 +77,12 @@ pub trait Forcing: Send {
     /// How often forcing and pressure solution alternate within a step.
     fn rounds(&self) -> usize;
 
-    /// The fluid's resistance at body `b`, from the velocity u* before any forcing.
-    fn layer(&self, velocity: &dyn VelocityField, b: BodyId) -> Layer;
+    /// The fluid's resistance at body `b`, from the velocity u* before any forcing. Bodies that move as they are told need not ask.
+    fn layer(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies, b: BodyId) -> Layer;
 
     /// Momentum and angular momentum of the fluid inside body `b`: ρ ∫_Ωs (u, r × u) dV
     /// \[N s, N m s\].
-    fn internal_momentum(&self, velocity: &dyn VelocityField, b: BodyId) -> Wrench;
+    fn internal_momentum(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies, b: BodyId) -> Wrench;
 
     /// Adds dt f_ib to the velocity so that it meets the bodies' motion.
     fn force(&mut self, velocity: &mut dyn VelocityField, bodies: &dyn Kinematics);

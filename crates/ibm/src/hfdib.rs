@@ -1,4 +1,5 @@
 //! The paper's forcing: velocity values set in the cells that a body covers.
+use crate::forcing::LayerSums;
 use crate::smooth::internal_momentum;
 use crate::{Forcing, FractionRule, IbmError, Layer, Reconstruction, SolidFraction, SolidNode};
 use interfaces::{Bodies, BodyId, Kinematics, Vector, VelocityField, Wrench};
@@ -72,24 +73,26 @@ impl Forcing for Hfdib {
         self.rounds
     }
 
-    fn layer(&self, velocity: &dyn VelocityField, b: BodyId) -> Layer {
+    fn layer(&mut self, velocity: &dyn VelocityField, _: &dyn Bodies, b: BodyId) -> Layer {
         let mut layer = Layer::default();
         for c in 0..velocity.dim() {
             let u = velocity.component(c);
+            let mut sums = LayerSums::default();
             for cell in self.surface[c].cells(b) {
                 // The part of u* that the body's own motion replaces: a·(û/a), a the weight of U_S.
                 let free = cell.value(0.0, u);
                 let solid = cell.surface.unwrap_or(0.0);
                 let weight = self.density * cell.node.volume * (1.0 - cell.node.fraction) * solid;
                 if weight > 0.0 {
-                    layer.add(c, cell.foot, weight, (u[cell.node.index] - free) / solid);
+                    sums.add(cell.foot, weight, (u[cell.node.index] - free) / solid);
                 }
             }
+            layer.add(c, &sums);
         }
         layer
     }
 
-    fn internal_momentum(&self, velocity: &dyn VelocityField, b: BodyId) -> Wrench {
+    fn internal_momentum(&mut self, velocity: &dyn VelocityField, _: &dyn Bodies, b: BodyId) -> Wrench {
         internal_momentum(&self.inside, self.density, velocity, b)
     }
 

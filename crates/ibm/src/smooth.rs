@@ -1,7 +1,11 @@
 //! Direct forcing at surface markers, spread by a smooth kernel.
-use crate::kernel::WIDEST;
+mod stencils;
+
+use crate::forcing::LayerSums;
+use crate::solid_fraction::check;
 use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction, surface_elements};
-use interfaces::{Bodies, BodyId, Kinematics, Lattice, Pose, SurfaceElement, Vector, VelocityField, Wrench};
+use interfaces::{Bodies, BodyId, Kinematics, Point, Pose, SurfaceElement, Vector, VelocityField, Wrench};
+use stencils::Stencils;
 
 /// Smooth direct forcing (Uhlmann 2005; several passes as in Wang et al. 2008; smoothed kernel of
 /// Yang et al. 2009), with markers moved into the solid by the kernel's own
@@ -20,6 +24,11 @@ pub struct SmoothForcing {
     passes: usize,
     inside: [SolidFraction; 3],
     bodies: Vec<Markers>,
+    /// Places of the markers of a body.
+    places: Vec<Point>,
+    /// One number per marker of a body.
+    values: Vec<f64>,
+    outside: Vec<f64>,
     /// Zeros between uses, as long as a velocity component.
     scratch: Vec<f64>,
 }
@@ -36,77 +45,8 @@ struct Markers {
     arms: Vec<Vector>,
     /// ρ ΔV_m / c: the fluid mass that a marker moves \[kg\].
     masses: Vec<f64>,
-    /// What each marker gives to the fluid in the pass at hand \[N s\].
-    impulses: Vec<f64>,
-    /// One per component and marker.
-    stencils: [Vec<Stencil>; 3],
-    /// 1 − χ_m per component and marker, χ = E λ: the share of a marker's fluid outside the body.
-    outside: [Vec<f64>; 3],
+    stencils: Stencils,
     reaction: Wrench,
-}
-
-/// Where a marker reads and spreads: a product of weights along the axes.
-#[derive(Clone, Copy, Debug)]
-struct Stencil {
-    offset: [[usize; WIDEST]; 3],
-    weight: [[f64; WIDEST]; 3],
-    width: [usize; 3],
-    /// (Share of the weights inside bounded sides)²: by this a pass is relaxed further there, since
-    /// the weights that are left, scaled up to sum to one, overlap more with themselves.
-    relax: f64,
-}
-
-impl Stencil {
-    fn new(kernel: Kernel, lattice: &Lattice, x: [f64; 3]) -> Self {
-        let mut s = Self { offset: [[0; WIDEST]; 3], weight: [[0.0; WIDEST]; 3], width: [1; 3], relax: 1.0 };
-        s.weight[2][0] = 1.0;
-        s.offset[0][0] = lattice.base;
-        for a in 0..lattice.dim {
-            let (node, part) = lattice.axes[a].locate(x[a]);
-            let reach = kernel.reach() as isize;
-            let weights = kernel.weights(part);
-            let first = node - reach + 1;
-            let base = if a == 0 { lattice.base } else { 0 };
-            let (mut width, mut sum) = (0, 0.0);
-            for (i, w) in (first..first + 2 * reach).zip(weights) {
-                // Beyond a bounded side there is nothing; the rest is scaled up to sum to one.
-                if let Some(at) = lattice.axes[a].wrap(i) {
-                    s.offset[a][width] = base + at * lattice.stride[a];
-                    s.weight[a][width] = w;
-                    sum += w;
-                    width += 1;
-                }
-            }
-            if sum < LEAST_SHARE {
-                // As good as outside: it reads and spreads nothing.
-                return Self { width: [0; 3], relax: 0.0, ..s };
-            }
-            s.width[a] = width;
-            for w in &mut s.weight[a][..width] {
-                *w /= sum;
-            }
-            s.relax *= sum * sum;
-        }
-        s
-    }
-
-    fn each(&self, mut f: impl FnMut(usize, f64)) {
-        for k in 0..self.width[2] {
-            for j in 0..self.width[1] {
-                let at = self.offset[2][k] + self.offset[1][j];
-                let w = self.weight[2][k] * self.weight[1][j];
-                for i in 0..self.width[0] {
-                    f(at + self.offset[0][i], w * self.weight[0][i]);
-                }
-            }
-        }
-    }
-
-    fn read(&self, u: &[f64]) -> f64 {
-        let mut sum = 0.0;
-        self.each(|i, w| sum += w * u[i]);
-        sum
-    }
 }
 
 impl SmoothForcing {
@@ -119,6 +59,9 @@ impl SmoothForcing {
             passes: 3,
             inside: Default::default(),
             bodies: Vec::new(),
+            places: Vec::new(),
+            values: Vec::new(),
+            outside: Vec::new(),
             scratch: Vec::new(),
         }
     }
@@ -150,7 +93,8 @@ impl SmoothForcing {
         let h = cell.powf(1.0 / dim as f64);
         let markers = &mut self.bodies[b.0];
         // Made once, unless the body has come to where the cells are of another size.
-        if markers.elements.is_empty() || (cell / markers.cell - 1.0).abs() > 3.0 * UNEQUAL {
+        let made = markers.elements.is_empty() || (cell / markers.cell - 1.0).abs() > 3.0 * UNEQUAL;
+        if made {
             markers.cell = cell;
             let extent = bodies.solid(b).aabb().extent();
             let size = extent.x.min(extent.y).min(if dim == 3 { extent.z } else { f64::INFINITY });
@@ -166,34 +110,26 @@ impl SmoothForcing {
             markers.masses = markers.elements.iter().map(|e| e.area * scale).collect();
         }
         let pose = bodies.pose(b);
-        markers.arms.clear();
-        markers.arms.extend(markers.elements.iter().map(|e| pose.orientation * e.point.coords));
-        for c in 0..dim {
-            let lattice = velocity.lattice(c);
-            let stencils = &mut markers.stencils[c];
-            stencils.clear();
-            stencils.extend(
-                markers
-                    .arms
-                    .iter()
-                    .map(|arm| Stencil::new(self.kernel, lattice, (pose.position + arm).into())),
-            );
+        if made || markers.pose.is_none_or(|old| old.orientation != pose.orientation) {
+            markers.arms.clear();
+            markers.arms.extend(markers.elements.iter().map(|e| pose.orientation * e.point.coords));
         }
-        // χ = E λ, with λ laid out on the lattice for a moment.
-        for c in 0..dim {
-            let nodes = self.inside[c].nodes(b);
-            self.scratch.resize(velocity.component(c).len(), 0.0);
-            nodes.iter().for_each(|n| self.scratch[n.index] += n.fraction);
-            markers.outside[c].clear();
-            markers.outside[c].extend(markers.stencils[c].iter().map(|s| 1.0 - s.read(&self.scratch)));
-            nodes.iter().for_each(|n| self.scratch[n.index] = 0.0);
-        }
+        self.places.clear();
+        self.places.extend(markers.arms.iter().map(|arm| pose.position + arm));
+        markers.stencils.set(self.kernel, velocity, &self.places);
         Ok(())
     }
-}
 
-/// A marker of whose weights less than this share lies inside the box is outside.
-const LEAST_SHARE: f64 = 1e-3;
+    /// 1 − χ of the markers of body `b`, χ = E λ: the shares of their fluid outside the body.
+    fn find_outside(&mut self, velocity: &dyn VelocityField, c: usize, b: BodyId, out: &mut Vec<f64>) {
+        let nodes = self.inside[c].nodes(b);
+        self.scratch.resize(velocity.component(c).len(), 0.0);
+        nodes.iter().for_each(|n| self.scratch[n.index] += n.fraction);
+        self.bodies[b.0].stencils.read(c, velocity.lattice(c), &self.scratch, out);
+        out.iter_mut().for_each(|share| *share = 1.0 - *share);
+        nodes.iter().for_each(|n| self.scratch[n.index] = 0.0);
+    }
+}
 
 /// Distances of nodes that differ by no more than this are equal.
 const UNEQUAL: f64 = 1e-6;
@@ -230,12 +166,15 @@ const LEAST_CELLS: f64 = 4.0;
 impl Forcing for SmoothForcing {
     fn place(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies) -> Result<(), IbmError> {
         self.bodies.resize_with(bodies.n_bodies(), Markers::default);
-        for c in 0..velocity.dim() {
-            self.inside[c].update(velocity.lattice(c), bodies)?;
+        for (c, inside) in self.inside.iter_mut().enumerate().take(velocity.dim()) {
+            inside.resize(velocity.lattice(c), bodies.n_bodies());
         }
         for b in 0..bodies.n_bodies() {
             let pose = bodies.pose(BodyId(b));
             if self.bodies[b].pose != Some(pose) {
+                for c in 0..velocity.dim() {
+                    check(velocity.lattice(c), bodies, BodyId(b))?;
+                }
                 self.place_body(velocity, bodies, BodyId(b))?;
                 self.bodies[b].pose = Some(pose);
             }
@@ -252,44 +191,57 @@ impl Forcing for SmoothForcing {
         1
     }
 
-    fn layer(&self, velocity: &dyn VelocityField, b: BodyId) -> Layer {
-        let markers = &self.bodies[b.0];
+    fn layer(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies, b: BodyId) -> Layer {
         let mut layer = Layer::default();
+        let (mut outside, mut found) = (std::mem::take(&mut self.outside), std::mem::take(&mut self.values));
         for c in 0..velocity.dim() {
-            let u = velocity.component(c);
-            for (m, stencil) in markers.stencils[c].iter().enumerate() {
-                let weight = markers.outside[c][m] * markers.masses[m] * stencil.relax;
-                layer.add(c, markers.arms[m], weight, stencil.read(u));
+            let lattice = velocity.lattice(c);
+            self.inside[c].cover(lattice, bodies, b);
+            self.find_outside(velocity, c, b, &mut outside);
+            let Markers { stencils, masses, arms, .. } = &self.bodies[b.0];
+            stencils.read(c, lattice, velocity.component(c), &mut found);
+            let mut sums = LayerSums::default();
+            for (m, arm) in arms.iter().enumerate() {
+                sums.add(*arm, outside[m] * masses[m] * stencils.relax[c][m], found[m]);
             }
+            layer.add(c, &sums);
         }
+        (self.outside, self.values) = (outside, found);
         layer
     }
 
-    fn internal_momentum(&self, velocity: &dyn VelocityField, b: BodyId) -> Wrench {
+    fn internal_momentum(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies, b: BodyId) -> Wrench {
+        for c in 0..velocity.dim() {
+            self.inside[c].cover(velocity.lattice(c), bodies, b);
+        }
         internal_momentum(&self.inside, self.density, velocity, b)
     }
 
     fn force(&mut self, velocity: &mut dyn VelocityField, bodies: &dyn Kinematics) {
+        let values = &mut self.values;
         for _ in 0..self.passes {
             for (b, markers) in self.bodies.iter_mut().enumerate() {
                 let twist = bodies.twist(BodyId(b));
-                let cell_mass = self.density * markers.cell;
+                let per_mass = 1.0 / (self.density * markers.cell);
                 for c in 0..velocity.dim() {
+                    let lattice = velocity.lattice(c).clone();
                     let u = velocity.component_mut(c);
                     // All markers read before any of them spreads: their order must not matter.
-                    markers.impulses.clear();
-                    markers.impulses.extend(markers.stencils[c].iter().enumerate().map(|(m, stencil)| {
-                        let slip = twist.at(markers.arms[m])[c] - stencil.read(u);
-                        markers.masses[m] * stencil.relax * slip
-                    }));
-                    for (m, stencil) in markers.stencils[c].iter().enumerate() {
-                        let (arm, impulse) = (markers.arms[m], markers.impulses[m]);
-                        let scale = impulse / cell_mass;
-                        stencil.each(|i, w| u[i] += scale * w);
-                        let mut force = Vector::zeros();
-                        force[c] = -impulse;
-                        markers.reaction += Wrench::at(force, arm);
+                    markers.stencils.read(c, &lattice, u, values);
+                    let (mut impulse, mut moment) = (0.0, Vector::zeros());
+                    let relax = &markers.stencils.relax[c];
+                    for (m, value) in values.iter_mut().enumerate() {
+                        let arm = markers.arms[m];
+                        let given = markers.masses[m] * relax[m] * (twist.at(arm)[c] - *value);
+                        impulse += given;
+                        moment += given * arm;
+                        *value = given * per_mass;
                     }
+                    markers.stencils.spread(c, &lattice, values, u);
+                    let mut unit = Vector::zeros();
+                    unit[c] = 1.0;
+                    markers.reaction.force[c] -= impulse;
+                    markers.reaction.torque -= moment.cross(&unit);
                 }
             }
         }
@@ -301,13 +253,13 @@ impl Forcing for SmoothForcing {
 
     fn slip(&self, velocity: &dyn VelocityField, bodies: &dyn Kinematics) -> f64 {
         let (mut sum, mut n) = (0.0, 0.0);
+        let mut found = Vec::new();
         for (b, markers) in self.bodies.iter().enumerate() {
             let twist = bodies.twist(BodyId(b));
             for c in 0..velocity.dim() {
-                let u = velocity.component(c);
-                for (stencil, arm) in markers.stencils[c].iter().zip(&markers.arms) {
-                    sum += (stencil.read(u) - twist.at(*arm)[c]).powi(2);
-                }
+                markers.stencils.read(c, velocity.lattice(c), velocity.component(c), &mut found);
+                let slips = found.iter().zip(&markers.arms).map(|(u, arm)| u - twist.at(*arm)[c]);
+                sum += slips.map(|slip| slip * slip).sum::<f64>();
             }
             n += markers.arms.len() as f64;
         }
@@ -325,11 +277,15 @@ pub(crate) fn internal_momentum(
     let mut sum = Wrench::default();
     for c in 0..velocity.dim() {
         let u = velocity.component(c);
+        let (mut momentum, mut moment) = (0.0, Vector::zeros());
         for node in inside[c].nodes(b) {
-            let mut momentum = Vector::zeros();
-            momentum[c] = density * node.volume * node.fraction * u[node.index];
-            sum += Wrench::at(momentum, node.arm);
+            let part = node.volume * node.fraction * u[node.index];
+            momentum += part;
+            moment += part * node.arm;
         }
+        let mut unit = Vector::zeros();
+        unit[c] = density;
+        sum += Wrench { force: momentum * unit, torque: moment.cross(&unit) };
     }
     sum
 }

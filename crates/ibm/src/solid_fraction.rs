@@ -85,23 +85,35 @@ impl SolidFraction {
     /// [`IbmError::Lost`] for a body whose position is not finite, [`IbmError::TooLarge`] for one that
     /// is longer than a period of the lattice.
     pub fn update<B: Bodies + ?Sized>(&mut self, lattice: &Lattice, bodies: &B) -> Result<(), IbmError> {
+        self.resize(lattice, bodies.n_bodies());
+        for body in (0..bodies.n_bodies()).map(BodyId) {
+            if self.bodies[body.0].at != at(bodies, body) {
+                check(lattice, bodies, body)?;
+                self.cover(lattice, bodies, body);
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes room for so many bodies on this lattice.
+    pub(crate) fn resize(&mut self, lattice: &Lattice, n_bodies: usize) {
         if self.lattice.as_ref() != Some(lattice) {
             self.lattice = Some(lattice.clone());
             self.bodies.clear();
         }
-        self.bodies.resize_with(bodies.n_bodies(), Cover::default);
-        for (b, cover) in self.bodies.iter_mut().enumerate() {
-            let (body, pose) = (BodyId(b), bodies.pose(BodyId(b)));
-            let at = Some((pose, bodies.solid(body).aabb()));
-            if cover.at != at {
-                check(lattice, bodies, body)?;
-                self.projector.project(lattice, bodies, body, self.rule, &mut cover.nodes);
-                cover.at = at;
-                self.updates += 1;
-                cover.stamp = self.updates;
-            }
+        self.bodies.resize_with(n_bodies, Cover::default);
+    }
+
+    /// Brings λ of one body up to date, which [`check`] has passed.
+    pub(crate) fn cover<B: Bodies + ?Sized>(&mut self, lattice: &Lattice, bodies: &B, body: BodyId) {
+        let cover = &mut self.bodies[body.0];
+        let at = at(bodies, body);
+        if cover.at != at {
+            self.projector.project(lattice, bodies, body, self.rule, &mut cover.nodes);
+            cover.at = at;
+            self.updates += 1;
+            cover.stamp = self.updates;
         }
-        Ok(())
     }
 
     /// How often a body's λ was computed: a body at rest counts once.
@@ -135,6 +147,11 @@ impl SolidFraction {
     }
 }
 
+fn at<B: Bodies + ?Sized>(bodies: &B, body: BodyId) -> Option<(Pose, Aabb)> {
+    Some((bodies.pose(body), bodies.solid(body).aabb()))
+}
+
+/// Can λ of a body be computed?
 pub(crate) fn check<B: Bodies + ?Sized>(lattice: &Lattice, bodies: &B, body: BodyId) -> Result<(), IbmError> {
     let pose = bodies.pose(body);
     let turned = pose.orientation.coords.iter().all(|q| q.is_finite());

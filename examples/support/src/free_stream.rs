@@ -3,6 +3,7 @@ use crate::Outcome;
 use crate::axes::gathered;
 use crate::cpu::Stopwatch;
 use crate::prescribed_bodies::PrescribedBodies;
+use crate::wake::wake_length;
 use crate::walled_flows::{put_walls, surface_loads};
 use dem::Disc;
 use fv_mesh::{CartesianGrid, Convection, Diffusion, Fluid, Profile, Projection, Sampler, Side};
@@ -104,14 +105,5 @@ fn wake(flow: &Projection<2>) -> Outcome<f64> {
     let speed = |distance: f64| -> Outcome<f64> {
         Ok(sampler.velocity(flow.velocity(), [PLACE[0] + 0.5 + distance, PLACE[1]])?[0])
     };
-    let step = 0.02;
-    let (mut distance, mut last) = (0.2, speed(0.2)?);
-    while distance < 10.0 {
-        let next = speed(distance + step)?;
-        if last < 0.0 && next >= 0.0 {
-            return Ok(distance + step * last / (last - next));
-        }
-        (distance, last) = (distance + step, next);
-    }
-    Ok(0.0)
+    wake_length(speed, 0.2, 0.02)
 }

@@ -17,6 +17,7 @@ pub mod sphere_stream;
 pub mod startup_theory;
 pub mod table;
 pub mod unfolded;
+pub mod wake;
 pub mod walled_flows;
 
 /// What may go wrong in an example or a bench.

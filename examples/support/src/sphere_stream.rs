@@ -5,6 +5,7 @@ use crate::axes::gathered;
 use crate::cpu::Stopwatch;
 use crate::prescribed_bodies::PrescribedBodies;
 use crate::unfolded::whole_surface_loads;
+use crate::wake::wake_length;
 use crate::walled_flows::put_walls;
 use dem::Sphere;
 use fv_mesh::{CartesianGrid, Convection, Diffusion, Fluid, Profile, Projection, Sampler, Side};
@@ -126,14 +127,5 @@ fn wake(flow: &Projection<3>, h: f64) -> Outcome<f64> {
         let [near, far] = [0.5 * h, 1.5 * h];
         Ok(1.25 * at(near, near)? - 0.125 * (at(far, near)? + at(near, far)?))
     };
-    let step = 0.01;
-    let (mut distance, mut last) = (0.02, speed(0.02)?);
-    while distance < 10.0 {
-        let next = speed(distance + step)?;
-        if last < 0.0 && next >= 0.0 {
-            return Ok(distance + step * last / (last - next));
-        }
-        (distance, last) = (distance + step, next);
-    }
-    Ok(0.0)
+    wake_length(speed, 0.02, 0.01)
 }

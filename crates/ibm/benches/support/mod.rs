@@ -1,6 +1,8 @@
-//! Bodies of the benches.
+//! Bodies and velocities of the benches.
+#![allow(dead_code, reason = "each bench takes what it needs")]
 use interfaces::{
-    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Point, Pose, Solid, SurfaceElement, Twist, Vector,
+    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Lattice, Nodes, Point, Pose, Solid, SurfaceElement,
+    Twist, Vector, VelocityField,
 };
 use std::f64::consts::PI;
 
@@ -80,5 +82,36 @@ impl Solid for Brick {
     }
     fn aabb(&self) -> Aabb {
         Aabb::around(Point::origin(), self.0)
+    }
+}
+
+/// A velocity field: component c on the lower faces along axis c of a periodic unit box.
+pub(crate) struct Staggered {
+    lattices: Vec<Lattice>,
+    values: Vec<Vec<f64>>,
+}
+
+impl Staggered {
+    pub(crate) fn new<const D: usize>(cells: usize) -> Self {
+        let h = 1.0 / cells as f64;
+        let axis = |a, c| Nodes::uniform(if a == c { 0.0 } else { 0.5 * h }, h, cells, true);
+        let stride = std::array::from_fn(|a| cells.pow(a as u32));
+        let lattice = |c| Lattice::new(std::array::from_fn::<_, D, _>(|a| axis(a, c)), 0, stride);
+        Self { lattices: (0..D).map(lattice).collect(), values: vec![vec![0.0; cells.pow(D as u32)]; D] }
+    }
+}
+
+impl VelocityField for Staggered {
+    fn dim(&self) -> usize {
+        self.lattices.len()
+    }
+    fn lattice(&self, c: usize) -> &Lattice {
+        &self.lattices[c]
+    }
+    fn component(&self, c: usize) -> &[f64] {
+        &self.values[c]
+    }
+    fn component_mut(&mut self, c: usize) -> &mut [f64] {
+        &mut self.values[c]
     }
 }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::testing::{Ball, Balls, Brick, Collocated, Plain, lattice};
-use interfaces::{Nodes, Pose, Solid, Twist};
+use interfaces::{Lattice, Nodes, Pose, Solid, Twist};
 
 fn scene(u: impl Fn([f64; 3]) -> [f64; 3]) -> (Balls, Collocated, SmoothForcing) {
     let mut bodies = Balls::new(2, 0.5, vec![[0.1, 1.2, 0.0]]);
@@ -102,22 +102,24 @@ fn passes_converge_at_a_wall() {
 /// b − M·v = Σ (1−χ) w (û − U − Ω×r), and its moment, for every v.
 #[test]
 fn the_layer_foresees_what_the_markers_outside_take() {
-    let (bodies, velocity, forcing) = scene(|x| [x[1].sin(), x[0].cos(), 0.0]);
-    let (layer, twist) = (forcing.layer(&velocity, BodyId(0)), bodies.twists[0]);
+    let (bodies, velocity, mut forcing) = scene(|x| [x[1].sin(), x[0].cos(), 0.0]);
+    let (layer, twist) = (forcing.layer(&velocity, &bodies, BodyId(0)), bodies.twists[0]);
     let v = nalgebra::Vector6::new(twist.linear.x, twist.linear.y, 0.0, 0.0, 0.0, twist.angular.z);
     let foreseen = layer.momentum - layer.mass * v;
-    let markers = &forcing.bodies[0];
     let mut sum = Wrench::default();
-    for (m, &arm) in markers.arms.iter().enumerate() {
-        let mut force = Vector::zeros();
-        for c in 0..2 {
-            let found = markers.stencils[c][m].read(&velocity.values[c]);
-            force[c] = markers.outside[c][m] * markers.masses[m] * (found - twist.at(arm)[c]);
+    for c in 0..2 {
+        let (mut outside, mut found) = (Vec::new(), Vec::new());
+        forcing.find_outside(&velocity, c, BodyId(0), &mut outside);
+        let markers = &forcing.bodies[0];
+        markers.stencils.read(c, &velocity.lattice, &velocity.values[c], &mut found);
+        for (m, &arm) in markers.arms.iter().enumerate() {
+            let mut force = Vector::zeros();
+            force[c] = outside[m] * markers.masses[m] * (found[m] - twist.at(arm)[c]);
             // Markers stand a third of a cell inside: somewhat less than half of what they
             // reach is outside.
-            assert!((0.1..0.5).contains(&markers.outside[c][m]), "{}", markers.outside[c][m]);
+            assert!((0.1..0.5).contains(&outside[m]), "{}", outside[m]);
+            sum += Wrench::at(force, arm);
         }
-        sum += Wrench::at(force, arm);
     }
     let known = [sum.force.x, sum.force.y, 0.0, 0.0, 0.0, sum.torque.z];
     for (i, known) in known.into_iter().enumerate() {

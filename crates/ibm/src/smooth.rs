@@ -219,13 +219,15 @@ impl Forcing for SmoothForcing {
 
     fn force(&mut self, velocity: &mut dyn VelocityField, bodies: &dyn Kinematics) {
         let values = &mut self.values;
-        for _ in 0..self.passes {
-            for (b, markers) in self.bodies.iter_mut().enumerate() {
-                let twist = bodies.twist(BodyId(b));
-                let per_mass = 1.0 / (self.density * markers.cell);
-                for c in 0..velocity.dim() {
-                    let lattice = velocity.lattice(c).clone();
-                    let u = velocity.component_mut(c);
+        // Components do not see one another.
+        for c in 0..velocity.dim() {
+            let lattice = velocity.lattice(c).clone();
+            let u = velocity.component_mut(c);
+            let mut unit = Vector::zeros();
+            unit[c] = 1.0;
+            for _ in 0..self.passes {
+                for (b, markers) in self.bodies.iter_mut().enumerate() {
+                    let (twist, per_mass) = (bodies.twist(BodyId(b)), 1.0 / (self.density * markers.cell));
                     // All markers read before any of them spreads: their order must not matter.
                     markers.stencils.read(c, &lattice, u, values);
                     let (mut impulse, mut moment) = (0.0, Vector::zeros());
@@ -238,8 +240,6 @@ impl Forcing for SmoothForcing {
                         *value = given * per_mass;
                     }
                     markers.stencils.spread(c, &lattice, values, u);
-                    let mut unit = Vector::zeros();
-                    unit[c] = 1.0;
                     markers.reaction.force[c] -= impulse;
                     markers.reaction.torque -= moment.cross(&unit);
                 }

@@ -137,11 +137,17 @@ impl Nodes {
     /// The last node at or below `x` and how far x is from it towards the next, 0 ≤ t < 1.
     #[inline]
     pub fn locate(&self, x: f64) -> (isize, f64) {
-        let Some(t) = &self.table else {
-            let r = (x - self.first) / self.spacing;
-            return (r.floor() as isize, r - r.floor());
-        };
-        let (mut x, mut turns) = (x, 0);
+        match &self.table {
+            None => {
+                let r = (x - self.first) / self.spacing;
+                (r.floor() as isize, r - r.floor())
+            }
+            Some(table) => self.locate_between(table, x),
+        }
+    }
+
+    fn locate_between(&self, t: &Table, mut x: f64) -> (isize, f64) {
+        let mut turns = 0;
         if let Some(period) = self.period() {
             let full = ((x - self.first) / period).floor();
             (x, turns) = (x - full * period, full as isize * self.len as isize);

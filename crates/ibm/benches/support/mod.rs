@@ -85,7 +85,7 @@ impl Solid for Brick {
     }
 }
 
-/// A velocity field: component c on the lower faces along axis c of a periodic unit box.
+/// A velocity field: component c on the lower faces along axis c of a periodic unit box, stored with two ghosts as flows do.
 pub(crate) struct Staggered {
     lattices: Vec<Lattice>,
     values: Vec<Vec<f64>>,
@@ -95,9 +95,11 @@ impl Staggered {
     pub(crate) fn new<const D: usize>(cells: usize) -> Self {
         let h = 1.0 / cells as f64;
         let axis = |a, c| Nodes::uniform(if a == c { 0.0 } else { 0.5 * h }, h, cells, true);
-        let stride = std::array::from_fn(|a| cells.pow(a as u32));
-        let lattice = |c| Lattice::new(std::array::from_fn::<_, D, _>(|a| axis(a, c)), 0, stride);
-        Self { lattices: (0..D).map(lattice).collect(), values: vec![vec![0.0; cells.pow(D as u32)]; D] }
+        let padded = cells + 4;
+        let stride: [usize; D] = std::array::from_fn(|a| padded.pow(a as u32));
+        let base = 2 * stride.iter().sum::<usize>();
+        let lattice = |c| Lattice::new(std::array::from_fn::<_, D, _>(|a| axis(a, c)), base, stride);
+        Self { lattices: (0..D).map(lattice).collect(), values: vec![vec![0.0; padded.pow(D as u32)]; D] }
     }
 }
 

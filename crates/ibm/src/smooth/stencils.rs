@@ -30,35 +30,79 @@ struct AxisWeights {
 /// A marker of whose weights less than this share lies inside the box is outside.
 const LEAST_SHARE: f64 = 1e-3;
 
+/// Markers whose weights are computed together.
+const LANES: usize = 8;
+
 impl AxisWeights {
-    fn set(&mut self, kernel: Kernel, nodes: &Nodes, places: impl Iterator<Item = f64>) {
-        let Self { first, weights, share } = self;
-        weights.clear();
-        share.clear();
-        first.clear();
-        let (width, n) = (2 * kernel.reach(), nodes.len());
-        for x in places {
-            let (node, part) = nodes.locate(x);
-            let (start, all) = (node - kernel.reach() as isize + 1, kernel.weights(part));
-            if nodes.is_periodic() {
-                first.push(start.rem_euclid(n as isize) as usize);
-                weights.extend_from_slice(&all[..width]);
-                share.push(1.0);
-                continue;
-            }
-            // Beyond a bounded side there is nothing; the rest is scaled up to sum to one.
-            let inside = start.clamp(0, n.saturating_sub(width) as isize);
-            let kept = |i: usize| {
-                let from = usize::try_from(inside + i as isize - start).ok().filter(|&from| from < width);
-                from.filter(|_| inside as usize + i < n).map_or(0.0, |from| all[from])
-            };
-            let sum: f64 = (0..width).map(kept).sum();
-            let scale = if sum < LEAST_SHARE { 0.0 } else { 1.0 / sum };
-            first.push(inside as usize);
-            weights.extend((0..width).map(|i| scale * kept(i)));
-            share.push(scale * sum * sum);
+    fn set(&mut self, kernel: Kernel, nodes: &Nodes, places: &[Point], axis: usize) {
+        let width = 2 * kernel.reach();
+        self.first.resize(places.len(), 0);
+        self.weights.resize(places.len() * width, 0.0);
+        self.share.clear();
+        self.share.resize(places.len(), 1.0);
+        if width == 4 {
+            Arch::new().dispatch(Weigh::<4> { axis, kernel, nodes, places, out: self });
+        } else {
+            Arch::new().dispatch(Weigh::<6> { axis, kernel, nodes, places, out: self });
         }
     }
+}
+
+struct Weigh<'a, const W: usize> {
+    axis: usize,
+    kernel: Kernel,
+    nodes: &'a Nodes,
+    places: &'a [Point],
+    out: &'a mut AxisWeights,
+}
+
+impl<const W: usize> WithSimd for Weigh<'_, W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { axis, kernel, nodes, places, out } = self;
+        let AxisWeights { first, weights, share } = out;
+        let (periodic, n, reach) = (nodes.is_periodic(), nodes.len() as isize, W as isize / 2);
+        let weights = weights.as_chunks_mut::<W>().0;
+        let all = places.chunks(LANES).zip(first.chunks_mut(LANES));
+        for ((places, first), (weights, share)) in
+            all.zip(weights.chunks_mut(LANES).zip(share.chunks_mut(LANES)))
+        {
+            let (mut start, mut parts) = ([0; LANES], [0.0; LANES]);
+            for (p, x) in places.iter().enumerate() {
+                let (node, part) = nodes.locate(x[axis]);
+                (start[p], parts[p]) = (node - reach + 1, part);
+            }
+            let found = kernel.weights_of(parts);
+            for p in 0..places.len() {
+                let all: [f64; W] = std::array::from_fn(|i| found[i][p]);
+                if (0..=n - W as isize).contains(&start[p]) {
+                    (first[p], weights[p]) = (start[p] as usize, all);
+                } else if periodic {
+                    (first[p], weights[p]) = (start[p].rem_euclid(n) as usize, all);
+                } else {
+                    (first[p], weights[p], share[p]) = cut_off(start[p], all, n as usize);
+                }
+            }
+        }
+    }
+}
+
+/// First node, weights and their share of a stencil that a bounded side cuts off: beyond it there is nothing, and the rest is
+/// scaled up to sum to one.
+#[cold]
+fn cut_off<const W: usize>(start: isize, all: [f64; W], n: usize) -> (usize, [f64; W], f64) {
+    let inside = start.clamp(0, n.saturating_sub(W) as isize);
+    let kept: [f64; W] = std::array::from_fn(|i| {
+        let from = usize::try_from(inside + i as isize - start).ok().filter(|&from| from < W);
+        from.filter(|_| inside as usize + i < n).map_or(0.0, |from| all[from])
+    });
+    let sum: f64 = kept.iter().sum();
+    if sum < LEAST_SHARE {
+        return (inside as usize, [0.0; W], 0.0);
+    }
+    (inside as usize, kept.map(|w| w / sum), sum)
 }
 
 impl Stencils {
@@ -74,7 +118,7 @@ impl Stencils {
                 self.of[c][a] = same.map_or(count, |other| self.of[other][a]);
                 if same.is_none() {
                     self.axes.resize_with(self.axes.len().max(count + 1), AxisWeights::default);
-                    self.axes[count].set(kernel, nodes, places.iter().map(|x| x[a]));
+                    self.axes[count].set(kernel, nodes, places, a);
                     count += 1;
                 }
             }
@@ -137,43 +181,45 @@ impl<const W: usize, const D: usize> Places<'_, W, D> {
     #[inline(always)]
     fn offsets(&self, a: usize, m: usize) -> [usize; W] {
         let (first, n) = (self.first[a][m], self.len[a]);
-        std::array::from_fn(|i| {
-            let mut at = first + i;
-            if at >= n {
-                // Of a bounded axis with less nodes than the kernel is wide the weight is zero.
-                at %= n;
-            }
-            at * self.lattice.stride[a]
-        })
+        // Of a bounded axis with less nodes than the kernel is wide the weights past the end are zero.
+        std::array::from_fn(|i| (first + i) % n * self.lattice.stride[a])
     }
 
-    /// Calls `f` with the place and weight of every row of marker `m`.
-    #[inline(always)]
-    fn rows(&self, m: usize, mut f: impl FnMut(usize, f64)) {
-        let (along_y, y) = (self.offsets(1, m), &self.weights[1][m]);
-        if D == 2 {
-            for j in 0..W {
-                f(self.lattice.base + along_y[j], y[j]);
-            }
-            return;
-        }
-        let (along_z, z) = (self.offsets(D - 1, m), &self.weights[D - 1][m]);
-        for k in 0..W {
-            for j in 0..W {
-                f(self.lattice.base + along_z[k] + along_y[j], z[k] * y[j]);
+    /// Calls `f` with the places and weight of every row of marker `m`, wherever its nodes are.
+    #[cold]
+    fn rows(&self, m: usize, mut f: impl FnMut([usize; W], f64)) {
+        let (x, y) = (self.offsets(0, m), self.offsets(1, m));
+        let layer =
+            |k: usize| if D == 2 { (0, 1.0) } else { (self.offsets(D - 1, m)[k], self.weights[D - 1][m][k]) };
+        for (along_z, z) in (0..if D == 2 { 1 } else { W }).map(layer) {
+            for (along_y, y) in y.iter().zip(&self.weights[1][m]) {
+                f(x.map(|along_x| self.lattice.base + along_x + along_y + along_z), y * z);
             }
         }
     }
 
-    /// The first node of rows without a gap.
+    /// Where the first node of marker `m` is stored, if the others follow without a gap.
     #[inline(always)]
-    fn start(&self, m: usize) -> Option<usize> {
-        let first = self.first[0][m];
-        (self.lattice.stride[0] == 1 && first + W <= self.len[0]).then_some(first)
+    fn corner(&self, m: usize) -> Option<usize> {
+        let stride = &self.lattice.stride;
+        let (mut corner, mut whole) = (self.lattice.base, stride[0] == 1);
+        for a in 0..D {
+            corner += self.first[a][m] * stride[a];
+            whole &= self.first[a][m] + W <= self.len[a];
+        }
+        whole.then_some(corner)
+    }
+
+    /// Distances of rows along y and of layers, and how many there are of these.
+    #[inline(always)]
+    fn layers(&self) -> [usize; 3] {
+        let [_, y, z] = self.lattice.stride;
+        [y, z, if D == 2 { 1 } else { W }]
     }
 }
 
-// Types rather than closures: `pulp` compiles the body of `with_simd` for the processor at hand.
+// Types rather than closures: `pulp` compiles the body of `with_simd` for the processor at hand. Left to itself the compiler takes
+// numbers one by one.
 struct Read<'a, const W: usize, const D: usize> {
     places: Places<'a, W, D>,
     u: &'a [f64],
@@ -184,26 +230,57 @@ impl<const W: usize, const D: usize> WithSimd for Read<'_, W, D> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
+        match W / S::F64_LANES {
+            1 => self.run::<S, 1>(simd),
+            2 => self.run::<S, 2>(simd),
+            3 => self.run::<S, 3>(simd),
+            _ => self.run::<S, 0>(simd),
+        }
+    }
+}
+
+impl<const W: usize, const D: usize> Read<'_, W, D> {
+    /// With `N` vectors per row; the rest of it number by number.
+    #[inline(always)]
+    fn run<S: Simd, const N: usize>(self, simd: S) {
         let Self { places, u, out } = self;
+        let [along_y, along_z, layers] = places.layers();
+        let head = N * S::F64_LANES;
         for (m, out) in out.iter_mut().enumerate() {
-            let mut sums = [0.0; W];
-            if let Some(start) = places.start(m) {
-                places.rows(m, |row, w| {
-                    let u = &u[row + start..][..W];
-                    for i in 0..W {
-                        sums[i] += w * u[i];
+            let x = &places.weights[0][m];
+            let Some(corner) = places.corner(m) else {
+                *out = 0.0;
+                places.rows(m, |row, w| *out += w * (0..W).map(|i| x[i] * u[row[i]]).sum::<f64>());
+                continue;
+            };
+            let (mut sums, mut rest) = ([simd.splat_f64s(0.0); N], [0.0; W]);
+            for k in 0..layers {
+                let (mut layer, mut layer_rest) = ([simd.splat_f64s(0.0); N], [0.0; W]);
+                for (j, y) in places.weights[1][m].iter().enumerate() {
+                    let row = &u[corner + k * along_z + j * along_y..][..W];
+                    let (vectors, weight) = (S::as_simd_f64s(&row[..head]).0, simd.splat_f64s(*y));
+                    for n in 0..N {
+                        layer[n] = simd.mul_add_e_f64s(weight, vectors[n], layer[n]);
                     }
-                });
-            } else {
-                let along_x = places.offsets(0, m);
-                places.rows(m, |row, w| {
-                    for i in 0..W {
-                        sums[i] += w * u[row + along_x[i]];
+                    for i in head..W {
+                        layer_rest[i] += y * row[i];
                     }
-                });
+                }
+                let z = if D == 2 { 1.0 } else { places.weights[D - 1][m][k] };
+                let weight = simd.splat_f64s(z);
+                for n in 0..N {
+                    sums[n] = simd.mul_add_e_f64s(weight, layer[n], sums[n]);
+                }
+                for i in head..W {
+                    rest[i] += z * layer_rest[i];
+                }
             }
-            *out = sums.iter().zip(&places.weights[0][m]).map(|(sum, w)| sum * w).sum();
+            let (vectors, mut sum) = (S::as_simd_f64s(&x[..head]).0, simd.splat_f64s(0.0));
+            for n in 0..N {
+                sum = simd.mul_add_e_f64s(vectors[n], sums[n], sum);
+            }
+            *out = simd.reduce_sum_f64s(sum) + (head..W).map(|i| x[i] * rest[i]).sum::<f64>();
         }
     }
 }
@@ -218,24 +295,43 @@ impl<const W: usize, const D: usize> WithSimd for Spread<'_, W, D> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
+        match W / S::F64_LANES {
+            1 => self.run::<S, 1>(simd),
+            2 => self.run::<S, 2>(simd),
+            3 => self.run::<S, 3>(simd),
+            _ => self.run::<S, 0>(simd),
+        }
+    }
+}
+
+impl<const W: usize, const D: usize> Spread<'_, W, D> {
+    /// As in [`Read::run`].
+    #[inline(always)]
+    fn run<S: Simd, const N: usize>(self, simd: S) {
         let Self { places, values, u } = self;
+        let [along_y, along_z, layers] = places.layers();
+        let head = N * S::F64_LANES;
         for (m, value) in values.iter().enumerate() {
             let x = places.weights[0][m].map(|w| value * w);
-            if let Some(start) = places.start(m) {
-                places.rows(m, |row, w| {
-                    let u = &mut u[row + start..][..W];
-                    for i in 0..W {
-                        u[i] += w * x[i];
+            let Some(corner) = places.corner(m) else {
+                places.rows(m, |row, w| (0..W).for_each(|i| u[row[i]] += w * x[i]));
+                continue;
+            };
+            let vectors: [S::f64s; N] = std::array::from_fn(|n| S::as_simd_f64s(&x[..head]).0[n]);
+            for k in 0..layers {
+                let z = if D == 2 { 1.0 } else { places.weights[D - 1][m][k] };
+                for (j, y) in places.weights[1][m].iter().enumerate() {
+                    let w = y * z;
+                    let row = &mut u[corner + k * along_z + j * along_y..][..W];
+                    for i in head..W {
+                        row[i] += w * x[i];
                     }
-                });
-            } else {
-                let along_x = places.offsets(0, m);
-                places.rows(m, |row, w| {
-                    for i in 0..W {
-                        u[row + along_x[i]] += w * x[i];
+                    let (row, weight) = (S::as_mut_simd_f64s(&mut row[..head]).0, simd.splat_f64s(w));
+                    for n in 0..N {
+                        row[n] = simd.mul_add_e_f64s(weight, vectors[n], row[n]);
                     }
-                });
+                }
             }
         }
     }

@@ -135,7 +135,7 @@ impl Nodes {
         t.edges[i + 1] - t.edges[i]
     }
     /// The last node at or below `x` and how far x is from it towards the next, 0 ≤ t < 1.
-    #[inline]
+    #[inline(always)]
     pub fn locate(&self, x: f64) -> (isize, f64) {
         match &self.table {
             None => {

@@ -124,10 +124,11 @@ impl Stencils {
             }
         }
         for (c, relax) in self.relax.iter_mut().enumerate().take(dim) {
-            let shares =
-                |m: usize| self.of[c][..dim].iter().map(|&at| self.axes[at].share[m]).product::<f64>();
             relax.clear();
-            relax.extend((0..places.len()).map(|m| shares(m).powi(2)));
+            relax.resize(places.len(), 1.0);
+            for &at in &self.of[c][..dim] {
+                relax.iter_mut().zip(&self.axes[at].share).for_each(|(relax, share)| *relax *= share * share);
+            }
         }
     }
 

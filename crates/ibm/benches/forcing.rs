@@ -63,7 +63,7 @@ fn main() {
         row::<2>("quintic", SmoothForcing::new(1.0).with_kernel(Kernel::QuinticSpline), cells, across);
         row::<2>("hfdib", Hfdib::new(1.0), cells, across);
     }
-    for (cells, across) in [(64, 3), (64, 1)] {
+    for (cells, across) in [(64, 3), (64, 1), (85, 4)] {
         row::<3>("smooth", SmoothForcing::new(1.0), cells, across);
         row::<3>("quintic", SmoothForcing::new(1.0).with_kernel(Kernel::QuinticSpline), cells, across);
         row::<3>("hfdib", Hfdib::new(1.0), cells, across);

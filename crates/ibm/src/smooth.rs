@@ -1,10 +1,13 @@
 //! Direct forcing at surface markers, spread by a smooth kernel.
 mod stencils;
 
+use crate::crowd::are_alone;
 use crate::forcing::LayerSums;
 use crate::solid_fraction::check;
 use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction, surface_elements};
-use interfaces::{Bodies, BodyId, Kinematics, Point, Pose, SurfaceElement, Vector, VelocityField, Wrench};
+use interfaces::{
+    Bodies, BodyId, Kinematics, Lattice, Point, Pose, SurfaceElement, Twist, Vector, VelocityField, Wrench,
+};
 use stencils::Stencils;
 
 /// Smooth direct forcing (Uhlmann 2005; several passes as in Wang et al. 2008; smoothed kernel of
@@ -41,12 +44,44 @@ struct Markers {
     cell: f64,
     /// In the body's frame.
     elements: Vec<SurfaceElement>,
+    /// No other body's markers reach where these do.
+    alone: bool,
     /// From the centre of mass, in the world.
     arms: Vec<Vector>,
     /// ρ ΔV_m / c: the fluid mass that a marker moves \[kg\].
     masses: Vec<f64>,
     stencils: Stencils,
     reaction: Wrench,
+}
+
+impl Markers {
+    /// Brings component `c` nearer to the body's motion.
+    fn pass(
+        &mut self,
+        c: usize,
+        lattice: &Lattice,
+        u: &mut [f64],
+        twist: Twist,
+        density: f64,
+        values: &mut Vec<f64>,
+    ) {
+        // All markers read before any of them spreads: their order must not matter.
+        self.stencils.read(c, lattice, u, values);
+        let per_mass = 1.0 / (density * self.cell);
+        let (mut impulse, mut moment) = (0.0, Vector::zeros());
+        let weights = self.masses.iter().zip(&self.stencils.relax[c]);
+        for ((value, arm), (mass, relax)) in values.iter_mut().zip(&self.arms).zip(weights) {
+            let given = mass * relax * (twist.at(*arm)[c] - *value);
+            impulse += given;
+            moment += given * arm;
+            *value = given * per_mass;
+        }
+        self.stencils.spread(c, lattice, values, u);
+        let mut unit = Vector::zeros();
+        unit[c] = 1.0;
+        self.reaction.force[c] -= impulse;
+        self.reaction.torque -= moment.cross(&unit);
+    }
 }
 
 impl SmoothForcing {
@@ -120,6 +155,24 @@ impl SmoothForcing {
         Ok(())
     }
 
+    /// Finds the bodies whose markers reach where no others do.
+    fn find_alone(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies) {
+        let axes = &velocity.lattice(0).axes;
+        let reach = (self.kernel.reach() + 1) as f64;
+        let boxes = (0..bodies.n_bodies()).map(|b| {
+            let mut bounds = bodies.aabb(BodyId(b));
+            for a in 0..velocity.dim() {
+                let [_, widest] = axes[a].spacings(bounds.min[a], bounds.max[a]);
+                bounds.min[a] -= reach * widest;
+                bounds.max[a] += reach * widest;
+            }
+            bounds
+        });
+        let periods = Vector::from_fn(|a, _| axes[a].period().unwrap_or(0.0));
+        let alone = are_alone(&boxes.collect::<Vec<_>>(), periods);
+        self.bodies.iter_mut().zip(alone).for_each(|(markers, alone)| markers.alone = alone);
+    }
+
     /// 1 − χ of the markers of body `b`, χ = E λ: the shares of their fluid outside the body.
     fn find_outside(&mut self, velocity: &dyn VelocityField, c: usize, b: BodyId, out: &mut Vec<f64>) {
         let nodes = self.inside[c].nodes(b);
@@ -169,9 +222,11 @@ impl Forcing for SmoothForcing {
         for (c, inside) in self.inside.iter_mut().enumerate().take(velocity.dim()) {
             inside.resize(velocity.lattice(c), bodies.n_bodies());
         }
+        let mut moved = false;
         for b in 0..bodies.n_bodies() {
             let pose = bodies.pose(BodyId(b));
             if self.bodies[b].pose != Some(pose) {
+                moved = true;
                 for c in 0..velocity.dim() {
                     check(velocity.lattice(c), bodies, BodyId(b))?;
                 }
@@ -179,6 +234,9 @@ impl Forcing for SmoothForcing {
                 self.bodies[b].pose = Some(pose);
             }
             self.bodies[b].reaction = Wrench::default();
+        }
+        if moved {
+            self.find_alone(velocity, bodies);
         }
         Ok(())
     }
@@ -218,30 +276,21 @@ impl Forcing for SmoothForcing {
     }
 
     fn force(&mut self, velocity: &mut dyn VelocityField, bodies: &dyn Kinematics) {
-        let values = &mut self.values;
+        let Self { density, passes, bodies: all, values, .. } = self;
         // Components do not see one another.
         for c in 0..velocity.dim() {
             let lattice = velocity.lattice(c).clone();
             let u = velocity.component_mut(c);
-            let mut unit = Vector::zeros();
-            unit[c] = 1.0;
-            for _ in 0..self.passes {
-                for (b, markers) in self.bodies.iter_mut().enumerate() {
-                    let (twist, per_mass) = (bodies.twist(BodyId(b)), 1.0 / (self.density * markers.cell));
-                    // All markers read before any of them spreads: their order must not matter.
-                    markers.stencils.read(c, &lattice, u, values);
-                    let (mut impulse, mut moment) = (0.0, Vector::zeros());
-                    let relax = &markers.stencils.relax[c];
-                    for (m, value) in values.iter_mut().enumerate() {
-                        let arm = markers.arms[m];
-                        let given = markers.masses[m] * relax[m] * (twist.at(arm)[c] - *value);
-                        impulse += given;
-                        moment += given * arm;
-                        *value = given * per_mass;
-                    }
-                    markers.stencils.spread(c, &lattice, values, u);
-                    markers.reaction.force[c] -= impulse;
-                    markers.reaction.torque -= moment.cross(&unit);
+            let mut pass = |b: usize, markers: &mut Markers| {
+                markers.pass(c, &lattice, u, bodies.twist(BodyId(b)), *density, values);
+            };
+            // While its numbers are at hand; those that share fluid in turn.
+            for (b, markers) in all.iter_mut().enumerate().filter(|(_, markers)| markers.alone) {
+                (0..*passes).for_each(|_| pass(b, markers));
+            }
+            for _ in 0..*passes {
+                for (b, markers) in all.iter_mut().enumerate().filter(|(_, markers)| !markers.alone) {
+                    pass(b, markers);
                 }
             }
         }

@@ -165,3 +165,22 @@ fn unequal_cells_around_a_body_are_refused() {
         }
     }
 }
+
+/// Two bodies whose markers share fluid and that move apart bear like forces, whoever is forced first: they take turns.
+#[test]
+fn near_bodies_take_turns() {
+    let pair = |gap: f64| {
+        let mut bodies = Balls::new(2, 0.5, vec![[0.9, 1.5, 0.0], [1.9 + gap, 1.5, 0.0]]);
+        (bodies.twists[0].linear.x, bodies.twists[1].linear.x) = (-1.0, 1.0);
+        let mut velocity = Collocated::new(lattice(2, [0.05; 3], 3.0), |_| [0.0; 3]);
+        let mut forcing = SmoothForcing::new(1.0);
+        forcing.place(&velocity, &bodies).unwrap();
+        forcing.force(&mut velocity, &bodies);
+        let [a, b] = [0, 1].map(|b| forcing.reaction(BodyId(b)).force.x);
+        ([forcing.bodies[0].alone, forcing.bodies[1].alone], (a / b).abs())
+    };
+    let (alone, ratio) = pair(0.5);
+    assert!(alone == [true, true] && (ratio - 1.0).abs() < 1e-12, "{alone:?} {ratio}");
+    let (alone, ratio) = pair(0.05);
+    assert!(alone == [false, false] && (ratio - 1.0).abs() < 1e-3, "{alone:?} {ratio}");
+}

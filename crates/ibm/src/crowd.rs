@@ -1,49 +1,66 @@
 //! Which bodies are near others.
 use interfaces::{Aabb, Vector};
-use rstar::primitives::{GeomWithData, Rectangle};
-use rstar::{AABB, RTree};
 
-/// Of every box, whether it meets no other, in a space with these periods (zero where it does not repeat), by an R*-tree of the
-/// boxes. A box longer than half a period is taken to meet all.
-pub(crate) fn are_alone(boxes: &[Aabb], periods: Vector) -> Vec<bool> {
-    // Where the middle is between zero and a period.
-    let moved = |b: &Aabb| {
-        let middle = nalgebra::center(&b.min, &b.max);
-        let shift = Vector::from_fn(|a, _| {
-            if periods[a] > 0.0 { -periods[a] * (middle[a] / periods[a]).floor() } else { 0.0 }
-        });
-        Aabb { min: b.min + shift, max: b.max + shift }
-    };
-    let corners = |b: &Aabb| (<[f64; 3]>::from(b.min), <[f64; 3]>::from(b.max));
-    let inside: Vec<Aabb> = boxes.iter().map(moved).collect();
-    let rectangles = inside.iter().enumerate().map(|(k, b)| {
-        let (min, max) = corners(b);
-        GeomWithData::new(Rectangle::from_corners(min, max), k)
-    });
-    let tree = RTree::bulk_load(rectangles.collect());
-    let mut alone = vec![true; boxes.len()];
-    for (k, b) in inside.iter().enumerate() {
-        let long = (0..3).any(|a| periods[a] > 0.0 && b.extent()[a] > 0.5 * periods[a]);
-        if long {
-            alone.fill(false);
-            break;
+/// Finds boxes that meet no other; holds the memory that this takes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Crowd {
+    /// To be filled in.
+    pub(crate) boxes: Vec<Aabb>,
+    /// Whether each box meets no other.
+    pub(crate) alone: Vec<bool>,
+    /// Lower and upper end of each box along one axis, sorted.
+    spans: Vec<(f64, f64, usize)>,
+}
+
+impl Crowd {
+    /// Finds the boxes that are `alone` in a space with these periods (zero where it does not repeat). A box longer than half a
+    /// period is taken to meet all.
+    pub(crate) fn find_alone(&mut self, periods: Vector) {
+        let Self { boxes, alone, spans } = self;
+        let long = |b: &Aabb| (0..3).any(|a| periods[a] > 0.0 && b.extent()[a] > 0.5 * periods[a]);
+        alone.clear();
+        alone.resize(boxes.len(), boxes.len() < 2 || !boxes.iter().any(long));
+        if !alone.contains(&true) {
+            return;
         }
-        // Images of this box where it leaves through a side; those of the others find it.
-        let turns = |a: usize| {
-            let (low, high) = (b.min[a] < 0.0, b.max[a] >= periods[a]);
-            [Some(0.0), (periods[a] > 0.0 && low).then_some(1.0), (periods[a] > 0.0 && high).then_some(-1.0)]
+        // Sweeps along the axis on which they spread farthest.
+        let middle = |b: &Aabb, a: usize| 0.5 * (b.min[a] + b.max[a]);
+        let spread = |a: usize| {
+            let [low, high] = boxes.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], b| {
+                [low.min(middle(b, a)), high.max(middle(b, a))]
+            });
+            high - low
         };
-        let all = |a: usize| turns(a).into_iter().flatten().map(move |turn| turn * periods[a]);
-        for shift in all(0).flat_map(|x| all(1).flat_map(move |y| all(2).map(move |z| Vector::new(x, y, z))))
-        {
-            let (min, max) = corners(&Aabb { min: b.min + shift, max: b.max + shift });
-            let met = tree.locate_in_envelope_intersecting(AABB::from_corners(min, max));
-            for other in met.filter(|other| other.data != k) {
-                (alone[k], alone[other.data]) = (false, false);
+        let axis = (0..3).max_by(|&a, &b| spread(a).total_cmp(&spread(b))).unwrap_or(0);
+        let period = periods[axis];
+        spans.clear();
+        for (k, b) in boxes.iter().enumerate() {
+            let turn = if period > 0.0 { -period * (middle(b, axis) / period).floor() } else { 0.0 };
+            let (low, high) = (b.min[axis] + turn, b.max[axis] + turn);
+            spans.push((low, high, k));
+            // As it repeats beyond the last one.
+            if period > 0.0 && low < 0.0 {
+                spans.push((low + period, high + period, k));
+            } else if period > 0.0 && high >= period {
+                spans.push((low - period, high - period, k));
+            }
+        }
+        spans.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let apart = |a: &Aabb, b: &Aabb, axis: usize| {
+            let mut apart = middle(a, axis) - middle(b, axis);
+            if periods[axis] > 0.0 {
+                apart -= periods[axis] * (apart / periods[axis]).round();
+            }
+            apart.abs() > 0.5 * (a.extent() + b.extent())[axis]
+        };
+        for (at, &(_, high, k)) in spans.iter().enumerate() {
+            for &(_, _, other) in spans[at + 1..].iter().take_while(|span| span.0 <= high) {
+                if other != k && !(0..3).any(|a| apart(&boxes[k], &boxes[other], a)) {
+                    (alone[k], alone[other]) = (false, false);
+                }
             }
         }
     }
-    alone
 }
 
 #[cfg(test)]
@@ -61,7 +78,9 @@ mod tests {
             let periods = Vector::new(3.0, if flat { 0.0 } else { 4.0 }, 0.0);
             let half = |size: f64| Vector::new(0.5 * size, 0.3 * size, 0.0);
             let boxes: Vec<_> = places.iter().map(|&(x, y, size)| Aabb::around(Point::new(x, y, 0.0), half(size))).collect();
-            let alone = are_alone(&boxes, periods);
+            let mut crowd = Crowd { boxes, ..Crowd::default() };
+            crowd.find_alone(periods);
+            let Crowd { boxes, alone, .. } = crowd;
             for (k, a) in boxes.iter().enumerate() {
                 let meets = |b: &Aabb| (0..2).all(|axis| {
                     let mut apart = 0.5 * (a.min + a.max.coords - b.min.coords - b.max.coords)[axis];
@@ -80,7 +99,10 @@ mod tests {
     fn a_box_as_long_as_the_period_is_not_alone() {
         let boxes =
             [0.2, 5.0].map(|half| Aabb::around(Point::new(1.0, 20.0 * half, 0.0), Vector::repeat(half)));
-        assert_eq!(are_alone(&boxes, Vector::new(10.5, 0.0, 0.0)), [false, false]);
-        assert_eq!(are_alone(&boxes, Vector::zeros()), [true, true]);
+        let mut crowd = Crowd { boxes: boxes.into(), ..Crowd::default() };
+        crowd.find_alone(Vector::new(10.5, 0.0, 0.0));
+        assert_eq!(crowd.alone, [false, false]);
+        crowd.find_alone(Vector::zeros());
+        assert_eq!(crowd.alone, [true, true]);
     }
 }

@@ -1,7 +1,7 @@
 //! Direct forcing at surface markers, spread by a smooth kernel.
 mod stencils;
 
-use crate::crowd::are_alone;
+use crate::crowd::Crowd;
 use crate::forcing::LayerSums;
 use crate::solid_fraction::check;
 use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction, surface_elements};
@@ -27,6 +27,7 @@ pub struct SmoothForcing {
     passes: usize,
     inside: [SolidFraction; 3],
     bodies: Vec<Markers>,
+    crowd: Crowd,
     /// Places of the markers of a body.
     places: Vec<Point>,
     /// One number per marker of a body.
@@ -94,6 +95,7 @@ impl SmoothForcing {
             passes: 3,
             inside: Default::default(),
             bodies: Vec::new(),
+            crowd: Crowd::default(),
             places: Vec::new(),
             values: Vec::new(),
             outside: Vec::new(),
@@ -159,7 +161,8 @@ impl SmoothForcing {
     fn find_alone(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies) {
         let axes = &velocity.lattice(0).axes;
         let reach = (self.kernel.reach() + 1) as f64;
-        let boxes = (0..bodies.n_bodies()).map(|b| {
+        self.crowd.boxes.clear();
+        self.crowd.boxes.extend((0..bodies.n_bodies()).map(|b| {
             let mut bounds = bodies.aabb(BodyId(b));
             for a in 0..velocity.dim() {
                 let [_, widest] = axes[a].spacings(bounds.min[a], bounds.max[a]);
@@ -167,10 +170,9 @@ impl SmoothForcing {
                 bounds.max[a] += reach * widest;
             }
             bounds
-        });
-        let periods = Vector::from_fn(|a, _| axes[a].period().unwrap_or(0.0));
-        let alone = are_alone(&boxes.collect::<Vec<_>>(), periods);
-        self.bodies.iter_mut().zip(alone).for_each(|(markers, alone)| markers.alone = alone);
+        }));
+        self.crowd.find_alone(Vector::from_fn(|a, _| axes[a].period().unwrap_or(0.0)));
+        self.bodies.iter_mut().zip(&self.crowd.alone).for_each(|(markers, alone)| markers.alone = *alone);
     }
 
     /// 1 − χ of the markers of body `b`, χ = E λ: the shares of their fluid outside the body.

@@ -28,10 +28,13 @@ pub struct SmoothForcing {
     inside: [SolidFraction; 3],
     bodies: Vec<Markers>,
     crowd: Crowd,
+    /// Bodies moved since the crowd was looked at.
+    moved: bool,
     /// Places of the markers of a body.
     places: Vec<Point>,
     /// One number per marker of a body.
     values: Vec<f64>,
+    /// Another.
     outside: Vec<f64>,
     /// Zeros between uses, as long as a velocity component.
     scratch: Vec<f64>,
@@ -96,6 +99,7 @@ impl SmoothForcing {
             inside: Default::default(),
             bodies: Vec::new(),
             crowd: Crowd::default(),
+            moved: false,
             places: Vec::new(),
             values: Vec::new(),
             outside: Vec::new(),
@@ -220,15 +224,18 @@ const LEAST_CELLS: f64 = 4.0;
 
 impl Forcing for SmoothForcing {
     fn place(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies) -> Result<(), IbmError> {
+        self.moved |= self.bodies.len() != bodies.n_bodies();
         self.bodies.resize_with(bodies.n_bodies(), Markers::default);
         for (c, inside) in self.inside.iter_mut().enumerate().take(velocity.dim()) {
-            inside.resize(velocity.lattice(c), bodies.n_bodies());
+            if inside.resize(velocity.lattice(c), bodies.n_bodies()) {
+                // Another grid.
+                self.bodies.iter_mut().for_each(|markers| markers.pose = None);
+            }
         }
-        let mut moved = false;
         for b in 0..bodies.n_bodies() {
             let pose = bodies.pose(BodyId(b));
             if self.bodies[b].pose != Some(pose) {
-                moved = true;
+                self.moved = true;
                 for c in 0..velocity.dim() {
                     check(velocity.lattice(c), bodies, BodyId(b))?;
                 }
@@ -237,7 +244,7 @@ impl Forcing for SmoothForcing {
             }
             self.bodies[b].reaction = Wrench::default();
         }
-        if moved {
+        if std::mem::take(&mut self.moved) {
             self.find_alone(velocity, bodies);
         }
         Ok(())

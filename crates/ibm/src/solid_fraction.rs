@@ -95,13 +95,15 @@ impl SolidFraction {
         Ok(())
     }
 
-    /// Makes room for so many bodies on this lattice.
-    pub(crate) fn resize(&mut self, lattice: &Lattice, n_bodies: usize) {
-        if self.lattice.as_ref() != Some(lattice) {
+    /// Makes room for so many bodies on this lattice; true if there was another one.
+    pub(crate) fn resize(&mut self, lattice: &Lattice, n_bodies: usize) -> bool {
+        let other = self.lattice.as_ref() != Some(lattice);
+        if other {
             self.lattice = Some(lattice.clone());
             self.bodies.clear();
         }
         self.bodies.resize_with(n_bodies, Cover::default);
+        other
     }
 
     /// Brings λ of one body up to date, which [`check`] has passed.

@@ -184,3 +184,20 @@ fn near_bodies_take_turns() {
     let (alone, ratio) = pair(0.05);
     assert!(alone == [false, false] && (ratio - 1.0).abs() < 1e-3, "{alone:?} {ratio}");
 }
+
+/// One forcing serves another grid as a new one does.
+#[test]
+fn another_grid_is_noticed() {
+    let bodies = Balls::new(2, 0.5, vec![[1.3, 1.2, 0.0]]);
+    let mut old = SmoothForcing::new(1.0);
+    for spacing in [0.1, 0.05, 0.06] {
+        let fluid = |forcing: &mut SmoothForcing| {
+            let mut velocity =
+                Collocated::new(lattice(2, [spacing; 3], 3.0), |x| [x[1].sin(), x[0].cos(), 0.0]);
+            forcing.place(&velocity, &bodies).unwrap();
+            forcing.force(&mut velocity, &bodies);
+            (velocity.values, forcing.reaction(BodyId(0)))
+        };
+        assert_eq!(fluid(&mut old), fluid(&mut SmoothForcing::new(1.0)), "{spacing}");
+    }
+}

@@ -1,12 +1,18 @@
 //! What the cuts of walls at rest cost, in ns of CPU time per cut or closed face: `cargo bench -p ibm --bench cut_walls`; `-- mesh` takes only
 //! the rows with this word. A body of 5 % of a periodic box, best of several places.
+#[path = "support/brick.rs"]
+mod brick;
+#[path = "support/staggered.rs"]
+mod staggered;
 mod support;
 
+use brick::Brick;
 use cpu_time::ProcessTime;
 use ibm::{TriangleMesh, cut_walls};
 use interfaces::{Pose, Rotation, Solid, Vector};
+use staggered::Staggered;
 use std::f64::consts::PI;
-use support::{Ball, Brick, Equal, Staggered};
+use support::{Ball, Equal};
 
 fn row<const D: usize>(name: &str, cells: usize, solid: impl Solid + 'static) {
     let only = std::env::args().skip(1).find(|a| !a.starts_with('-'));

@@ -1,13 +1,16 @@
 //! What a forcing costs, in µs of CPU time per body and step: `cargo bench -p ibm --bench forcing`; `-- smooth` takes only the rows
 //! with this word. Equal balls, 5 % of a periodic box, medians: to take note of them at rest and moved, to force the velocity (all
 //! rounds), and to tell the fluid's resistance and the momentum inside, which bodies that move freely ask for.
+#[path = "support/staggered.rs"]
+mod staggered;
 mod support;
 
 use cpu_time::ProcessTime;
 use ibm::{Forcing, Hfdib, Kernel, SmoothForcing};
 use interfaces::{BodyId, Pose, Vector};
+use staggered::Staggered;
 use std::f64::consts::PI;
-use support::{Ball, Equal, Staggered};
+use support::{Ball, Equal};
 
 const STEPS: usize = 41;
 

@@ -7,12 +7,15 @@
 //! 3. Tessellated spheres against triangles.
 //! 4. Cubes, and the paper's rule.
 //! 5. Bodies at rest.
+#[path = "support/brick.rs"]
+mod brick;
 mod support;
 
+use brick::Brick;
 use cpu_time::ProcessTime;
 use ibm::{FractionRule, SolidFraction, TriangleMesh};
 use interfaces::{BodyId, Lattice, Nodes, Pose, Rotation, Solid, Vector};
-use support::{Ball, Brick, Equal};
+use support::{Ball, Equal};
 
 /// Of diameter 1.
 const SPHERE: Ball = Ball { radius: 0.5, dim: 3 };

@@ -4,12 +4,15 @@
 //! 1. Distances of all cells from 1 to 512 spheres and a cube on 128³ cells, and from a mesh on 48³: from scratch, after all bodies
 //!    moved, after one moved, at rest.
 //! 2. Rows around a sphere and 512 of them: placed, filled, at rest.
+#[path = "support/brick.rs"]
+mod brick;
 mod support;
 
+use brick::Brick;
 use cpu_time::ProcessTime;
 use ibm::{TriangleMesh, WallDistance, WallRows};
 use interfaces::{Lattice, Nodes, Pose, Rotation, Solid, Vector};
-use support::{Ball, Brick, Equal};
+use support::{Ball, Equal};
 
 /// Of diameter 1.
 const SPHERE: Ball = Ball { radius: 0.5, dim: 3 };

@@ -95,3 +95,33 @@ pub trait Forcing: Send {
     /// acts on their surfaces \[m/s\].
     fn slip(&self, velocity: &dyn VelocityField, bodies: &dyn Kinematics) -> f64;
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Σ w JᵀJ and Σ w Jᵀ û, J = (e, r × e), point by point.
+    #[test]
+    fn sums_make_the_layer() {
+        let points =
+            [(0.3, [0.2, -0.7, 0.4], 1.3), (0.8, [-0.5, 0.1, 0.9], -0.6), (0.1, [0.6, 0.3, -0.2], 0.4)];
+        let (mut layer, mut mass, mut momentum) = (Layer::default(), Matrix6::zeros(), Vector6::zeros());
+        for c in 0..3 {
+            let mut sums = LayerSums::default();
+            for (w, arm, found) in points {
+                let (arm, mut unit) = (Vector::from(arm), Vector::zeros());
+                unit[c] = 1.0;
+                sums.add(arm, w, found);
+                let turn = arm.cross(&unit);
+                let j = Vector6::new(unit.x, unit.y, unit.z, turn.x, turn.y, turn.z);
+                mass += w * j * j.transpose();
+                momentum += w * found * j;
+            }
+            layer.add(c, &sums);
+        }
+        assert!(
+            (layer.mass - mass).norm() < 1e-15 && (layer.momentum - momentum).norm() < 1e-15,
+            "{layer:?}"
+        );
+    }
+}

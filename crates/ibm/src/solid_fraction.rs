@@ -108,7 +108,7 @@ impl SolidFraction {
 
     /// Brings λ of one body up to date, which [`check`] has passed.
     pub(crate) fn cover<B: Bodies + ?Sized>(&mut self, lattice: &Lattice, bodies: &B, body: BodyId) {
-        let cover = &mut self.bodies[body.0];
+        let Some(cover) = self.bodies.get_mut(body.0) else { return };
         let at = at(bodies, body);
         if cover.at != at {
             self.projector.project(lattice, bodies, body, self.rule, &mut cover.nodes);

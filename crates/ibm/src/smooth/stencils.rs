@@ -189,6 +189,10 @@ impl<const W: usize, const D: usize> Places<'_, W, D> {
     /// Calls `f` with the places and weight of every row of marker `m`, wherever its nodes are.
     #[cold]
     fn rows(&self, m: usize, mut f: impl FnMut([usize; W], f64)) {
+        // A component between walls one cell apart has no nodes.
+        if self.len.contains(&0) {
+            return;
+        }
         let (x, y) = (self.offsets(0, m), self.offsets(1, m));
         let layer =
             |k: usize| if D == 2 { (0, 1.0) } else { (self.offsets(D - 1, m)[k], self.weights[D - 1][m][k]) };

@@ -201,3 +201,22 @@ fn another_grid_is_noticed() {
         assert_eq!(fluid(&mut old), fluid(&mut SmoothForcing::new(1.0)), "{spacing}");
     }
 }
+
+/// Between walls one cell apart the component across has no nodes: nothing is read or written there.
+#[test]
+fn a_component_without_nodes_is_left_alone() {
+    let axes = [
+        Nodes::uniform(0.05, 0.1, 30, true),
+        Nodes::uniform(0.05, 0.1, 30, true),
+        Nodes::faces(&[0.0, 0.1], false),
+    ];
+    assert_eq!(axes[2].len(), 0);
+    let mut velocity = Collocated::new(lattice(3, [0.1; 3], 3.0), |_| [1.0; 3]);
+    velocity.lattice = Lattice::new(axes, 0, [1, 30, 900]);
+    let bodies = Balls::of(Plain(Ball { dim: 3, radius: 0.5 }), 1.0, vec![Pose::at([1.5, 1.5, 0.05])]);
+    let mut forcing = SmoothForcing::new(1.0);
+    forcing.place(&velocity, &bodies).unwrap();
+    forcing.force(&mut velocity, &bodies);
+    assert!(velocity.values[0].iter().all(|u| *u == 1.0));
+    assert_eq!(forcing.reaction(BodyId(0)), Wrench::default());
+}

@@ -65,7 +65,7 @@ fn forced_channel() -> Outcome<()> {
         "{:>14} {:>6} {:>6} {:>9} {:>9} {:>7}",
         "kernel", "angle", "cells", "channel", "with banks", "CPU s"
     );
-    for kernel in [Kernel::Yang, Kernel::QuinticSpline] {
+    for kernel in [Kernel::Yang, Kernel::QuarticSpline, Kernel::QuinticSpline] {
         for degrees in [10.0, 20.0, 30.0, 40.0] {
             for cells in [10, 20, 40] {
                 let watch = Stopwatch::start();

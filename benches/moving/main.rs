@@ -23,8 +23,9 @@ fn main() -> Outcome<()> {
 
 type Way = (&'static str, fn() -> Box<dyn Forcing>);
 
-const WAYS: [Way; 3] = [
-    ("smooth, Yang", || Box::new(SmoothForcing::new(1.0))),
+const WAYS: [Way; 4] = [
+    ("smooth, Yang", || Box::new(SmoothForcing::new(1.0).with_kernel(Kernel::Yang))),
+    ("smooth, quartic", || Box::new(SmoothForcing::new(1.0).with_kernel(Kernel::QuarticSpline))),
     ("smooth, quintic", || Box::new(SmoothForcing::new(1.0).with_kernel(Kernel::QuinticSpline))),
     ("hfdib", || Box::new(Hfdib::new(1.0))),
 ];

@@ -63,11 +63,13 @@ fn row<const D: usize>(name: &str, mut forcing: impl Forcing, cells: usize, acro
 fn main() {
     for (cells, across) in [(256, 6), (256, 1)] {
         row::<2>("smooth", SmoothForcing::new(1.0), cells, across);
+        row::<2>("yang", SmoothForcing::new(1.0).with_kernel(Kernel::Yang), cells, across);
         row::<2>("quintic", SmoothForcing::new(1.0).with_kernel(Kernel::QuinticSpline), cells, across);
         row::<2>("hfdib", Hfdib::new(1.0), cells, across);
     }
     for (cells, across) in [(64, 3), (64, 1), (85, 4)] {
         row::<3>("smooth", SmoothForcing::new(1.0), cells, across);
+        row::<3>("quartic", SmoothForcing::new(1.0).with_kernel(Kernel::QuarticSpline), cells, across);
         row::<3>("quintic", SmoothForcing::new(1.0).with_kernel(Kernel::QuinticSpline), cells, across);
         row::<3>("hfdib", Hfdib::new(1.0), cells, across);
     }

@@ -1,12 +1,13 @@
 //! Smooth kernels that carry values between a lattice and points on a surface.
 
 /// A one-dimensional kernel φ(r), r in cells; kernels of several dimensions are products of it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
     /// Roma's three-point kernel smoothed over one cell, φ*(r) = ∫ φ(s) ds from r − ½ to r + ½
     /// (Yang et al. 2009, J. Comput. Phys. 228, 7821): support ± 2.
-    #[default]
     Yang,
+    /// The quartic B-spline: support ± 2½, three times differentiable.
+    QuarticSpline,
     /// The quintic B-spline: support ± 3, four times differentiable.
     QuinticSpline,
 }
@@ -15,15 +16,25 @@ pub enum Kernel {
 pub const WIDEST: usize = 6;
 
 impl Kernel {
-    /// Half the support, in cells.
-    pub(crate) fn reach(self) -> usize {
+    /// The one with the least cost whose forces stay quiet as a body crosses the grid: [`QuarticSpline`](Self::QuarticSpline) in
+    /// the plane; [`Yang`](Self::Yang) in space, where more markers share what the grid does to each, and stencils are dearer.
+    pub fn suited(dim: usize) -> Self {
+        if dim == 2 { Self::QuarticSpline } else { Self::Yang }
+    }
+    /// The support, in cells: so many nodes lie in it.
+    pub fn width(self) -> usize {
         match self {
-            Self::Yang => 2,
-            Self::QuinticSpline => 3,
+            Self::Yang => 4,
+            Self::QuarticSpline => 5,
+            Self::QuinticSpline => 6,
         }
     }
-    /// φ at the distances of the 2·reach nodes around a point: entry i belongs to the node
-    /// i + 1 − reach cells from the last node not after the point, which is 0 ≤ `t` < 1 behind.
+    /// Half of it.
+    pub(crate) fn reach(self) -> f64 {
+        0.5 * self.width() as f64
+    }
+    /// φ at the nodes around a point: entry i belongs to node i − ⌊(width − 1)/2⌋ from the one which is `t` cells behind the
+    /// point: the nearest one (−½ ≤ t < ½) if the width is odd, else the last one before it (0 ≤ t < 1). The others are zero.
     pub fn weights(self, t: f64) -> [f64; WIDEST] {
         self.weights_of([t]).map(|[w]| w)
     }
@@ -48,6 +59,19 @@ impl Kernel {
                     (out[0][p], out[1][p], out[2][p], out[3][p]) = (rest - last, here, next, last);
                 }
             }
+            Self::QuarticSpline => {
+                // Polynomials of the outer nodes and the middle one; the others because the weights sum to one and keep the
+                // first moment.
+                for p in 0..N {
+                    let t = t[p];
+                    let (square, before, after) = (t * t, (0.5 - t) * (0.5 - t), (0.5 + t) * (0.5 + t));
+                    let (first, last) = (before * before / 24.0, after * after / 24.0);
+                    let middle = 115.0 / 192.0 + square * (0.25 * square - 0.625);
+                    let (sum, difference) = (1.0 - first - middle - last, t + 2.0 * (first - last));
+                    (out[0][p], out[2][p], out[4][p]) = (first, middle, last);
+                    (out[1][p], out[3][p]) = (0.5 * (sum - difference), 0.5 * (sum + difference));
+                }
+            }
             Self::QuinticSpline => {
                 for (i, out) in out.iter_mut().enumerate() {
                     for p in 0..N {
@@ -68,6 +92,7 @@ impl Kernel {
     pub fn self_overlap(self) -> f64 {
         match self {
             Self::Yang => 0.445_935_177_7,
+            Self::QuarticSpline => 0.430_417_769_0,
             Self::QuinticSpline => 0.393_925_565_2,
         }
     }
@@ -77,6 +102,7 @@ impl Kernel {
     pub fn retraction(self) -> f64 {
         match self {
             Self::Yang => 0.311_607_020_2,
+            Self::QuarticSpline => 0.327_821_869_5,
             Self::QuinticSpline => 0.366_040_113_4,
         }
     }
@@ -124,14 +150,19 @@ mod tests {
         }
     }
 
-    const KERNELS: [Kernel; 2] = [Kernel::Yang, Kernel::QuinticSpline];
+    const KERNELS: [Kernel; 3] = [Kernel::Yang, Kernel::QuarticSpline, Kernel::QuinticSpline];
+
+    /// Step `step` of `steps` over all offsets of a point from its nodes.
+    fn offset(kernel: Kernel, step: usize, steps: usize) -> f64 {
+        (step as f64 + 0.5) / steps as f64 - if kernel.width() % 2 == 1 { 0.5 } else { 0.0 }
+    }
 
     #[test]
     fn weights_sum_to_one_and_keep_the_first_moment() {
         for kernel in KERNELS {
             for step in 0..100 {
-                let t = f64::from(step) / 100.0;
-                let (w, first) = (kernel.weights(t), 1.0 - kernel.reach() as f64);
+                let t = offset(kernel, step, 100);
+                let (w, first) = (kernel.weights(t), -(((kernel.width() - 1) / 2) as f64));
                 let sum: f64 = w.iter().sum();
                 let moment: f64 = w.iter().enumerate().map(|(i, w)| w * (first + i as f64 - t)).sum();
                 assert!((sum - 1.0).abs() < 1e-14 && moment.abs() < 1e-14, "{kernel:?} {t}: {sum} {moment}");
@@ -158,13 +189,36 @@ mod tests {
         }
     }
 
+    /// Σ_k (−1)^k C(n + 1, k) (½(n + 1) − k − |r|)₊ⁿ / n! is the B-spline of degree n.
+    #[test]
+    fn splines_are_what_their_name_says() {
+        let spline = |degree: i32, r: f64| {
+            let order = degree + 1;
+            let (mut sum, mut signed_binomial) = (0.0, 1.0);
+            for k in 0..=order {
+                sum += signed_binomial * (0.5 * f64::from(order) - f64::from(k) - r.abs()).max(0.0).powi(degree);
+                signed_binomial *= -f64::from(order - k) / f64::from(k + 1);
+            }
+            sum / (1..=degree).map(f64::from).product::<f64>()
+        };
+        for (kernel, degree) in [(Kernel::QuarticSpline, 4), (Kernel::QuinticSpline, 5)] {
+            for step in 0..20 {
+                let t = offset(kernel, step, 20);
+                for (i, w) in kernel.weights(t).into_iter().enumerate().take(kernel.width()) {
+                    let r = i as f64 - ((kernel.width() - 1) / 2) as f64 - t;
+                    assert!((w - spline(degree, r)).abs() < 1e-14, "{kernel:?} {r}: {w}");
+                }
+            }
+        }
+    }
+
     #[test]
     fn constants_follow_from_the_kernel() {
         for kernel in KERNELS {
             let (mut c, mut spread) = (0.0, 0.0);
             let samples = 20_000;
             for step in 0..samples {
-                let w = kernel.weights((f64::from(step) + 0.5) / f64::from(samples));
+                let w = kernel.weights(offset(kernel, step, samples));
                 for (i, wi) in w.into_iter().enumerate() {
                     c += wi * wi;
                     for (j, wj) in w.into_iter().enumerate() {
@@ -172,7 +226,7 @@ mod tests {
                     }
                 }
             }
-            let n = f64::from(samples);
+            let n = samples as f64;
             assert!((c / n - kernel.self_overlap()).abs() < 1e-9, "{kernel:?} c {}", c / n);
             assert!((spread / n - kernel.retraction()).abs() < 1e-9, "{kernel:?} r_d {}", spread / n);
         }

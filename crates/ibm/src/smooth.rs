@@ -10,8 +10,7 @@ use interfaces::{
 };
 use stencils::Stencils;
 
-/// Smooth direct forcing (Uhlmann 2005; several passes as in Wang et al. 2008; smoothed kernel of
-/// Yang et al. 2009), with markers moved into the solid by the kernel's own
+/// Smooth direct forcing (Uhlmann 2005; several passes as in Wang et al. 2008; a smooth [`Kernel`] as Yang et al. 2009), with markers moved into the solid by the kernel's own
 /// [`Kernel::retraction`], which puts the no-slip surface where the body's is.
 ///
 /// ```text
@@ -23,7 +22,8 @@ use stencils::Stencils;
 #[derive(Clone, Debug)]
 pub struct SmoothForcing {
     density: f64,
-    kernel: Kernel,
+    /// Other than that suited.
+    kernel: Option<Kernel>,
     passes: usize,
     inside: [SolidFraction; 3],
     bodies: Vec<Markers>,
@@ -89,12 +89,12 @@ impl Markers {
 }
 
 impl SmoothForcing {
-    /// Markers one cell apart, the [`Kernel::Yang`] kernel and three passes, in a fluid of
-    /// `density` \[kg/m³\].
+    /// Markers 1 (plane) or 1¼ (space) cells apart, the kernel [suited](Kernel::suited) and three passes, in a fluid of `density`
+    /// \[kg/m³\].
     pub fn new(density: f64) -> Self {
         Self {
             density,
-            kernel: Kernel::default(),
+            kernel: None,
             passes: 3,
             inside: Default::default(),
             bodies: Vec::new(),
@@ -109,7 +109,7 @@ impl SmoothForcing {
     /// Another kernel.
     #[must_use]
     pub fn with_kernel(mut self, kernel: Kernel) -> Self {
-        self.kernel = kernel;
+        self.kernel = Some(kernel);
         self
     }
     /// Another number of passes; at least one is made.
@@ -123,6 +123,10 @@ impl SmoothForcing {
         self.inside.iter().map(SolidFraction::updates).sum()
     }
 
+    fn kernel(&self, dim: usize) -> Kernel {
+        self.kernel.unwrap_or_else(|| Kernel::suited(dim))
+    }
+
     fn place_body(
         &mut self,
         velocity: &dyn VelocityField,
@@ -130,7 +134,8 @@ impl SmoothForcing {
         b: BodyId,
     ) -> Result<(), IbmError> {
         let dim = velocity.dim();
-        let cell = uniform_cell(velocity, self.kernel, bodies, b)?;
+        let kernel = self.kernel(dim);
+        let cell = uniform_cell(velocity, kernel, bodies, b)?;
         let h = cell.powf(1.0 / dim as f64);
         let markers = &mut self.bodies[b.0];
         // Made once, unless the body has come to where the cells are of another size.
@@ -142,12 +147,13 @@ impl SmoothForcing {
             if size < LEAST_CELLS * h {
                 return Err(IbmError::TooCoarse { body: b, size, spacing: h, least: LEAST_CELLS });
             }
-            let offset = -self.kernel.retraction() * h;
-            markers.elements = surface_elements(bodies.solid(b), h, offset);
+            let spacing = if dim == 2 { 1.0 } else { SPACING };
+            let offset = -kernel.retraction() * h;
+            markers.elements = surface_elements(bodies.solid(b), spacing * h, offset);
             if markers.elements.is_empty() {
                 return Err(IbmError::NoSurface { body: b, offset });
             }
-            let scale = self.density * h / self.kernel.self_overlap();
+            let scale = self.density * h / kernel.self_overlap();
             markers.masses = markers.elements.iter().map(|e| e.area * scale).collect();
         }
         let pose = bodies.pose(b);
@@ -157,14 +163,14 @@ impl SmoothForcing {
         }
         self.places.clear();
         self.places.extend(markers.arms.iter().map(|arm| pose.position + arm));
-        markers.stencils.set(self.kernel, velocity, &self.places);
+        markers.stencils.set(kernel, velocity, &self.places);
         Ok(())
     }
 
     /// Finds the bodies whose markers reach where no others do.
     fn find_alone(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies) {
         let axes = &velocity.lattice(0).axes;
-        let reach = (self.kernel.reach() + 1) as f64;
+        let reach = self.kernel(velocity.dim()).reach() + 1.0;
         self.crowd.boxes.clear();
         self.crowd.boxes.extend((0..bodies.n_bodies()).map(|b| {
             let mut bounds = bodies.aabb(BodyId(b));
@@ -207,7 +213,7 @@ fn uniform_cell(
         for c in 0..velocity.dim() {
             let nodes = &velocity.lattice(c).axes[axis];
             let [_, here] = nodes.spacings(bounds.min[axis], bounds.max[axis]);
-            let reach = kernel.reach() as f64 * here;
+            let reach = kernel.reach() * here;
             let [low, high] = nodes.spacings(bounds.min[axis] - reach, bounds.max[axis] + reach);
             (least, most) = (least.min(low), most.max(high));
         }
@@ -219,6 +225,10 @@ fn uniform_cell(
     Ok(cell)
 }
 
+/// Cells from marker to marker in space. On a moving sphere the drag is the same to 1e-4 as with markers a cell apart, its noise
+/// stays below 0.2 %, and there are two thirds as many of them.
+const SPACING: f64 = 1.25;
+
 /// Fewer cells across a body than this cannot hold its markers.
 const LEAST_CELLS: f64 = 4.0;
 
@@ -229,7 +239,7 @@ impl Forcing for SmoothForcing {
         for (c, inside) in self.inside.iter_mut().enumerate().take(velocity.dim()) {
             if inside.resize(velocity.lattice(c), bodies.n_bodies()) {
                 // Another grid.
-                self.bodies.iter_mut().for_each(|markers| markers.pose = None);
+                self.bodies.fill(Markers::default());
             }
         }
         for b in 0..bodies.n_bodies() {

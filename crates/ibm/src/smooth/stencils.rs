@@ -35,15 +35,15 @@ const LANES: usize = 8;
 
 impl AxisWeights {
     fn set(&mut self, kernel: Kernel, nodes: &Nodes, places: &[Point], axis: usize) {
-        let width = 2 * kernel.reach();
+        let width = kernel.width();
         self.first.resize(places.len(), 0);
         self.weights.resize(places.len() * width, 0.0);
         self.share.clear();
         self.share.resize(places.len(), 1.0);
-        if width == 4 {
-            Arch::new().dispatch(Weigh::<4> { axis, kernel, nodes, places, out: self });
-        } else {
-            Arch::new().dispatch(Weigh::<6> { axis, kernel, nodes, places, out: self });
+        match width {
+            4 => Arch::new().dispatch(Weigh::<4> { axis, kernel, nodes, places, out: self }),
+            5 => Arch::new().dispatch(Weigh::<5> { axis, kernel, nodes, places, out: self }),
+            _ => Arch::new().dispatch(Weigh::<6> { axis, kernel, nodes, places, out: self }),
         }
     }
 }
@@ -63,7 +63,7 @@ impl<const W: usize> WithSimd for Weigh<'_, W> {
     fn with_simd<S: Simd>(self, _: S) {
         let Self { axis, kernel, nodes, places, out } = self;
         let AxisWeights { first, weights, share } = out;
-        let (periodic, n, reach) = (nodes.is_periodic(), nodes.len() as isize, W as isize / 2);
+        let (periodic, n) = (nodes.is_periodic(), nodes.len() as isize);
         let weights = weights.as_chunks_mut::<W>().0;
         let all = places.chunks(LANES).zip(first.chunks_mut(LANES));
         for ((places, first), (weights, share)) in
@@ -71,8 +71,12 @@ impl<const W: usize> WithSimd for Weigh<'_, W> {
         {
             let (mut start, mut parts) = ([0; LANES], [0.0; LANES]);
             for (p, x) in places.iter().enumerate() {
-                let (node, part) = nodes.locate(x[axis]);
-                (start[p], parts[p]) = (node - reach + 1, part);
+                let (mut node, mut part) = nodes.locate(x[axis]);
+                // A kernel of odd width stands about the nearest node.
+                if W % 2 == 1 && part >= 0.5 {
+                    (node, part) = (node + 1, part - 1.0);
+                }
+                (start[p], parts[p]) = (node - (W as isize - 1) / 2, part);
             }
             let found = kernel.weights_of(parts);
             for p in 0..places.len() {
@@ -109,7 +113,7 @@ impl Stencils {
     /// Of markers at these places.
     pub(super) fn set(&mut self, kernel: Kernel, velocity: &dyn VelocityField, places: &[Point]) {
         let dim = velocity.dim();
-        self.width = 2 * kernel.reach();
+        self.width = kernel.width();
         let mut count = 0;
         for a in 0..dim {
             for c in 0..dim {
@@ -139,6 +143,8 @@ impl Stencils {
         match (self.width, lattice.dim) {
             (4, 2) => Arch::new().dispatch(Read { places: self.places::<4, 2>(c, lattice), u, out }),
             (4, _) => Arch::new().dispatch(Read { places: self.places::<4, 3>(c, lattice), u, out }),
+            (5, 2) => Arch::new().dispatch(Read { places: self.places::<5, 2>(c, lattice), u, out }),
+            (5, _) => Arch::new().dispatch(Read { places: self.places::<5, 3>(c, lattice), u, out }),
             (_, 2) => Arch::new().dispatch(Read { places: self.places::<6, 2>(c, lattice), u, out }),
             _ => Arch::new().dispatch(Read { places: self.places::<6, 3>(c, lattice), u, out }),
         }
@@ -149,6 +155,8 @@ impl Stencils {
         match (self.width, lattice.dim) {
             (4, 2) => Arch::new().dispatch(Spread { places: self.places::<4, 2>(c, lattice), values, u }),
             (4, _) => Arch::new().dispatch(Spread { places: self.places::<4, 3>(c, lattice), values, u }),
+            (5, 2) => Arch::new().dispatch(Spread { places: self.places::<5, 2>(c, lattice), values, u }),
+            (5, _) => Arch::new().dispatch(Spread { places: self.places::<5, 3>(c, lattice), values, u }),
             (_, 2) => Arch::new().dispatch(Spread { places: self.places::<6, 2>(c, lattice), values, u }),
             _ => Arch::new().dispatch(Spread { places: self.places::<6, 3>(c, lattice), values, u }),
         }

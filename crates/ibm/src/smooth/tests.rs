@@ -135,8 +135,8 @@ fn too_coarse_a_grid_is_refused() {
     assert!(matches!(error, IbmError::TooCoarse { .. }), "{error}");
 }
 
-/// Cells of 0.05 up to 1.5, of 0.1 beyond: a body is refused as soon as its markers, which read two nodes to each side, reach
-/// the node at 1.55, which is 0.075 from the one before.
+/// Cells of 0.05 up to 1.5, of 0.1 beyond: a body is refused as soon as its markers, which read 2½ cells to each side, reach
+/// the node at 1.475, from which the next is 0.075 away.
 #[test]
 fn unequal_cells_around_a_body_are_refused() {
     let faces: Vec<f64> =
@@ -153,8 +153,8 @@ fn unequal_cells_around_a_body_are_refused() {
             centre[axis] = at;
             SmoothForcing::new(1.0).place(&velocity, &Balls::new(2, 0.3, vec![centre]))
         };
-        assert_eq!(place(1.05), Ok(()));
-        for (at, widest) in [(1.1, 0.075), (1.5, 0.1)] {
+        assert_eq!(place(1.04), Ok(()));
+        for (at, widest) in [(1.06, 0.075), (1.5, 0.1)] {
             let Err(IbmError::Stretched { body: BodyId(0), axis: found, least, most }) = place(at) else {
                 panic!("a body at {at} was placed");
             };

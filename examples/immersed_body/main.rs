@@ -161,7 +161,7 @@ fn figure_3(flow: &Projection<2>, body: &PrescribedBodies, outline: &[[f64; 2]])
     surface.place(lattice, u.len(), body, &fraction);
     // Of the cells above the body whose centre is in the fluid, the one that is nearest to its end.
     let usable = |cell: &&SurfaceCell| {
-        cell.normal.y > 0.5 && cell.node.distance > 0.15 * H && cell.points[1].is_some()
+        cell.normal.y > 0.5 && cell.distance > 0.15 * H && cell.points[1].is_some()
     };
     let upper = surface.cells(BODY).iter().filter(usable);
     let cell = upper.max_by(|a, b| a.node.arm.x.total_cmp(&b.node.arm.x)).ok_or("no surface cell is free")?;
@@ -176,7 +176,7 @@ fn figure_3(flow: &Projection<2>, body: &PrescribedBodies, outline: &[[f64; 2]])
         weights.iter().map(|&(i, w)| w * u[i]).sum::<f64>() / sum
     };
     let [u1, u2] = [value(0), value(1)];
-    let distances = [0.0, cell.node.distance, first, second];
+    let distances = [0.0, cell.distance, first, second];
     let values = [0.0, cell.value(0.0, u), u1, u2];
     let names = ["S", "P", "P₁", "P₂"].map(String::from);
 

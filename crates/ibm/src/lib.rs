@@ -20,6 +20,7 @@
 //! The crate works on any [`interfaces::VelocityField`] and any [`interfaces::Bodies`].
 #![deny(missing_docs)]
 
+mod clip;
 mod crowd;
 mod cut_link;
 mod error;

@@ -10,7 +10,7 @@ mod triangle;
 
 pub use error::MeshError;
 
-use interfaces::{Aabb, Inertia, Point, Solid, Vector};
+use interfaces::{Aabb, Inertia, Point, Polyhedron, Solid, Vector};
 use mass::Moments;
 use std::path::Path;
 use surface::{Nearest, Surface};
@@ -24,6 +24,8 @@ use surface::{Nearest, Surface};
 /// wrong near there.
 #[derive(Clone, Debug)]
 pub struct TriangleMesh {
+    vertices: Vec<Point>,
+    faces: Vec<[u32; 3]>,
     surface: Surface,
     bounds: Aabb,
     volume: f64,
@@ -60,8 +62,9 @@ impl TriangleMesh {
         points.iter_mut().for_each(|p| *p -= centre);
         let moments = Moments::of(&points, &faces);
         let bounds = Aabb { min: low - middle.coords - centre, max: high - middle.coords - centre };
-        let surface = Surface::new(points, faces);
-        Ok(Self { surface, bounds, volume: moments.volume, moments, origin: middle + centre })
+        let vertices = points.iter().map(|p| Point::from(*p)).collect();
+        let surface = Surface::new(points, faces.clone());
+        Ok(Self { vertices, faces, surface, bounds, volume: moments.volume, moments, origin: middle + centre })
     }
 
     /// The body in an STL file, text or binary, whose unit of length is `unit` \[m\] (1e-3 for
@@ -86,7 +89,7 @@ impl TriangleMesh {
 
     /// Number of triangles.
     pub fn n_faces(&self) -> usize {
-        self.surface.n_faces()
+        self.faces.len()
     }
     /// Volume, by the divergence theorem \[m³\].
     pub fn volume(&self) -> f64 {
@@ -162,6 +165,10 @@ impl Solid for TriangleMesh {
 
     fn aabb(&self) -> Aabb {
         self.bounds
+    }
+
+    fn polyhedron(&self) -> Option<Polyhedron<'_>> {
+        Some(Polyhedron { vertices: &self.vertices, faces: &self.faces })
     }
 
     fn normal(&self, x: Point, _band: f64) -> Vector {

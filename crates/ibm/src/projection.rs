@@ -1,4 +1,5 @@
 //! One body on one lattice.
+use crate::clip::Clipper;
 use crate::subcells::Cell;
 use crate::{FractionRule, SolidNode, cell_fraction};
 use interfaces::{Bodies, BodyId, Lattice, Point, Rotation, Solid, Vector};
@@ -17,6 +18,7 @@ pub(crate) struct Projector {
     /// Which of the distances were asked for.
     rows: Vec<Range<usize>>,
     answers: Vec<f64>,
+    clipper: Clipper,
 }
 
 /// What all nodes with the same number along one axis share.
@@ -59,6 +61,10 @@ impl Projector {
         nodes.clear();
         let (solid, pose, dim) = (bodies.solid(b), bodies.pose(b), lattice.dim);
         let bounds = bodies.aabb(b);
+        if let (FractionRule::CutVolume, 3, Some(surface)) = (rule, dim, solid.polyhedron()) {
+            self.clipper.clip(lattice, surface, pose, bounds, nodes);
+            return;
+        }
         for a in 0..3 {
             let (low, high) = (bounds.min[a], bounds.max[a]);
             columns(&mut self.columns[a], lattice, a, [low, high], pose.position[a]);
@@ -120,7 +126,7 @@ impl Projector {
                     }
                     if fraction > 0.0 {
                         let index = lattice.base + along + beside + above;
-                        nodes.push(SolidNode { index, fraction, distance, arm, volume });
+                        nodes.push(SolidNode { index, fraction, arm, volume });
                     }
                 }
             }

@@ -31,6 +31,8 @@ pub struct Reconstruction {
 pub struct SurfaceCell {
     /// The cell.
     pub node: SolidNode,
+    /// Its signed distance to the surface \[m\].
+    pub distance: f64,
     /// The surface point S, from the body's centre of mass \[m\].
     pub foot: Vector,
     /// Outward unit normal there.
@@ -128,13 +130,18 @@ impl Reconstruction {
         }
         for node in nodes.iter().filter(|n| n.fraction < 1.0) {
             let band = node.volume.powf(root);
-            let normal = pose.orientation * solid.normal(pose.to_body(pose.position + node.arm), band);
+            let x = pose.to_body(pose.position + node.arm);
+            // No farther than half a diagonal: the surface cuts it.
+            let widths = lattice.widths(lattice.node(node.index));
+            let diagonal = widths[..lattice.dim].iter().map(|w| w * w).sum::<f64>().sqrt();
+            let distance = solid.signed_distance(x, 0.51 * diagonal);
+            let normal = pose.orientation * solid.normal(x, band);
             let h = cell_edge(lattice, lattice.node(node.index), normal);
-            let foot = node.arm - normal * node.distance;
+            let foot = node.arm - normal * distance;
             let seen = fluid_points(lattice, pose.position + foot, normal, h, covered);
             let points = seen.map(|p| p.map(|p| p.distance));
             *lowered += u64::from(points.iter().flatten().count() < profile.points(*given));
-            let at = if *extrapolates { node.distance } else { node.distance.max(0.0) };
+            let at = if *extrapolates { distance } else { distance.max(0.0) };
             let weights = profile.weights(*given, at, points[0], points[1]);
             let mut fluid = [(lattice.base, 0.0); 16];
             for (p, point) in seen.iter().enumerate() {
@@ -145,6 +152,7 @@ impl Reconstruction {
             }
             rows.push(SurfaceCell {
                 node: *node,
+                distance,
                 foot,
                 normal,
                 points,

@@ -10,8 +10,6 @@ pub struct SolidNode {
     pub index: usize,
     /// Solid fraction λ, in (0, 1].
     pub fraction: f64,
-    /// Signed distance of the node to the surface \[m\] (only its sign is exact where λ = 1).
-    pub distance: f64,
     /// Place of the node from the body's centre of mass \[m\].
     pub arm: Vector,
     /// Its control volume \[m³\]; area in a plane lattice.

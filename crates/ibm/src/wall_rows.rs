@@ -35,6 +35,9 @@ pub struct WallRows {
     /// Cells whose slots are to be freed.
     touched: Vec<usize>,
     others: Vec<Neighbour>,
+    /// Nodes of a body in its frame, and their signed distances.
+    points: Vec<Point>,
+    distances: Vec<f64>,
     rows: Vec<WallRow>,
 }
 
@@ -175,7 +178,7 @@ impl WallRows {
             .fold(0.0, f64::max);
         Neighbour::list(lattice, bodies, b, 2.0, seen.iter().map(|&b| BodyId(b)), &mut self.others);
         let least = ON * widest;
-        let Self { fraction, bodies: all, slots, touched, others, .. } = self;
+        let Self { fraction, bodies: all, slots, touched, others, points, distances, .. } = self;
         let (nodes, cells) = (fraction.nodes(b), &mut all[b.0]);
         cells.clear();
         // Twice what is there now, so that a moving body allocates nothing.
@@ -190,14 +193,19 @@ impl WallRows {
                 cells.push(WallCell { cell, body: b, foot, normal, y, area: 0.0, points });
             }
         };
-        for node in nodes {
+        points.clear();
+        points.extend(nodes.iter().map(|node| pose.to_body(pose.position + node.arm)));
+        distances.resize(nodes.len(), 0.0);
+        solid.signed_distances(points, 1.1 * widest, distances);
+        for (node, &distance) in nodes.iter().zip(&*distances) {
             slots[node.index] = SOLID;
-            if node.distance > least {
-                add(node.index, node.arm, node.distance);
+            if distance > least {
+                add(node.index, node.arm, distance);
             }
         }
         // Those that are not cut but share a face with a cell that has its centre inside.
-        for node in nodes.iter().filter(|node| node.distance <= least && node.distance > -1.001 * widest) {
+        let inside = |d: f64| d <= least && d > -1.001 * widest;
+        for (node, _) in nodes.iter().zip(&*distances).filter(|(_, d)| inside(**d)) {
             let at = lattice.node(node.index);
             for (a, step) in (0..lattice.dim).flat_map(|a| [(a, -1), (a, 1)]) {
                 let mut beside = at;

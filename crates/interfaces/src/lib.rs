@@ -34,6 +34,6 @@ pub use geometry::{Aabb, Periods, Point, Pose, Rotation, Twist, Vector, Wrench};
 pub use lattice::{Lattice, VelocityField};
 pub use nodes::Nodes;
 pub use restart::{Checkpoint, RestartError};
-pub use solid::{Solid, SurfaceElement};
+pub use solid::{Polyhedron, Solid, SurfaceElement};
 pub use transport::{Closure, Equation, SolveError, SolveInfo, Transport};
 pub use wall_row::{WallPoint, WallRow};

@@ -134,6 +134,20 @@ impl Nodes {
         let i = if self.periodic { i.rem_euclid(n) } else { i.clamp(0, n - 1) } as usize;
         t.edges[i + 1] - t.edges[i]
     }
+    /// Lower end of the control volume of node `i` \[m\], which is the upper end of that of node i − 1; beyond a bounded side
+    /// volumes go on as wide as the last.
+    pub fn edge(&self, i: isize) -> f64 {
+        let Some(t) = &self.table else { return self.first + (i as f64 - 0.5) * self.spacing };
+        let n = self.len as isize;
+        if (0..=n).contains(&i) {
+            t.edges[i as usize]
+        } else if let Some(period) = self.period() {
+            t.edges[i.rem_euclid(n) as usize] + i.div_euclid(n) as f64 * period
+        } else {
+            let last = i.clamp(0, n);
+            t.edges[last as usize] + (i - last) as f64 * self.width(i)
+        }
+    }
     /// The last node at or below `x` and how far x is from it towards the next, 0 ≤ t < 1.
     #[inline(always)]
     pub fn locate(&self, x: f64) -> (isize, f64) {
@@ -301,6 +315,17 @@ mod tests {
                         .collect();
                     assert_eq!(range.collect::<Vec<_>>(), expected);
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn volumes_lie_edge_to_edge() {
+        for nodes in all() {
+            for i in -12..15 {
+                let [low, high] = [nodes.edge(i), nodes.edge(i + 1)];
+                assert!((high - low - nodes.width(i)).abs() < 1e-12, "{nodes:?} {i}");
+                assert!(low < nodes.place(i) && nodes.place(i) < high, "{nodes:?} {i}");
             }
         }
     }

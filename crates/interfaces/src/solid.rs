@@ -12,6 +12,15 @@ pub struct SurfaceElement {
     pub area: f64,
 }
 
+/// A closed surface made of triangles, in the body's frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Polyhedron<'a> {
+    /// Places \[m\].
+    pub vertices: &'a [Point],
+    /// Numbers of three vertices each, counter-clockwise seen from outside.
+    pub faces: &'a [[u32; 3]],
+}
+
 /// A closed shape in its own frame, centre of mass at the origin; negative distances are inside.
 pub trait Solid: Send + Sync {
     /// Signed distance to the surface \[m\]. Exact where |d| < `band`; beyond it only the sign and
@@ -62,6 +71,12 @@ pub trait Solid: Send + Sync {
     /// areas sum to that surface's area. `None` from shapes that cannot tell (the default).
     fn surface(&self, spacing: f64, offset: f64) -> Option<Vec<SurfaceElement>> {
         let _ = (spacing, offset);
+        None
+    }
+
+    /// The surface itself, of shapes that are made of triangles: how much of a cell they fill is then exact. Others have
+    /// `None` (the default).
+    fn polyhedron(&self) -> Option<Polyhedron<'_>> {
         None
     }
 }

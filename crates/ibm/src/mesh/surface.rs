@@ -65,10 +65,6 @@ impl Surface {
         Self { tree: tree(&triangles, &clusters), triangles, normals, clusters }
     }
 
-    pub(crate) fn n_faces(&self) -> usize {
-        self.triangles.len()
-    }
-
     /// The point of the surface nearest to `x`, if it is nearer than `within`; a `seed` is a face that
     /// may be near.
     pub(crate) fn nearest(&self, x: Point, within: f64, seed: Option<u32>) -> Option<Nearest> {

@@ -45,7 +45,7 @@ fn error(
     // What bodies cover must not be used.
     fraction.nodes(BodyId(0)).iter().for_each(|n| field[n.index] = f64::NAN);
     reconstruction.apply(BodyId(0), &mut field, |_, _| known);
-    let outside = || reconstruction.cells(BodyId(0)).iter().filter(|c| c.node.distance > 0.0);
+    let outside = || reconstruction.cells(BodyId(0)).iter().filter(|c| c.distance > 0.0);
     let sum: f64 = outside().map(|c| (field[c.node.index] - exact[c.node.index]).powi(2)).sum();
     (sum / outside().count() as f64).sqrt()
 }

@@ -160,9 +160,8 @@ fn figure_3(flow: &Projection<2>, body: &PrescribedBodies, outline: &[[f64; 2]])
     let mut surface = Reconstruction::new(Along::Quadratic, Given::Value);
     surface.place(lattice, u.len(), body, &fraction);
     // Of the cells above the body whose centre is in the fluid, the one that is nearest to its end.
-    let usable = |cell: &&SurfaceCell| {
-        cell.normal.y > 0.5 && cell.distance > 0.15 * H && cell.points[1].is_some()
-    };
+    let usable =
+        |cell: &&SurfaceCell| cell.normal.y > 0.5 && cell.distance > 0.15 * H && cell.points[1].is_some();
     let upper = surface.cells(BODY).iter().filter(usable);
     let cell = upper.max_by(|a, b| a.node.arm.x.total_cmp(&b.node.arm.x)).ok_or("no surface cell is free")?;
     let at = |distance: f64| {

@@ -1,6 +1,8 @@
 //! Solid shares of cells from a surface of triangles.
 use crate::SolidNode;
 use interfaces::{Aabb, Lattice, Point, Polyhedron, Pose, Vector};
+use nalgebra::Matrix3;
+use pulp::{Arch, Simd, WithSimd};
 
 /// Cuts closed surfaces of triangles up at the sides of cells; holds the memory that this takes.
 ///
@@ -16,47 +18,51 @@ use interfaces::{Aabb, Lattice, Point, Polyhedron, Pose, Vector};
 pub(crate) struct Clipper {
     axes: [Cells; 3],
     corners: Vec<Corner>,
-    /// Of every cell, x fastest, and of what is beyond the last one of each row: ∫ (x − x₀) n_x dA and ∫ n_x dA within. The
-    /// first becomes λ.
+    /// Of every cell, and of what is beyond on all sides, x fastest: ∫ x n_x dA and ∫ n_x dA within.
     sums: Vec<[f64; 2]>,
 }
 
-/// The control volumes along one axis that a body may reach.
+/// The control volumes along one axis that a body may reach, from number 1; 0 is what lies below them, the last number what
+/// lies above.
 #[derive(Clone, Debug, Default)]
 struct Cells {
-    /// Their sides, from the centre of mass \[m\].
-    edges: Vec<f64>,
+    /// Their lower ends, from the centre of mass \[m\]; of number 0, any.
+    lower: Vec<f64>,
     /// Their nodes, from there \[m\], and what these add to the storage index.
     nodes: Vec<(f64, usize)>,
     /// 1/width, where all are equal.
     per_width: Option<f64>,
 }
 
-/// A vertex and the cell it lies in.
+/// A vertex and where it lies.
 #[derive(Clone, Copy, Debug)]
 struct Corner {
     place: Vector,
-    cell: [isize; 3],
+    /// Numbers of its cell along the axes, [`BITS`] bits each, x lowest.
+    cell: u64,
 }
+
+const BITS: usize = 21;
 
 /// A share that differs from 0 or 1 by less is round-off.
 const ROUND_OFF: f64 = 1e-10;
 
 impl Cells {
     fn set(&mut self, lattice: &Lattice, a: usize, span: [f64; 2], centre: f64) {
-        self.edges.clear();
-        self.nodes.clear();
         let nodes = &lattice.axes[a];
         let (mut first, mut last) = (nodes.locate(span[0]).0, nodes.locate(span[1]).0 + 1);
         if !nodes.is_periodic() {
             (first, last) = (first.max(0), last.min(nodes.len() as isize - 1));
         }
+        self.lower.clear();
+        self.lower.push(nodes.edge(first) - centre);
+        self.nodes.clear();
         for i in first..=last {
             let Some(wrapped) = nodes.wrap(i) else { continue };
-            self.edges.push(nodes.edge(i) - centre);
+            self.lower.push(nodes.edge(i) - centre);
             self.nodes.push((nodes.place(i) - centre, wrapped * lattice.stride[a]));
         }
-        self.edges.push(nodes.edge(last + 1) - centre);
+        self.lower.push(nodes.edge(last + 1) - centre);
         self.per_width = nodes.is_uniform().then(|| 1.0 / nodes.mean_spacing());
     }
 
@@ -65,32 +71,31 @@ impl Cells {
         self.nodes.len()
     }
 
-    /// In which of them `x` lies: −1 before the first, their number beyond the last.
+    fn width(&self, cell: usize) -> f64 {
+        self.lower[cell + 1] - self.lower[cell]
+    }
+
+    /// In which of them `x` lies.
     #[inline(always)]
-    fn locate(&self, x: f64) -> isize {
-        match self.per_width {
-            Some(per_width) => (((x - self.edges[0]) * per_width).floor() as isize).clamp(-1, self.len() as isize),
-            None => self.edges.partition_point(|edge| *edge <= x) as isize - 1,
-        }
+    fn locate(&self, x: f64) -> usize {
+        let Some(per_width) = self.per_width else {
+            return self.lower[1..].partition_point(|edge| *edge <= x);
+        };
+        let (number, last) = ((x - self.lower[0]) * per_width + 1.0, (self.lower.len() - 1) as f64);
+        let number = if number > 0.0 { number } else { 0.0 };
+        (if number < last { number } else { last }) as i32 as usize
     }
 }
 
 /// A triangle, and what cuts leave of it: two more corners per axis at most.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Polygon {
     corners: [Vector; 9],
     len: usize,
 }
 
 impl Polygon {
-    const NONE: Self = Self { corners: [Vector::new(0.0, 0.0, 0.0); 9], len: 0 };
-
-    fn new(corners: [Vector; 3]) -> Self {
-        let mut polygon = Self::NONE;
-        corners.into_iter().for_each(|corner| polygon.push(corner));
-        polygon
-    }
-
+    #[inline(always)]
     fn push(&mut self, corner: Vector) {
         // Round-off can make a cut cross a side that it only touches: such a corner has no area.
         if let Some(slot) = self.corners.get_mut(self.len) {
@@ -99,26 +104,138 @@ impl Polygon {
         }
     }
 
+    #[inline(always)]
     fn corners(&self) -> &[Vector] {
         &self.corners[..self.len]
     }
+}
 
-    /// The parts below and above a `plane` across `axis`.
-    fn cut(&self, axis: usize, plane: f64) -> [Self; 2] {
-        let mut parts = [Self::NONE; 2];
-        let Some(mut last) = self.corners().last() else { return parts };
-        for corner in self.corners() {
-            let (before, here) = (last[axis] - plane, corner[axis] - plane);
-            let above = usize::from(here >= 0.0);
-            if above != usize::from(before >= 0.0) {
-                let mut crossing = last + (corner - last) * (before / (before - here));
-                crossing[axis] = plane;
-                parts.iter_mut().for_each(|part| part.push(crossing));
-            }
-            parts[above].push(*corner);
-            last = corner;
+/// The parts of a polygon `below` and `above` a `plane` across `axis`.
+#[inline(always)]
+fn cut(corners: &[Vector], axis: usize, plane: f64, below: &mut Polygon, above: &mut Polygon) {
+    (below.len, above.len) = (0, 0);
+    let Some(mut last) = corners.last() else { return };
+    let mut before = last[axis] - plane;
+    for corner in corners {
+        let here = corner[axis] - plane;
+        if (here >= 0.0) != (before >= 0.0) {
+            let mut crossing = last + (corner - last) * (before / (before - here));
+            crossing[axis] = plane;
+            below.push(crossing);
+            above.push(crossing);
         }
-        parts
+        if here >= 0.0 {
+            above.push(*corner)
+        } else {
+            below.push(*corner)
+        }
+        (last, before) = (corner, here);
+    }
+}
+
+/// The parts at hand along one axis.
+type Parts = [Polygon; 3];
+
+/// Cells and what the surface in them sums to.
+struct Shares<'a> {
+    axes: &'a [Cells; 3],
+    stride: [usize; 3],
+    sums: &'a mut [[f64; 2]],
+}
+
+impl Shares<'_> {
+    /// Gives the parts of a polygon to the cells along `AXIS`, and those below it, that it `crosses`; along the others it lies
+    /// in `cell`.
+    #[inline(always)]
+    fn share_out<const AXIS: usize>(
+        &mut self,
+        corners: &[Vector],
+        cell: usize,
+        crosses: [bool; 3],
+        parts: &mut [Parts],
+    ) {
+        let (along, stride) = (&self.axes[AXIS], self.stride[AXIS]);
+        let Some(([below, rest, next], parts)) = parts.split_first_mut() else { return };
+        let (mut low, mut high) = (0, 0);
+        if crosses[AXIS] {
+            low = usize::MAX;
+            for corner in corners {
+                let at = along.locate(corner[AXIS]);
+                (low, high) = (low.min(at), high.max(at));
+            }
+        }
+        let (mut left, [mut rest, mut next]) = (corners, [rest, next]);
+        for i in low..=high {
+            let part = if i < high {
+                cut(left, AXIS, along.lower[i + 1], below, next);
+                std::mem::swap(&mut rest, &mut next);
+                left = rest.corners();
+                below.corners()
+            } else {
+                left
+            };
+            if part.len() > 2 {
+                let cell = cell + i * stride;
+                match AXIS {
+                    0 => self.add(part, cell),
+                    1 => self.share_out::<0>(part, cell, crosses, parts),
+                    _ => self.share_out::<1>(part, cell, crosses, parts),
+                }
+            }
+        }
+    }
+
+    /// Adds a convex polygon that lies in one `cell`.
+    #[inline(always)]
+    fn add(&mut self, corners: &[Vector], cell: usize) {
+        let first = corners[0];
+        let [mut moment, mut flux] = self.sums[cell];
+        for pair in corners[1..].windows(2) {
+            let (u, v) = (pair[0] - first, pair[1] - first);
+            let part = 0.5 * (u.y * v.z - u.z * v.y);
+            moment += part * ((first.x + pair[0].x + pair[1].x) * (1.0 / 3.0));
+            flux += part;
+        }
+        self.sums[cell] = [moment, flux];
+    }
+}
+
+/// Turns all vertices and shares all faces out.
+struct Share<'a> {
+    surface: Polyhedron<'a>,
+    turn: Matrix3<f64>,
+    corners: &'a mut Vec<Corner>,
+    shares: Shares<'a>,
+}
+
+impl WithSimd for Share<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { surface, turn, corners, mut shares } = self;
+        let (axes, stride) = (shares.axes, shares.stride);
+        corners.clear();
+        corners.extend(surface.vertices.iter().map(|x: &Point| {
+            let place = turn * x.coords;
+            let at = |a: usize| (axes[a].locate(place[a]) as u64) << (a * BITS);
+            Corner { place, cell: at(0) | at(1) | at(2) }
+        }));
+        let mut parts = [Parts::default(); 3];
+        for face in surface.faces {
+            let [a, b, c] = face.each_ref().map(|&v| &corners[v as usize]);
+            let places = [a.place, b.place, c.place];
+            let differ = (a.cell ^ b.cell) | (a.cell ^ c.cell);
+            let number = |cell: u64, axis: usize| (cell >> (axis * BITS)) as usize & ((1 << BITS) - 1);
+            let crosses = [0, 1, 2].map(|axis| number(differ, axis) != 0);
+            let cell =
+                (0..3).map(|axis| if crosses[axis] { 0 } else { stride[axis] * number(a.cell, axis) }).sum();
+            if differ == 0 {
+                shares.add(&places, cell);
+            } else {
+                shares.share_out::<2>(&places, cell, crosses, &mut parts);
+            }
+        }
     }
 }
 
@@ -135,93 +252,43 @@ impl Clipper {
         for a in 0..3 {
             self.axes[a].set(lattice, a, [bounds.min[a], bounds.max[a]], pose.position[a]);
         }
-        let [nx, ny, nz] = [0, 1, 2].map(|a| self.axes[a].len());
-        if nx * ny * nz == 0 {
+        let lengths = [0, 1, 2].map(|a| self.axes[a].len());
+        if lengths.contains(&0) {
             return;
         }
+        let stride = [1, lengths[0] + 2, (lengths[0] + 2) * (lengths[1] + 2)];
         self.sums.clear();
-        self.sums.resize((nx + 1) * ny * nz, [0.0; 2]);
-        self.corners.clear();
-        let (axes, turn) = (&self.axes, pose.orientation.to_rotation_matrix());
-        self.corners.extend(surface.vertices.iter().map(|x: &Point| {
-            let place = turn * x.coords;
-            Corner { place, cell: std::array::from_fn(|a| axes[a].locate(place[a])) }
-        }));
-        for face in surface.faces {
-            let [a, b, c] = face.map(|v| self.corners[v as usize]);
-            if a.cell == b.cell && b.cell == c.cell {
-                self.add(&[a.place, b.place, c.place], a.cell);
-            } else {
-                self.share_out(Polygon::new([a.place, b.place, c.place]), 2, [0; 3]);
-            }
-        }
-        self.collect(lattice.base, nodes);
-    }
-
-    /// Gives the parts of a polygon to the cells along `axis` and those below it; along the axes above it lies in `cell`.
-    fn share_out(&mut self, polygon: Polygon, axis: usize, mut cell: [isize; 3]) {
-        let (mut low, mut high) = (isize::MAX, isize::MIN);
-        for corner in polygon.corners() {
-            let at = self.axes[axis].locate(corner[axis]);
-            (low, high) = (low.min(at), high.max(at));
-        }
-        let mut rest = polygon;
-        for i in low..=high {
-            let mut part = rest;
-            if i < high {
-                [part, rest] = rest.cut(axis, self.axes[axis].edges[(i + 1) as usize]);
-            }
-            cell[axis] = i;
-            if part.len < 3 || (axis > 0 && !(0..self.axes[axis].len() as isize).contains(&i)) {
-                continue;
-            }
-            if axis == 0 { self.add(part.corners(), cell) } else { self.share_out(part, axis - 1, cell) }
-        }
-    }
-
-    /// Adds a convex polygon that lies in one `cell`.
-    #[inline]
-    fn add(&mut self, corners: &[Vector], cell: [isize; 3]) {
-        let [nx, ny, nz] = [0, 1, 2].map(|a| self.axes[a].len());
-        let [Ok(i), Ok(j), Ok(k)] = cell.map(usize::try_from) else { return };
-        if i > nx || j >= ny || k >= nz {
-            return;
-        }
-        let side = self.axes[0].edges[i];
-        let sums = &mut self.sums[i + (nx + 1) * (j + ny * k)];
-        let first = corners[0];
-        for pair in corners[1..].windows(2) {
-            let (u, v) = (pair[0] - first, pair[1] - first);
-            let flux = 0.5 * (u.y * v.z - u.z * v.y);
-            sums[0] += flux * ((first.x + pair[0].x + pair[1].x) / 3.0 - side);
-            sums[1] += flux;
-        }
+        self.sums.resize(stride[2] * (lengths[2] + 2), [0.0; 2]);
+        let shares = Shares { axes: &self.axes, stride, sums: &mut self.sums };
+        let turn = *pose.orientation.to_rotation_matrix().matrix();
+        Arch::new().dispatch(Share { surface, turn, corners: &mut self.corners, shares });
+        self.collect(lattice.base, stride, nodes);
     }
 
     /// Makes shares of the sums, and nodes of them.
-    fn collect(&mut self, base: usize, nodes: &mut Vec<SolidNode>) {
+    fn collect(&mut self, base: usize, stride: [usize; 3], nodes: &mut Vec<SolidNode>) {
         let [along_x, along_y, along_z] = &self.axes;
-        let width = |cells: &Cells, i: usize| cells.edges[i + 1] - cells.edges[i];
-        let rows = self.sums.chunks_exact_mut(along_x.len() + 1);
-        for (row, sums) in rows.enumerate() {
-            let (j, k) = (row % along_y.len(), row / along_y.len());
-            let side = width(along_y, j) * width(along_z, k);
-            let mut beyond = sums[along_x.len()][1];
-            for i in (0..along_x.len()).rev() {
-                let width = width(along_x, i);
-                let [within, flux] = sums[i];
-                sums[i][0] = (within + beyond * width) / (width * side);
-                beyond += flux;
-            }
-            let ((y, offset_y), (z, offset_z)) = (along_y.nodes[j], along_z.nodes[k]);
-            for (i, ([share, _], (x, offset_x))) in sums.iter().zip(&along_x.nodes).enumerate() {
-                if *share > ROUND_OFF {
-                    nodes.push(SolidNode {
-                        index: base + offset_x + offset_y + offset_z,
-                        fraction: if *share < 1.0 - ROUND_OFF { *share } else { 1.0 },
-                        arm: Vector::new(*x, y, z),
-                        volume: width(along_x, i) * side,
-                    });
+        for (k, (z, offset_z)) in (1..).zip(&along_z.nodes) {
+            for (j, (y, offset_y)) in (1..).zip(&along_y.nodes) {
+                let row = &mut self.sums[stride[2] * k + stride[1] * j..][..stride[1]];
+                let side = along_y.width(j) * along_z.width(k);
+                let mut beyond = row[along_x.len() + 1][1];
+                for i in (1..=along_x.len()).rev() {
+                    let [moment, flux] = row[i];
+                    let within = moment - along_x.lower[i] * flux;
+                    row[i][0] = (within / along_x.width(i) + beyond) / side;
+                    beyond += flux;
+                }
+                for (i, (x, offset_x)) in (1..).zip(&along_x.nodes) {
+                    let share = row[i][0];
+                    if share > ROUND_OFF {
+                        nodes.push(SolidNode {
+                            index: base + offset_x + offset_y + offset_z,
+                            fraction: if share < 1.0 - ROUND_OFF { share } else { 1.0 },
+                            arm: Vector::new(*x, *y, *z),
+                            volume: along_x.width(i) * side,
+                        });
+                    }
                 }
             }
         }

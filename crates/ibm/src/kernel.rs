@@ -196,7 +196,8 @@ mod tests {
             let order = degree + 1;
             let (mut sum, mut signed_binomial) = (0.0, 1.0);
             for k in 0..=order {
-                sum += signed_binomial * (0.5 * f64::from(order) - f64::from(k) - r.abs()).max(0.0).powi(degree);
+                sum +=
+                    signed_binomial * (0.5 * f64::from(order) - f64::from(k) - r.abs()).max(0.0).powi(degree);
                 signed_binomial *= -f64::from(order - k) / f64::from(k + 1);
             }
             sum / (1..=degree).map(f64::from).product::<f64>()

@@ -64,7 +64,15 @@ impl TriangleMesh {
         let bounds = Aabb { min: low - middle.coords - centre, max: high - middle.coords - centre };
         let vertices = points.iter().map(|p| Point::from(*p)).collect();
         let surface = Surface::new(points, faces.clone());
-        Ok(Self { vertices, faces, surface, bounds, volume: moments.volume, moments, origin: middle + centre })
+        Ok(Self {
+            vertices,
+            faces,
+            surface,
+            bounds,
+            volume: moments.volume,
+            moments,
+            origin: middle + centre,
+        })
     }
 
     /// The body in an STL file, text or binary, whose unit of length is `unit` \[m\] (1e-3 for

@@ -149,7 +149,7 @@ fn spheres() -> Outcome<()> {
 fn cylinder() -> Outcome<()> {
     println!("\nCylinder in a channel, Re 20: Cd {DRAG:.6} and Cl {LIFT:.6} wanted");
     println!(
-        "{:>22} {:>15} {:>6} {:>7} {:>11} {:>9} {:>9} {:>9} {:>10} {:>9} {:>9} {:>9} {:>7} {:>8}",
+        "{:>22} {:>15} {:>6} {:>7} {:>11} {:>9} {:>9} {:>9} {:>9} {:>10} {:>9} {:>9} {:>9} {:>9} {:>7} {:>8}",
         "way",
         "cells",
         "per D",
@@ -158,9 +158,11 @@ fn cylinder() -> Outcome<()> {
         "Cd",
         "error",
         "surface",
+        "around",
         "Cl",
         "error",
         "surface",
+        "around",
         "Δp",
         "steps",
         "CPU s"
@@ -181,12 +183,13 @@ fn cylinder() -> Outcome<()> {
             let few = per_diameter == 40 && matches!(kind, Cells::Equal);
             for shift in &shifts[..if few { 1 } else { 3 }] {
                 let found = channel_cylinder::run(way, kind, per_diameter, *shift)?;
-                let Found { cells, errors, coefficients: [drag, lift], surface, steps, cpu } = found;
+                let Found { cells, errors, coefficients: [drag, lift], surface, around, steps, cpu } = found;
+                let [drag_around, lift_around] = around.map(|e| 100.0 * e);
                 let [drag_there, lift_there] = surface.map(|e| 100.0 * e);
                 let [drag_error, lift_error, drop_error] = errors.map(|e| 100.0 * e);
                 println!(
                     "{:>22} {:>15} {per_diameter:>6} {cells:>7} {:>5.2} {:>5.2} {drag:>9.5} {drag_error:>8.3}% \
-                     {drag_there:>8.2}% {lift:>10.6} {lift_error:>8.1}% {lift_there:>8.1}% {drop_error:>8.2}% {steps:>7} {cpu:>8.2}",
+                     {drag_there:>8.2}% {drag_around:>8.2}% {lift:>10.6} {lift_error:>8.1}% {lift_there:>8.1}% {lift_around:>8.1}% {drop_error:>8.2}% {steps:>7} {cpu:>8.2}",
                     way.to_string(),
                     format!("{kind:?}"),
                     shift[0],

@@ -2,7 +2,7 @@
 use crate::with_threads;
 use example_support::eccentric_cylinders::EccentricCylinders;
 use example_support::prescribed_bodies::PrescribedBodies;
-use example_support::unfolded::whole_surface_loads;
+use example_support::unfolded::Unfolded;
 use example_support::walled_flows::{
     COUETTE_TORQUE, ForcedChannel, SphereArray, TurnedChannel, couette, couette_velocity, put_walls, settle,
     surface_loads, velocity_errors,
@@ -113,8 +113,12 @@ fn a_quarter_of_a_sphere_bears_a_quarter() {
     assert!(force.x > 0.1 && (4.0 * part.x / force.x - 1.0).abs() < 1e-6, "{force} {part}");
     let loads = surface_loads(&whole, &sphere, 0, 0.0).unwrap().total().force;
     let spacing = 2.0 / 24.0;
-    let unfolded =
-        whole_surface_loads(&quarter, [false, true, true], &sphere, spacing).unwrap().total().force;
+    let unfolded = Unfolded::new(&quarter, [false, true, true])
+        .unwrap()
+        .surface_loads(&sphere, spacing)
+        .unwrap()
+        .total()
+        .force;
     assert!((unfolded - loads).norm() < 1e-4 * loads.norm(), "{unfolded} {loads}");
 }
 

@@ -70,6 +70,19 @@ pub enum IbmError {
         /// Mean distance of the nodes \[m\].
         spacing: f64,
     },
+    /// A control volume holds no cells, or reaches the sides of the flow.
+    #[error(
+        "no cells along axis {axis} have their centres between {low:.6e} and {high:.6e} m, or there is less than one more before a side \
+         of the box: take other corners"
+    )]
+    NoRoom {
+        /// Axis, 0 for x.
+        axis: usize,
+        /// Lower corner \[m\].
+        low: f64,
+        /// Upper corner \[m\].
+        high: f64,
+    },
     /// A field is not one of this lattice.
     #[error(
         "a field of {found} values was given with a lattice that stores {needed}: give both of the same grid"

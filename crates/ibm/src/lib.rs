@@ -21,6 +21,7 @@
 #![deny(missing_docs)]
 
 mod clip;
+mod control_volume;
 mod crowd;
 mod cut_link;
 mod error;
@@ -48,6 +49,7 @@ mod vicinity;
 mod wall_distance;
 mod wall_rows;
 
+pub use control_volume::ControlVolume;
 pub use cut_link::cut_walls;
 pub use error::IbmError;
 pub use forcing::{Forcing, Layer};

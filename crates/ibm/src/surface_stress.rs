@@ -83,6 +83,15 @@ const PRESSED: f64 = 1.0;
 /// make the loads up to 3 % smaller.)
 const BESIDE: f64 = 0.3;
 
+/// Does `field` hold a value for every node?
+pub(crate) fn stored(lattice: &Lattice, field: &[f64]) -> Result<(), IbmError> {
+    let needed = lattice.index(lattice.shape().map(|n| n as isize - 1)).map_or(0, |last| last + 1);
+    if needed == 0 || needed > field.len() {
+        return Err(IbmError::Storage { needed, found: field.len() });
+    }
+    Ok(())
+}
+
 impl<'a> SurfaceStress<'a> {
     /// Of this velocity and of the `pressure` \[Pa\] stored at the nodes of `lattice`, in a fluid of dynamic `viscosity` \[Pa s\].
     pub fn new(
@@ -109,13 +118,7 @@ impl<'a> SurfaceStress<'a> {
     /// is not the lattice's; [`IbmError::Lost`] and [`IbmError::TooLarge`].
     pub fn on(&self, bodies: &dyn Bodies, b: BodyId, spacing: f64) -> Result<SurfaceLoads, IbmError> {
         check(self.lattice, bodies, b)?;
-        let last = self.lattice.index(self.lattice.shape().map(|n| n as isize - 1));
-        if last.is_none_or(|last| last >= self.pressure.len()) {
-            return Err(IbmError::Storage {
-                needed: last.map_or(0, |last| last + 1),
-                found: self.pressure.len(),
-            });
-        }
+        stored(self.lattice, self.pressure)?;
         let elements = surface_elements(bodies.solid(b), spacing, 0.0);
         if elements.is_empty() {
             return Err(IbmError::NoSurface { body: b, offset: 0.0 });

@@ -4,11 +4,11 @@ use crate::Outcome;
 use crate::axes::{gathered, moved};
 use crate::cpu::Stopwatch;
 use crate::prescribed_bodies::{PrescribedBodies, forced_step};
-use crate::walled_flows::{put_walls, surface_loads};
+use crate::walled_flows::{load_between, put_walls, surface_loads};
 use dem::Disc;
 use fv_mesh::{CartesianGrid, Convection, Diffusion, Fluid, Profile, Projection, Side};
 use ibm::{Forcing, Hfdib, SmoothForcing};
-use interfaces::{BodyId, Vector};
+use interfaces::{BodyId, Point, Vector};
 use std::fmt;
 
 const DIAMETER: f64 = 0.1;
@@ -62,6 +62,8 @@ pub struct Found {
     pub coefficients: [f64; 2],
     /// Relative errors of the drag and lift coefficients that pressure and friction on the surface give.
     pub surface: [f64; 2],
+    /// The same of those that the momentum which enters a square of edge 2 D around the cylinder gives.
+    pub around: [f64; 2],
     /// Steps made.
     pub steps: u64,
     /// CPU seconds, set-up included.
@@ -152,6 +154,8 @@ pub fn run(way: Way, kind: Cells, per_diameter: usize, shift: [f64; 2]) -> Outco
     };
     let loads = surface_loads(&flow, &bodies, 0, way.clearance())?;
     let total = loads.total().force * coefficient;
+    let corners = [0.1, 0.3].map(|x| Point::new(x, x, 0.0));
+    let around = load_between(&flow, flow.pressure().data(), corners)?.force * coefficient;
     // At the stagnation points.
     let end = |sign: f64| {
         let nearest = loads.points.iter().max_by(|p, q| (sign * p.normal.x).total_cmp(&(sign * q.normal.x)));
@@ -162,6 +166,7 @@ pub fn run(way: Way, kind: Cells, per_diameter: usize, shift: [f64; 2]) -> Outco
         errors: [force.x / DRAG - 1.0, force.y / LIFT - 1.0, (end(-1.0) - end(1.0)) / DROP - 1.0],
         coefficients: [force.x, force.y],
         surface: [total.x / DRAG - 1.0, total.y / LIFT - 1.0],
+        around: [around.x / DRAG - 1.0, around.y / LIFT - 1.0],
         steps: flow.steps(),
         cpu: watch.elapsed().cpu,
     })

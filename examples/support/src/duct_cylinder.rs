@@ -4,7 +4,7 @@ use crate::Outcome;
 use crate::axes::gathered;
 use crate::cpu::Stopwatch;
 use crate::prescribed_bodies::{Post, PrescribedBodies};
-use crate::unfolded::whole_surface_loads;
+use crate::unfolded::Unfolded;
 use crate::walled_flows::put_walls;
 use fv_mesh::{Axis, CartesianGrid, Convection, Diffusion, Fluid, Profile, Projection, Sampler, Side};
 use interfaces::Vector;
@@ -100,7 +100,7 @@ pub fn run(per_diameter: usize, shift: [f64; 2], coarser: Option<&Projection<3>>
         }
         (last, next) = (force.x, flow.time() + 1.0);
     };
-    let loads = whole_surface_loads(&flow, [false, false, true], &bodies, h)?;
+    let loads = Unfolded::new(&flow, [false, false, true])?.surface_loads(&bodies, h)?;
     let total = loads.total().force * (0.5 * coefficient);
     // At the stagnation points in the middle plane: the parabola through the pressures one, two and three cells before them.
     let sampler = Sampler::new(flow.grid(), flow.sides());

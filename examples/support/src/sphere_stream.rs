@@ -4,11 +4,12 @@ use crate::Outcome;
 use crate::axes::gathered;
 use crate::cpu::Stopwatch;
 use crate::prescribed_bodies::PrescribedBodies;
-use crate::unfolded::whole_surface_loads;
+use crate::unfolded::Unfolded;
 use crate::wake::wake_length;
 use crate::walled_flows::put_walls;
 use dem::Sphere;
 use fv_mesh::{CartesianGrid, Convection, Diffusion, Fluid, Profile, Projection, Sampler, Side};
+use interfaces::Point;
 use std::f64::consts::PI;
 
 /// The sphere stands 12 D behind the inlet and 20 D before the outlet; the sides are 12 D away, so that it covers 0.14 % of the stream.
@@ -42,6 +43,8 @@ pub struct Found {
     pub drag: f64,
     /// The same from the stress on the surface.
     pub surface: f64,
+    /// The same from the momentum that enters a cube of edge 2 D around it.
+    pub around: f64,
     /// Length of the wake behind the sphere \[D\].
     pub wake: f64,
     /// Time at the end \[D/U\].
@@ -102,12 +105,15 @@ pub fn run(
         }
         last = now;
     };
-    let loads = whole_surface_loads(&flow, [false, true, true], &bodies, h)?;
-    let surface = loads.total().force.x * (0.5 / AREA);
+    let whole = Unfolded::new(&flow, [false, true, true])?;
+    let surface = whole.surface_loads(&bodies, h)?.total().force.x * (0.5 / AREA);
+    let corner = |side: f64| Point::new(PLACE + side, side, side);
+    let around = whole.load_between([corner(-1.0), corner(1.0)])?.force.x * (0.5 / AREA);
     Ok(Found {
         cells: flow.grid().n_cells(),
         drag,
         surface,
+        around,
         wake,
         time: flow.time(),
         steps: flow.steps(),

@@ -3,8 +3,8 @@ use crate::Outcome;
 use crate::prescribed_bodies::{Banks, Bore, PrescribedBodies};
 use dem::{Disc, Sphere};
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Side};
-use ibm::{Forcing, SmoothForcing, SolidFraction, SurfaceLoads, SurfaceStress, cut_walls};
-use interfaces::{BodyId, VelocityField};
+use ibm::{ControlVolume, Forcing, SmoothForcing, SolidFraction, SurfaceLoads, SurfaceStress, cut_walls};
+use interfaces::{BodyId, Point, VelocityField, Wrench};
 use std::f64::consts::PI;
 
 /// Kinematic viscosity of the plane flows \[m²/s\].
@@ -38,6 +38,20 @@ pub fn surface_loads<const D: usize>(
     Ok(SurfaceStress::new(flow.velocity(), &lattice, flow.pressure().data(), fluid.density * fluid.viscosity)
         .with_clearance(clearance)
         .on(bodies, BodyId(b), spacing)?)
+}
+
+/// The load on what is at rest between these corners in a steady flow with this `pressure`, from the momentum that comes in.
+///
+/// # Errors
+/// Those of [`ControlVolume::new`].
+pub fn load_between<const D: usize>(
+    flow: &Projection<D>,
+    pressure: &[f64],
+    corners: [Point; 2],
+) -> Outcome<Wrench> {
+    let (fluid, lattice) = (flow.fluid(), flow.grid().lattice(None, flow.sides()));
+    let properties = [fluid.density, fluid.density * fluid.viscosity];
+    Ok(ControlVolume::new(flow.velocity(), &lattice, pressure, properties, corners)?.outflow() * -1.0)
 }
 
 /// Advances at a Courant number of 0.4 until `value` changes by less than the part `tolerance` of itself within `interval` \[s\].

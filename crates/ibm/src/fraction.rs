@@ -4,7 +4,7 @@ use interfaces::Vector;
 /// The share of a box with edges `h` \[m\] (h.z = 0 in the plane) that lies behind a plane:
 /// {x : d + n·x < 0}, x from the box's centre, `d` the signed distance of the centre \[m\] and `n`
 /// the outward unit normal. Exact (Scardovelli & Zaleski 2000, J. Comput. Phys. 164, 228).
-#[inline]
+#[inline(always)]
 pub fn plane_fraction(d: f64, n: Vector, h: Vector) -> f64 {
     let mut m = [n.x.abs() * h.x, n.y.abs() * h.y, n.z.abs() * h.z];
     let sum = m[0] + m[1] + m[2];
@@ -40,7 +40,7 @@ pub fn plane_fraction(d: f64, n: Vector, h: Vector) -> f64 {
 /// curvature there. To first order in κ the cell then loses as much as if the plane were moved inward by the mean of that
 /// over its own cut through the cell (`spread`). A plane alone would make a disc's λ sum to too much by h²/12R², a sphere's
 /// by h²/4R².
-#[inline]
+#[inline(always)]
 pub fn cell_fraction(d: f64, n: Vector, curvature: f64, h: Vector) -> f64 {
     let depth = if h.z == 0.0 { 1.0 } else { 2.0 };
     // From the level surface through the centre to the surface itself.
@@ -80,7 +80,7 @@ const BENT: f64 = 0.0625;
 /// In space, with u the coordinates from the corner on the smaller side in edges, m the rise along them and α = m·u on
 /// the plane, the integrals of 1, u_i and u_i² over the plane's cut through all of u ≥ 0 are α²/2, α³/6m_i and α⁴/12m_i²
 /// over m_x m_y m_z; those through the box are sums over its corners with alternating signs.
-#[inline]
+#[inline(always)]
 fn spread(d: f64, n: Vector, h: Vector) -> f64 {
     let m = n.component_mul(&h).abs();
     // A plane along an axis as good as.

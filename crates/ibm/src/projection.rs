@@ -3,6 +3,7 @@ use crate::clip::Clipper;
 use crate::subcells::Cell;
 use crate::{FractionRule, SolidNode, cell_fraction};
 use interfaces::{Bodies, BodyId, Lattice, Point, Rotation, Solid, Vector};
+use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
 
 /// Nodes along an edge of a block, which one query may tell to be all solid or all fluid.
@@ -82,55 +83,17 @@ impl Projector {
         if nodes.capacity() < room {
             nodes.reserve(room + room / 4);
         }
-        let stride = [1, shape[0], shape[0] * shape[1]];
-        let reach = 0.5 * widest.norm();
-        let inner = |a: usize| if a < dim { 1..shape[a] - 1 } else { 0..1 };
-        for k in inner(2) {
-            for j in inner(1) {
-                let (z, y) = (self.columns[2][k], self.columns[1][j]);
-                let (Some(above), Some(beside)) = (z.offset, y.offset) else { continue };
-                for i in inner(0) {
-                    let x = self.columns[0][i];
-                    let Some(along) = x.offset else { continue };
-                    let at = i + stride[1] * j + stride[2] * k;
-                    let distance = self.distances[at];
-                    if distance >= reach {
-                        continue;
-                    }
-                    let h = Vector::new(x.width, y.width, z.width).component_mul(&plane(dim));
-                    let reach2 = 0.25 * h.norm_squared();
-                    if distance > 0.0 && distance * distance >= reach2 {
-                        continue;
-                    }
-                    let arm = Vector::new(x.arm, y.arm, z.arm);
-                    let volume = x.width * y.width * z.width;
-                    let mut fraction = 1.0;
-                    if distance * distance < reach2 {
-                        let (mut gradient, mut curvature) = (Vector::zeros(), 0.0);
-                        for (a, column) in [x, y, z].into_iter().enumerate().take(dim) {
-                            let s = stride[a];
-                            let d = [self.distances[at - s], distance, self.distances[at + s]];
-                            for m in 0..3 {
-                                gradient[a] += column.first[m] * d[m];
-                                curvature += column.second[m] * d[m];
-                            }
-                        }
-                        let square = gradient.norm_squared();
-                        let bend = curvature / (dim - 1) as f64;
-                        let cut = if is_smooth(square, bend, h.max()) {
-                            cell_fraction(distance, gradient / square.sqrt(), curvature, h)
-                        } else {
-                            Cell { solid, to_body, dim, centre: arm, edges: h }.solid_share()
-                        };
-                        fraction = rule.fraction(cut, distance, volume, dim);
-                    }
-                    if fraction > 0.0 {
-                        let index = lattice.base + along + beside + above;
-                        nodes.push(SolidNode { index, fraction, arm, volume });
-                    }
-                }
-            }
-        }
+        let Self { columns, distances, .. } = &*self;
+        Arch::new().dispatch(Shares {
+            base: lattice.base,
+            solid,
+            to_body,
+            dim,
+            rule,
+            columns,
+            distances,
+            nodes,
+        });
     }
 
     /// Fills in the distances: exact where a cut cell needs them, of the right sign and not less than half a diagonal (of the
@@ -208,6 +171,78 @@ impl Projector {
         for row in &self.rows {
             for (distance, answer) in self.distances[row.clone()].iter_mut().zip(&mut answers) {
                 *distance = *answer;
+            }
+        }
+    }
+}
+
+/// λ of the nodes in the body's box.
+struct Shares<'a> {
+    base: usize,
+    solid: &'a dyn Solid,
+    to_body: Rotation,
+    dim: usize,
+    rule: FractionRule,
+    columns: &'a [Vec<Column>; 3],
+    distances: &'a [f64],
+    nodes: &'a mut Vec<SolidNode>,
+}
+
+impl WithSimd for Shares<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { base, solid, to_body, dim, rule, columns, distances, nodes } = self;
+        let shape = [0, 1, 2].map(|a| columns[a].len());
+        let stride = [1, shape[0], shape[0] * shape[1]];
+        let widest = [0, 1, 2].map(|a| columns[a].iter().fold(0.0, |m: f64, c| m.max(c.width)));
+        let reach = 0.5 * Vector::from(widest).component_mul(&plane(dim)).norm();
+        let inner = |a: usize| if a < dim { 1..shape[a] - 1 } else { 0..1 };
+        for k in inner(2) {
+            for j in inner(1) {
+                let (z, y) = (columns[2][k], columns[1][j]);
+                let (Some(above), Some(beside)) = (z.offset, y.offset) else { continue };
+                for i in inner(0) {
+                    let x = columns[0][i];
+                    let Some(along) = x.offset else { continue };
+                    let at = i + stride[1] * j + stride[2] * k;
+                    let distance = distances[at];
+                    if distance >= reach {
+                        continue;
+                    }
+                    let h = Vector::new(x.width, y.width, z.width).component_mul(&plane(dim));
+                    let reach2 = 0.25 * h.norm_squared();
+                    if distance > 0.0 && distance * distance >= reach2 {
+                        continue;
+                    }
+                    let arm = Vector::new(x.arm, y.arm, z.arm);
+                    let volume = x.width * y.width * z.width;
+                    let mut fraction = 1.0;
+                    if distance * distance < reach2 {
+                        let (mut gradient, mut curvature) = (Vector::zeros(), 0.0);
+                        for (a, column) in [x, y, z].into_iter().enumerate().take(dim) {
+                            let s = stride[a];
+                            let d = [distances[at - s], distance, distances[at + s]];
+                            for m in 0..3 {
+                                gradient[a] += column.first[m] * d[m];
+                                curvature += column.second[m] * d[m];
+                            }
+                        }
+                        let square = gradient.norm_squared();
+                        let bend = curvature / (dim - 1) as f64;
+                        let cut = if is_smooth(square, bend, h.max()) {
+                            cell_fraction(distance, gradient / square.sqrt(), curvature, h)
+                        } else {
+                            Cell { solid, to_body, dim, centre: arm, edges: h }.solid_share()
+                        };
+                        fraction = rule.fraction(cut, distance, volume, dim);
+                    }
+                    if fraction > 0.0 {
+                        let index = base + along + beside + above;
+                        nodes.push(SolidNode { index, fraction, arm, volume });
+                    }
+                }
             }
         }
     }

@@ -73,14 +73,15 @@ impl Forcing for Hfdib {
         self.rounds
     }
 
-    fn layer(&mut self, velocity: &dyn VelocityField, _: &dyn Bodies, b: BodyId) -> Layer {
+    fn layer(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies, b: BodyId) -> Layer {
         let mut layer = Layer::default();
         for c in 0..velocity.dim() {
             let u = velocity.component(c);
             let mut sums = LayerSums::default();
             for cell in self.surface[c].cells(b) {
                 // The part of u* that the body's own motion replaces: a·(û/a), a the weight of U_S.
-                let free = cell.value(0.0, u);
+                let moved = bodies.surface_motion(b).map_or(0.0, |motion| motion(cell.foot)[c]);
+                let free = cell.value(moved, u);
                 let solid = cell.surface.unwrap_or(0.0);
                 let weight = self.density * cell.node.volume * (1.0 - cell.node.fraction) * solid;
                 if weight > 0.0 {
@@ -112,7 +113,7 @@ impl Forcing for Hfdib {
                     set(u, node, twist.at(node.arm)[c]);
                 }
                 for cell in self.surface[c].cells(body) {
-                    let target = cell.value(twist.at(cell.foot)[c], u);
+                    let target = cell.value(bodies.surface_velocity(body, cell.foot)[c], u);
                     set(u, &cell.node, target);
                 }
             }
@@ -126,11 +127,11 @@ impl Forcing for Hfdib {
     fn slip(&self, velocity: &dyn VelocityField, bodies: &dyn Kinematics) -> f64 {
         let (mut sum, mut n) = (0.0, 0.0);
         for b in (0..self.reactions.len()).map(BodyId) {
-            let twist = bodies.twist(b);
             for c in 0..velocity.dim() {
                 let (u, cells) = (velocity.component(c), self.surface[c].cells(b));
                 for cell in cells {
-                    sum += (u[cell.node.index] - cell.value(twist.at(cell.foot)[c], u)).powi(2);
+                    sum += (u[cell.node.index] - cell.value(bodies.surface_velocity(b, cell.foot)[c], u))
+                        .powi(2);
                 }
                 n += cells.len() as f64 / velocity.dim() as f64;
             }

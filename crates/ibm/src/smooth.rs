@@ -6,7 +6,8 @@ use crate::forcing::LayerSums;
 use crate::solid_fraction::check;
 use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction, surface_elements};
 use interfaces::{
-    Bodies, BodyId, Kinematics, Lattice, Point, Pose, SurfaceElement, Twist, Vector, VelocityField, Wrench,
+    Bodies, BodyId, Kinematics, Lattice, Point, Pose, SurfaceElement, SurfaceMotion, Twist, Vector,
+    VelocityField, Wrench,
 };
 use stencils::Stencils;
 
@@ -14,10 +15,10 @@ use stencils::Stencils;
 /// [`Kernel::retraction`], which puts the no-slip surface where the body's is.
 ///
 /// ```text
-/// ΔF_m = (1/c) (U + Ω×r_m − E u)_m / dt,   u += dt Σ_m δ_h(x − x_m) ΔF_m ΔV_m,   ΔV_m = A_m h
+/// ΔF_m = (1/c) (U + Ω×r_m + u_s − E u)_m / dt,   u += dt Σ_m δ_h(x − x_m) ΔF_m ΔV_m,   ΔV_m = A_m h
 /// ```
 ///
-/// E reads the velocity at the markers with the same kernel that spreads. Momentum is conserved:
+/// u_s is the surface's own motion, if it has one; E reads the velocity at the markers with the same kernel that spreads. Momentum is conserved:
 /// what the fluid gets, the body loses.
 #[derive(Clone, Debug)]
 pub struct SmoothForcing {
@@ -59,18 +60,33 @@ struct Markers {
 }
 
 impl Markers {
+    /// What the markers read of component `c`, without what their surface does besides moving with the body.
+    fn read(
+        &self,
+        c: usize,
+        lattice: &Lattice,
+        u: &[f64],
+        motion: Option<&SurfaceMotion>,
+        out: &mut Vec<f64>,
+    ) {
+        self.stencils.read(c, lattice, u, out);
+        if let Some(motion) = motion {
+            out.iter_mut().zip(&self.arms).for_each(|(value, arm)| *value -= motion(*arm)[c]);
+        }
+    }
+
     /// Brings component `c` nearer to the body's motion.
     fn pass(
         &mut self,
         c: usize,
         lattice: &Lattice,
         u: &mut [f64],
-        twist: Twist,
+        (twist, motion): (Twist, Option<&SurfaceMotion>),
         density: f64,
         values: &mut Vec<f64>,
     ) {
         // All markers read before any of them spreads: their order must not matter.
-        self.stencils.read(c, lattice, u, values);
+        self.read(c, lattice, u, motion, values);
         let per_mass = 1.0 / (density * self.cell);
         let (mut impulse, mut moment) = (0.0, Vector::zeros());
         let weights = self.masses.iter().zip(&self.stencils.relax[c]);
@@ -275,8 +291,9 @@ impl Forcing for SmoothForcing {
             let lattice = velocity.lattice(c);
             self.inside[c].cover(lattice, bodies, b);
             self.find_outside(velocity, c, b, &mut outside);
-            let Markers { stencils, masses, arms, .. } = &self.bodies[b.0];
-            stencils.read(c, lattice, velocity.component(c), &mut found);
+            let markers = &self.bodies[b.0];
+            markers.read(c, lattice, velocity.component(c), bodies.surface_motion(b), &mut found);
+            let Markers { stencils, masses, arms, .. } = markers;
             let mut sums = LayerSums::default();
             for (m, arm) in arms.iter().enumerate() {
                 sums.add(*arm, outside[m] * masses[m] * stencils.relax[c][m], found[m]);
@@ -301,7 +318,8 @@ impl Forcing for SmoothForcing {
             let lattice = velocity.lattice(c).clone();
             let u = velocity.component_mut(c);
             let mut pass = |b: usize, markers: &mut Markers| {
-                markers.pass(c, &lattice, u, bodies.twist(BodyId(b)), *density, values);
+                let how = (bodies.twist(BodyId(b)), bodies.surface_motion(BodyId(b)));
+                markers.pass(c, &lattice, u, how, *density, values);
             };
             // While its numbers are at hand; those that share fluid in turn.
             for (b, markers) in all.iter_mut().enumerate().filter(|(_, markers)| markers.alone) {
@@ -323,9 +341,9 @@ impl Forcing for SmoothForcing {
         let (mut sum, mut n) = (0.0, 0.0);
         let mut found = Vec::new();
         for (b, markers) in self.bodies.iter().enumerate() {
-            let twist = bodies.twist(BodyId(b));
+            let (twist, motion) = (bodies.twist(BodyId(b)), bodies.surface_motion(BodyId(b)));
             for c in 0..velocity.dim() {
-                markers.stencils.read(c, velocity.lattice(c), velocity.component(c), &mut found);
+                markers.read(c, velocity.lattice(c), velocity.component(c), motion, &mut found);
                 let slips = found.iter().zip(&markers.arms).map(|(u, arm)| u - twist.at(*arm)[c]);
                 sum += slips.map(|slip| slip * slip).sum::<f64>();
             }

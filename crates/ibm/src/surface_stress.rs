@@ -15,7 +15,7 @@ use rayon::prelude::*;
 ///
 /// a second way to the loads, independent of the forcing, and the only one to their distribution. At every surface element
 /// polynomials of third degree are fitted (least squares) to the values at the nodes in the fluid around it; those of the
-/// velocity have the body's velocity at the element.
+/// velocity have the surface's velocity at the element.
 #[derive(Clone, Copy)]
 pub struct SurfaceStress<'a> {
     velocity: &'a dyn VelocityField,
@@ -123,7 +123,7 @@ impl<'a> SurfaceStress<'a> {
         if elements.is_empty() {
             return Err(IbmError::NoSurface { body: b, offset: 0.0 });
         }
-        let (pose, twist, dim) = (bodies.pose(b), bodies.twist(b), self.velocity.dim());
+        let (pose, dim) = (bodies.pose(b), self.velocity.dim());
         let arms: Vec<Vector> = elements.iter().map(|e| pose.orientation * e.point.coords).collect();
         let cells = self.clearance.max(PRESSED) + REACH[dim - 2];
         let mut others = Vec::new();
@@ -134,7 +134,8 @@ impl<'a> SurfaceStress<'a> {
         let components: Vec<Nearby> = (0..dim)
             .map(|c| {
                 let (lattice, values) = (self.velocity.lattice(c), self.velocity.component(c));
-                let wall: Vec<_> = arms.iter().map(|arm| (*arm, twist.at(*arm)[c])).collect();
+                let wall: Vec<_> =
+                    arms.iter().map(|arm| (*arm, bodies.surface_velocity(b, *arm)[c])).collect();
                 Nearby::new(lattice, values, bodies, b, &others, clear[1], &wall)
             })
             .collect();
@@ -146,9 +147,10 @@ impl<'a> SurfaceStress<'a> {
                 return None;
             }
             let p = pressure.fit(arm, None)?;
+            let wall = bodies.surface_velocity(b, arm);
             let (mut gradient, mut degree) = (Matrix3::zeros(), DEGREE);
             for (c, nearby) in components.iter().enumerate() {
-                let u = nearby.fit(arm, Some(twist.at(arm)[c]))?;
+                let u = nearby.fit(arm, Some(wall[c]))?;
                 gradient.set_row(c, &u.gradient.transpose());
                 degree = degree.min(u.degree);
             }

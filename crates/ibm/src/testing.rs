@@ -1,7 +1,7 @@
 //! Bodies and lattices for the unit tests.
 use interfaces::{
     Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Lattice, Nodes, Point, Pose, Solid, SurfaceElement,
-    Twist, Vector, VelocityField,
+    SurfaceMotion, Twist, Vector, VelocityField,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -64,6 +64,8 @@ pub(crate) struct Balls {
     volume: f64,
     pub(crate) poses: Vec<Pose>,
     pub(crate) twists: Vec<Twist>,
+    /// Of all surfaces, besides.
+    pub(crate) motion: Option<Box<SurfaceMotion>>,
 }
 
 impl Balls {
@@ -76,7 +78,7 @@ impl Balls {
     }
     pub(crate) fn boxed(solid: Box<dyn Solid>, volume: f64, poses: Vec<Pose>) -> Self {
         let twists = vec![Twist::default(); poses.len()];
-        Self { solid, volume, poses, twists }
+        Self { solid, volume, poses, twists, motion: None }
     }
     pub(crate) fn shift(&mut self, b: usize, by: Vector) {
         self.poses[b].position += by;
@@ -92,6 +94,9 @@ impl Kinematics for Balls {
     }
     fn twist(&self, b: BodyId) -> Twist {
         self.twists[b.0]
+    }
+    fn surface_motion(&self, _: BodyId) -> Option<&SurfaceMotion> {
+        self.motion.as_deref()
     }
 }
 

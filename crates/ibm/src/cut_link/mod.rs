@@ -69,16 +69,16 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
         let mut out = Vec::with_capacity(self.nodes.near.len());
         for near in self.nodes.near.iter().filter(|near| near.distance <= 0.0) {
             if let Some(index) = lattice.index(near.node.map(|i| i as isize)) {
-                let velocity = self.wall_velocity(near.body(), near.arm);
+                let velocity = self.bodies.twist(near.body()).at(near.arm)[self.c];
                 out.push(SolidPoint { index, velocity, body: near.body().0, arm: near.arm });
             }
         }
         out
     }
 
-    /// The component of the velocity of body `b` at `arm` from its centre of mass.
+    /// The component of the velocity of the surface of body `b` at `arm` from its centre of mass.
     fn wall_velocity(&self, b: BodyId, arm: Vector) -> f64 {
-        self.bodies.twist(b).at(arm)[self.c]
+        self.bodies.surface_velocity(b, arm)[self.c]
     }
 
     /// Signed distance of body `b` at `arm` from its centre of mass.

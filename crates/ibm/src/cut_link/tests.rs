@@ -149,3 +149,22 @@ proptest! {
         }
     }
 }
+
+/// A surface that turns about a body at rest cuts links and faces as a body that turns does; only nodes inside stand still.
+#[test]
+fn surfaces_may_move_by_themselves() {
+    let mut bodies = Balls::new(2, 0.7, vec![[1.013, 0.971, 0.0]]);
+    let field = Staggered::new([20; 2], 0.1, [0.0; 2]);
+    bodies.twists[0].angular.z = 0.7;
+    let turning = cut_walls(&field, &bodies).unwrap();
+    let twist = std::mem::take(&mut bodies.twists[0]);
+    bodies.motion = Some(Box::new(move |arm| twist.at(arm)));
+    let sliding = cut_walls(&field, &bodies).unwrap();
+    for (a, b) in turning.components.iter().zip(&sliding.components).take(2) {
+        assert_eq!((&a.links, &a.faces), (&b.links, &b.faces));
+        assert!(
+            a.links.iter().any(|node| node.links.iter().flatten().flatten().any(|link| link.velocity != 0.0))
+        );
+        assert!(b.solid.iter().all(|point| point.velocity == 0.0));
+    }
+}

@@ -61,7 +61,7 @@ impl<const D: usize> Unfolded<D> {
     /// The load on what is at rest between these corners in a steady flow, from the momentum that comes in.
     ///
     /// # Errors
-    /// Those of [`ControlVolume::new`].
+    /// Those of [`ibm::ControlVolume::new`].
     pub fn load_between(&self, corners: [Point; 2]) -> Outcome<Wrench> {
         load_between(&self.flow, &self.pressure, corners)
     }

@@ -79,17 +79,14 @@ impl<const W: usize> WithSimd for Weigh<'_, W> {
                 (start[p], parts[p]) = (node - (W as isize - 1) / 2, part);
             }
             let found = kernel.weights_of(parts);
-            // One number at a time: a row put together first would be waited for.
-            for (p, weights) in weights.iter_mut().enumerate() {
-                (0..W).for_each(|i| weights[i] = found[i][p]);
-            }
             for p in 0..places.len() {
+                let all: [f64; W] = std::array::from_fn(|i| found[i][p]);
                 if (0..=n - W as isize).contains(&start[p]) {
-                    first[p] = start[p] as usize;
+                    (first[p], weights[p]) = (start[p] as usize, all);
                 } else if periodic {
-                    first[p] = start[p].rem_euclid(n) as usize;
+                    (first[p], weights[p]) = (start[p].rem_euclid(n) as usize, all);
                 } else {
-                    (first[p], weights[p], share[p]) = cut_off(start[p], weights[p], n as usize);
+                    (first[p], weights[p], share[p]) = cut_off(start[p], all, n as usize);
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! Immersed walls against exact and published values: plane Poiseuille flow turned against the grid (`channel`; `forced-channel` with
 //! `SmoothForcing`), flow between cylinders (`couette`; `eccentric`), simple-cubic arrays of `spheres`, the cylinders of Schäfer & Turek in
-//! the plane (`cylinder`) and in a `duct`, a cylinder in a `stream`, a `sphere` in one; and what walls and forcings `cost`. On one
+//! the plane (`cylinder`) and in a `duct`, a cylinder in a `stream`, a `sphere` in one (`bubble`: its smallest wake, 40 CPU minutes); and what walls and forcings `cost`. On one
 //! thread: `cargo bench --bench immersed`, or with the names of cases after `--`.
 mod cost;
 mod steady;
@@ -30,6 +30,7 @@ fn main() -> Outcome<()> {
         ("duct", steady::duct),
         ("stream", stream),
         ("sphere", steady::sphere),
+        ("bubble", steady::bubble),
         ("cost", cost::table),
     ])
 }

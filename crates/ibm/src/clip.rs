@@ -13,7 +13,7 @@ use pulp::{Arch, Simd, WithSimd};
 /// ```
 ///
 /// the first over the surface within the cell, the second over that beyond it along x, between the same sides. So every triangle is
-/// worked on by itself, and nothing has to be known of how they hang together.
+/// worked on by itself, and nothing has to be known of how they hang together. What two shells enclose counts twice, up to λ = 1.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Clipper {
     axes: [Cells; 3],
@@ -255,6 +255,11 @@ impl Clipper {
         let lengths = [0, 1, 2].map(|a| self.axes[a].len());
         if lengths.contains(&0) {
             return;
+        }
+        debug_assert!(lengths.iter().all(|n| *n < (1 << BITS) - 2), "{lengths:?}");
+        let room = lengths.iter().product();
+        if nodes.capacity() < room {
+            nodes.reserve(room + room / 4);
         }
         let stride = [1, lengths[0] + 2, (lengths[0] + 2) * (lengths[1] + 2)];
         self.sums.clear();

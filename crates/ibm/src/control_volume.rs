@@ -13,8 +13,9 @@ use std::ops::Range;
 /// ```
 ///
 /// Another way to the loads on bodies, whatever the grid does at their surfaces: it reads the flow at the sides of the box only, and, if
-/// the flow changes, the momentum within. For bodies at rest in a steady flow F is −[`outflow`](Self::outflow). Values at
-/// the middles of faces are interpolated linearly, derivatives are central: second order.
+/// the flow changes, the momentum within. For bodies at rest in a steady flow F is −[`outflow`](Self::outflow).
+/// [`momentum`](Self::momentum) counts what flows inside the bodies, too: of a body that is forced from inside F is minus the forcing, and
+/// what the fluid does to its surface is F plus the change of the momentum inside (ρV dU/dt). Values at the middles of faces are interpolated linearly, derivatives are central: second order.
 #[derive(Clone, Copy)]
 pub struct ControlVolume<'a> {
     velocity: &'a dyn VelocityField,
@@ -31,8 +32,8 @@ impl<'a> ControlVolume<'a> {
     /// of `density` \[kg/m³\] and dynamic `viscosity` \[Pa s\]. Moments are about the middle between the corners.
     ///
     /// # Errors
-    /// [`IbmError::NoRoom`] if there is none, or less than one more cell on a side that bounds the flow; [`IbmError::Storage`] for a
-    /// pressure that is not the lattice's.
+    /// [`IbmError::NoRoom`] if there is none, if the corners are not finite or farther apart than a period, or where less than two more
+    /// cells lie before a side that bounds the flow; [`IbmError::Storage`] for a pressure that is not the lattice's.
     pub fn new(
         velocity: &'a dyn VelocityField,
         lattice: &'a Lattice,
@@ -43,9 +44,13 @@ impl<'a> ControlVolume<'a> {
         stored(lattice, pressure)?;
         let mut ends = [[0, 1]; 3];
         for axis in 0..lattice.dim {
-            let nodes = &lattice.axes[axis];
-            let Range { start, end } = nodes.range(low[axis], high[axis]);
-            let beside = nodes.is_periodic() || (start > 0 && end < nodes.len() as isize);
+            let (nodes, cells) = (&lattice.axes[axis], lattice.axes[axis].len() as isize);
+            let finite = low[axis].is_finite() && high[axis].is_finite();
+            let Range { start, end } =
+                if finite { nodes.range(low[axis], high[axis]) } else { Range::default() };
+            // The velocity across a side is read up to half a cell beyond it.
+            let beside =
+                if nodes.is_periodic() { end - start <= cells } else { start > 1 && end + 1 < cells };
             if start >= end || !beside {
                 return Err(IbmError::NoRoom { axis, low: low[axis], high: high[axis] });
             }
@@ -191,6 +196,40 @@ mod tests {
         }
     }
 
+    /// A uniform stream between bounded sides of a staggered grid leaves no force, as near to them as a box may come.
+    #[test]
+    fn a_uniform_stream_pushes_nothing() {
+        let (h, n) = (0.1, 20);
+        let sides: Vec<f64> = (0..=n).map(|i| h * f64::from(i)).collect();
+        let [faces, centres] = [Nodes::faces(&sides, false), Nodes::centres(&sides, false)];
+        let cells = Lattice::new([centres.clone(), centres.clone()], 0, [1, 20]);
+        let component = |c: usize| {
+            let axes = [0, 1].map(|a| if a == c { faces.clone() } else { centres.clone() });
+            let along_x = axes[0].len();
+            let lattice = Lattice::new(axes, 0, [1, along_x]);
+            Collocated::new(lattice, |_| [0.6, -0.8, 0.0])
+        };
+        struct Both([Collocated; 2]);
+        impl VelocityField for Both {
+            fn dim(&self) -> usize {
+                2
+            }
+            fn lattice(&self, c: usize) -> &Lattice {
+                &self.0[c].lattice
+            }
+            fn component(&self, c: usize) -> &[f64] {
+                &self.0[c].values[c]
+            }
+            fn component_mut(&mut self, c: usize) -> &mut [f64] {
+                &mut self.0[c].values[c]
+            }
+        }
+        let (stream, pressure) = (Both([0, 1].map(component)), vec![0.7; 400]);
+        let corners = [Point::new(2.0 * h, 2.0 * h, 0.0), Point::new(18.0 * h, 18.0 * h, 0.0)];
+        let found = ControlVolume::new(&stream, &cells, &pressure, [2.0, 0.3], corners).unwrap().outflow();
+        assert!(found.force.norm() < 1e-13 && found.torque.norm() < 1e-13, "{found:?}");
+    }
+
     #[test]
     fn boxes_without_room_are_refused() {
         let periodic = lattice(2, [0.1; 3], 3.0);
@@ -204,10 +243,13 @@ mod tests {
         assert_eq!(volume(&periodic, 2.5, 3.5), Ok(()));
         let refused = |found| matches!(found, Err(IbmError::NoRoom { axis: 0, .. }));
         assert!(refused(volume(&periodic, 1.01, 1.02)) && refused(volume(&periodic, 2.0, 1.0)));
+        for (low, high) in [(f64::NAN, 1.0), (0.0, f64::INFINITY), (0.5, 3.7)] {
+            assert!(refused(volume(&periodic, low, high)), "{low} {high}");
+        }
         let axes = [false, true].map(|periodic| Nodes::uniform(0.05, 0.1, 30, periodic));
         let bounded = Lattice::new(axes, 0, [1, 30]);
-        assert!(refused(volume(&bounded, 0.0, 1.0)) && refused(volume(&bounded, 2.0, 3.5)));
-        assert_eq!(volume(&bounded, 0.1, 2.9), Ok(()));
+        assert!(refused(volume(&bounded, 0.1, 1.0)) && refused(volume(&bounded, 2.0, 2.9)));
+        assert_eq!(volume(&bounded, 0.2, 2.8), Ok(()));
         let short = ControlVolume::new(&field, &periodic, &pressure[1..], [1.0; 2], corners(1.0, 2.0));
         assert!(matches!(short.map(|_| ()), Err(IbmError::Storage { needed: 900, found: 899 })));
     }

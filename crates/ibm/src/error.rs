@@ -72,8 +72,8 @@ pub enum IbmError {
     },
     /// A control volume holds no cells, or reaches the sides of the flow.
     #[error(
-        "no cells along axis {axis} have their centres between {low:.6e} and {high:.6e} m, or there is less than one more before a side \
-         of the box: take other corners"
+        "along axis {axis} no cells have their centres between {low:.6e} and {high:.6e} m, or more than a period's, or less than two more \
+         lie before a side of the flow: take other corners"
     )]
     NoRoom {
         /// Axis, 0 for x.

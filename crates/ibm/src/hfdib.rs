@@ -80,7 +80,7 @@ impl Forcing for Hfdib {
             let mut sums = LayerSums::default();
             for cell in self.surface[c].cells(b) {
                 // The part of u* that the body's own motion replaces: a·(û/a), a the weight of U_S.
-                let moved = bodies.surface_motion(b).map_or(0.0, |motion| motion(cell.foot)[c]);
+                let moved = bodies.surface_motion(b, cell.foot).unwrap_or_default()[c];
                 let free = cell.value(moved, u);
                 let solid = cell.surface.unwrap_or(0.0);
                 let weight = self.density * cell.node.volume * (1.0 - cell.node.fraction) * solid;

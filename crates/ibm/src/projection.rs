@@ -84,16 +84,9 @@ impl Projector {
             nodes.reserve(room + room / 4);
         }
         let Self { columns, distances, .. } = &*self;
-        Arch::new().dispatch(Shares {
-            base: lattice.base,
-            solid,
-            to_body,
-            dim,
-            rule,
-            columns,
-            distances,
-            nodes,
-        });
+        let reach = 0.5 * widest.norm();
+        let base = lattice.base;
+        Arch::new().dispatch(Shares { base, solid, to_body, dim, reach, rule, columns, distances, nodes });
     }
 
     /// Fills in the distances: exact where a cut cell needs them, of the right sign and not less than half a diagonal (of the
@@ -182,6 +175,8 @@ struct Shares<'a> {
     solid: &'a dyn Solid,
     to_body: Rotation,
     dim: usize,
+    /// Half the diagonal of the widest cell.
+    reach: f64,
     rule: FractionRule,
     columns: &'a [Vec<Column>; 3],
     distances: &'a [f64],
@@ -193,11 +188,9 @@ impl WithSimd for Shares<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { base, solid, to_body, dim, rule, columns, distances, nodes } = self;
+        let Self { base, solid, to_body, dim, reach, rule, columns, distances, nodes } = self;
         let shape = [0, 1, 2].map(|a| columns[a].len());
         let stride = [1, shape[0], shape[0] * shape[1]];
-        let widest = [0, 1, 2].map(|a| columns[a].iter().fold(0.0, |m: f64, c| m.max(c.width)));
-        let reach = 0.5 * Vector::from(widest).component_mul(&plane(dim)).norm();
         let inner = |a: usize| if a < dim { 1..shape[a] - 1 } else { 0..1 };
         for k in inner(2) {
             for j in inner(1) {

@@ -6,8 +6,7 @@ use crate::forcing::LayerSums;
 use crate::solid_fraction::check;
 use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction, surface_elements};
 use interfaces::{
-    Bodies, BodyId, Kinematics, Lattice, Point, Pose, SurfaceElement, SurfaceMotion, Twist, Vector,
-    VelocityField, Wrench,
+    Bodies, BodyId, Kinematics, Lattice, Point, Pose, SurfaceElement, Vector, VelocityField, Wrench,
 };
 use stencils::Stencils;
 
@@ -60,18 +59,20 @@ struct Markers {
 }
 
 impl Markers {
-    /// What the markers read of component `c`, without what their surface does besides moving with the body.
+    /// What the markers of body `b` read of component `c`, without what their surface does besides moving with it.
     fn read(
         &self,
         c: usize,
         lattice: &Lattice,
         u: &[f64],
-        motion: Option<&SurfaceMotion>,
+        (bodies, b): (&(impl Kinematics + ?Sized), BodyId),
         out: &mut Vec<f64>,
     ) {
         self.stencils.read(c, lattice, u, out);
-        if let Some(motion) = motion {
-            out.iter_mut().zip(&self.arms).for_each(|(value, arm)| *value -= motion(*arm)[c]);
+        if self.arms.first().is_some_and(|arm| bodies.surface_motion(b, *arm).is_some()) {
+            for (value, arm) in out.iter_mut().zip(&self.arms) {
+                *value -= bodies.surface_motion(b, *arm).unwrap_or_default()[c];
+            }
         }
     }
 
@@ -81,13 +82,13 @@ impl Markers {
         c: usize,
         lattice: &Lattice,
         u: &mut [f64],
-        (twist, motion): (Twist, Option<&SurfaceMotion>),
+        (bodies, b): (&dyn Kinematics, BodyId),
         density: f64,
         values: &mut Vec<f64>,
     ) {
         // All markers read before any of them spreads: their order must not matter.
-        self.read(c, lattice, u, motion, values);
-        let per_mass = 1.0 / (density * self.cell);
+        self.read(c, lattice, u, (bodies, b), values);
+        let (twist, per_mass) = (bodies.twist(b), 1.0 / (density * self.cell));
         let (mut impulse, mut moment) = (0.0, Vector::zeros());
         let weights = self.masses.iter().zip(&self.stencils.relax[c]);
         for ((value, arm), (mass, relax)) in values.iter_mut().zip(&self.arms).zip(weights) {
@@ -292,7 +293,7 @@ impl Forcing for SmoothForcing {
             self.inside[c].cover(lattice, bodies, b);
             self.find_outside(velocity, c, b, &mut outside);
             let markers = &self.bodies[b.0];
-            markers.read(c, lattice, velocity.component(c), bodies.surface_motion(b), &mut found);
+            markers.read(c, lattice, velocity.component(c), (bodies, b), &mut found);
             let Markers { stencils, masses, arms, .. } = markers;
             let mut sums = LayerSums::default();
             for (m, arm) in arms.iter().enumerate() {
@@ -318,8 +319,7 @@ impl Forcing for SmoothForcing {
             let lattice = velocity.lattice(c).clone();
             let u = velocity.component_mut(c);
             let mut pass = |b: usize, markers: &mut Markers| {
-                let how = (bodies.twist(BodyId(b)), bodies.surface_motion(BodyId(b)));
-                markers.pass(c, &lattice, u, how, *density, values);
+                markers.pass(c, &lattice, u, (bodies, BodyId(b)), *density, values);
             };
             // While its numbers are at hand; those that share fluid in turn.
             for (b, markers) in all.iter_mut().enumerate().filter(|(_, markers)| markers.alone) {
@@ -341,9 +341,9 @@ impl Forcing for SmoothForcing {
         let (mut sum, mut n) = (0.0, 0.0);
         let mut found = Vec::new();
         for (b, markers) in self.bodies.iter().enumerate() {
-            let (twist, motion) = (bodies.twist(BodyId(b)), bodies.surface_motion(BodyId(b)));
+            let (twist, how) = (bodies.twist(BodyId(b)), (bodies, BodyId(b)));
             for c in 0..velocity.dim() {
-                markers.read(c, velocity.lattice(c), velocity.component(c), motion, &mut found);
+                markers.read(c, velocity.lattice(c), velocity.component(c), how, &mut found);
                 let slips = found.iter().zip(&markers.arms).map(|(u, arm)| u - twist.at(*arm)[c]);
                 sum += slips.map(|slip| slip * slip).sum::<f64>();
             }

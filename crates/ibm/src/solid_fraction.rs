@@ -29,7 +29,7 @@ pub enum FractionRule {
 
 impl FractionRule {
     /// λ of a cell of volume `volume` in `dim` dimensions whose centroid is at `distance`, and whose
-    /// solid share is `cut`. Both rules agree on which cells are cut.
+    /// solid share is `cut`. Both rules agree on which cells are cut, of shapes that are no polyhedra.
     pub fn fraction(self, cut: f64, distance: f64, volume: f64, dim: usize) -> f64 {
         if self == Self::CutVolume || cut <= 0.0 || cut >= 1.0 {
             return cut;
@@ -46,7 +46,8 @@ impl FractionRule {
 /// surface is near. A cut cell's share follows from distance, normal and curvature
 /// ([`cell_fraction`](crate::cell_fraction)), which are differences of the distances at the node and
 /// its neighbours; where these tell of an edge, a corner or something thinner than a cell, the cell is
-/// cut into ever smaller ones. Σ λ V is the volume within 0.1 % at ten cells per diameter.
+/// cut into ever smaller ones. Σ λ V is the volume within 0.1 % at ten cells per diameter. In space λ of bodies made of triangles
+/// ([`Solid::polyhedron`](interfaces::Solid::polyhedron)) follows from these instead, and is exact.
 #[derive(Clone, Debug, Default)]
 pub struct SolidFraction {
     rule: FractionRule,

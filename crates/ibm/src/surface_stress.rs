@@ -102,7 +102,7 @@ impl<'a> SurfaceStress<'a> {
     ) -> Self {
         Self { velocity, lattice, pressure, viscosity, clearance: 0.0 }
     }
-    /// Leaves out nodes nearer to the surface than so many cells: the half width of the kernel, 2 or 3, for a forcing that smears
+    /// Leaves out nodes nearer to the surface than so many cells: the half width of the kernel, 2 to 3, for a forcing that smears
     /// the surface. Unless told, one cell for the pressure, which is bad in cut cells, and 0.3 for the velocity.
     #[must_use]
     pub fn with_clearance(mut self, cells: f64) -> Self {

@@ -1,7 +1,7 @@
 //! Bodies and lattices for the unit tests.
 use interfaces::{
     Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Lattice, Nodes, Point, Pose, Solid, SurfaceElement,
-    SurfaceMotion, Twist, Vector, VelocityField,
+    Twist, Vector, VelocityField,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -65,7 +65,7 @@ pub(crate) struct Balls {
     pub(crate) poses: Vec<Pose>,
     pub(crate) twists: Vec<Twist>,
     /// Of all surfaces, besides.
-    pub(crate) motion: Option<Box<SurfaceMotion>>,
+    pub(crate) motion: Option<Box<dyn Fn(Vector) -> Vector + Sync>>,
 }
 
 impl Balls {
@@ -95,8 +95,8 @@ impl Kinematics for Balls {
     fn twist(&self, b: BodyId) -> Twist {
         self.twists[b.0]
     }
-    fn surface_motion(&self, _: BodyId) -> Option<&SurfaceMotion> {
-        self.motion.as_deref()
+    fn surface_motion(&self, _: BodyId, arm: Vector) -> Option<Vector> {
+        self.motion.as_ref().map(|motion| motion(arm))
     }
 }
 

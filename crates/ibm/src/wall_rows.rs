@@ -128,7 +128,7 @@ impl WallRows {
 
     /// Fills the rows with what the flow is at the cells now: `velocity` \[m/s\], one field per dimension, and `k` \[m²/s²\], if
     /// there is one, have one value per cell, x fastest; `nu` is the fluid's kinematic viscosity \[m²/s\] and `wall` the
-    /// velocity of the surface at a cell's foot: for rigid bodies `|w| bodies.twist(w.body).at(w.foot)`.
+    /// velocity of the surface at a cell's foot: `|w| bodies.surface_velocity(w.body, w.foot)`.
     ///
     /// # Errors
     /// [`IbmError::Components`] and [`IbmError::Storage`] for fields that are not the lattice's.
@@ -196,7 +196,7 @@ impl WallRows {
         points.clear();
         points.extend(nodes.iter().map(|node| pose.to_body(pose.position + node.arm)));
         distances.resize(nodes.len(), 0.0);
-        solid.signed_distances(points, 1.1 * widest, distances);
+        solid.signed_distances(points, 2.0 * widest, distances);
         for (node, &distance) in nodes.iter().zip(&*distances) {
             slots[node.index] = SOLID;
             if distance > least {

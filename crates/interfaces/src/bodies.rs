@@ -35,10 +35,6 @@ impl Freedom {
     pub const NONE: Self = Self { linear: [false; 3], angular: [false; 3] };
 }
 
-/// A velocity \[m/s\] at a place on (or near) a body's surface, from the centre of mass \[m\]; both in the world frame. It is added
-/// to that of the body's twist.
-pub type SurfaceMotion = dyn Fn(Vector) -> Vector + Sync;
-
 /// Where bodies are and how they move.
 pub trait Kinematics: Sync {
     /// How many there are.
@@ -47,14 +43,16 @@ pub trait Kinematics: Sync {
     fn pose(&self, b: BodyId) -> Pose;
     /// How body `b` moves.
     fn twist(&self, b: BodyId) -> Twist;
-    /// What the surface of body `b` does besides: it slides, blows, swells. `None` (the default) if it only moves with the body.
-    fn surface_motion(&self, b: BodyId) -> Option<&SurfaceMotion> {
-        let _ = b;
+    /// What the surface of body `b` does besides, at `arm` from its centre of mass, in the world: it slides, or blows and sucks (in a
+    /// box without outlet as much as it sucks). It is asked for on the surface and up to two cells from it. `None` (the
+    /// default), everywhere, if it only moves with the body \[m/s\].
+    fn surface_motion(&self, b: BodyId, arm: Vector) -> Option<Vector> {
+        let _ = (b, arm);
         None
     }
     /// Velocity of the surface of body `b` at `arm` from its centre of mass: U + Ω × r + what it does besides \[m/s\].
     fn surface_velocity(&self, b: BodyId, arm: Vector) -> Vector {
-        self.twist(b).at(arm) + self.surface_motion(b).map_or_else(Vector::zeros, |motion| motion(arm))
+        self.twist(b).at(arm) + self.surface_motion(b, arm).unwrap_or_default()
     }
     /// All their numbers.
     fn ids(&self) -> impl Iterator<Item = BodyId> + use<Self>

@@ -28,7 +28,7 @@ mod transport;
 pub mod vtk;
 mod wall_row;
 
-pub use bodies::{Bodies, BodyId, Dynamics, Freedom, Inertia, Kinematics, Load, SurfaceMotion};
+pub use bodies::{Bodies, BodyId, Dynamics, Freedom, Inertia, Kinematics, Load};
 pub use cut_walls::{CutComponent, CutFace, CutNode, CutWalls, Link, SolidPoint};
 pub use geometry::{Aabb, Periods, Point, Pose, Rotation, Twist, Vector, Wrench};
 pub use lattice::{Lattice, VelocityField};

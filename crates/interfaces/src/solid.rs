@@ -74,8 +74,8 @@ pub trait Solid: Send + Sync {
         None
     }
 
-    /// The surface itself, of shapes that are made of triangles: how much of a cell they fill is then exact. Others have
-    /// `None` (the default).
+    /// The surface itself, of shapes that are made of triangles: how much of a cell in space they fill is then exact. Others
+    /// have `None` (the default).
     fn polyhedron(&self) -> Option<Polyhedron<'_>> {
         None
     }

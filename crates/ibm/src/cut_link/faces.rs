@@ -27,9 +27,12 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
         out
     }
 
-    /// The velocity of a face of which the velocity relative to the wall is known. The wall's velocity is that of a rigid body,
-    /// on either side of it.
+    /// The velocity of a face of which the velocity relative to the wall is known. The wall's velocity goes on on either side of it;
+    /// deep inside it is that of the body.
     fn moved(&self, face: CutFace, near: &Near) -> CutFace {
+        if near.distance < -self.nodes.widest {
+            return CutFace { constant: self.bodies.twist(near.body()).at(near.arm)[self.c], ..face };
+        }
         let lattice = self.velocity.lattice(self.c);
         let own = self.wall_velocity(near.body(), near.arm);
         let wall = |index: usize| {

@@ -76,7 +76,7 @@ fn linear_shear_is_seen_exactly() {
             velocity[0][row.cell] = here;
         }
         let fields: Vec<&[f64]> = velocity.iter().map(Vec::as_slice).collect();
-        rows.fill(&fields, Some(&energy), 1e-3, |w| bodies.twist(w.body).at(w.foot)).unwrap();
+        rows.fill(&fields, Some(&energy), 1e-3, |w| bodies.surface_velocity(w.body, w.foot)).unwrap();
         let dense = lattice.dense();
         assert!(rows.rows().len() > if dim == 2 { 30 } else { 300 });
         for (row, cell) in rows.rows().iter().zip(rows.cells(BodyId(0))) {
@@ -121,8 +121,9 @@ fn rigid_rotation_is_no_shear() {
     let mut rows = placed(&lattice, &bodies);
     let turn = |c: usize| field(&lattice, |x| if c == 0 { -2.0 * (x[1] - 1.5) } else { 2.0 * (x[0] - 1.5) });
     let velocity = [turn(0), turn(1)];
-    let rows =
-        rows.fill(&[&velocity[0], &velocity[1]], None, 1.0, |w| bodies.twist(w.body).at(w.foot)).unwrap();
+    let rows = rows
+        .fill(&[&velocity[0], &velocity[1]], None, 1.0, |w| bodies.surface_velocity(w.body, w.foot))
+        .unwrap();
     for row in rows {
         // Ωy remains, as the surface moves with Ωr.
         assert!((row.u_t - 2.0 * row.y).abs() < 1e-5 && row.k == 0.0);

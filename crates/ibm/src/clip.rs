@@ -1,5 +1,6 @@
 //! Solid shares of cells from a surface of triangles.
 use crate::SolidNode;
+use crate::projection::reached;
 use interfaces::{Aabb, Lattice, Point, Polyhedron, Pose, Vector};
 use nalgebra::Matrix3;
 use pulp::{Arch, Simd, WithSimd};
@@ -50,19 +51,16 @@ const ROUND_OFF: f64 = 1e-10;
 impl Cells {
     fn set(&mut self, lattice: &Lattice, a: usize, span: [f64; 2], centre: f64) {
         let nodes = &lattice.axes[a];
-        let (mut first, mut last) = (nodes.locate(span[0]).0, nodes.locate(span[1]).0 + 1);
-        if !nodes.is_periodic() {
-            (first, last) = (first.max(0), last.min(nodes.len() as isize - 1));
-        }
+        let range = reached(nodes, span);
         self.lower.clear();
-        self.lower.push(nodes.edge(first) - centre);
+        self.lower.push(nodes.edge(range.start) - centre);
         self.nodes.clear();
-        for i in first..=last {
+        for i in range.clone() {
             let Some(wrapped) = nodes.wrap(i) else { continue };
             self.lower.push(nodes.edge(i) - centre);
             self.nodes.push((nodes.place(i) - centre, wrapped * lattice.stride[a]));
         }
-        self.lower.push(nodes.edge(last + 1) - centre);
+        self.lower.push(nodes.edge(range.end) - centre);
         self.per_width = nodes.is_uniform().then(|| 1.0 / nodes.mean_spacing());
     }
 
@@ -137,13 +135,13 @@ fn cut(corners: &[Vector], axis: usize, plane: f64, below: &mut Polygon, above: 
 type Parts = [Polygon; 3];
 
 /// Cells and what the surface in them sums to.
-struct Shares<'a> {
+struct Sums<'a> {
     axes: &'a [Cells; 3],
     stride: [usize; 3],
     sums: &'a mut [[f64; 2]],
 }
 
-impl Shares<'_> {
+impl Sums<'_> {
     /// Gives the parts of a polygon to the cells along `AXIS`, and those below it, that it `crosses`; along the others it lies
     /// in `cell`.
     #[inline(always)]
@@ -201,20 +199,20 @@ impl Shares<'_> {
 }
 
 /// Turns all vertices and shares all faces out.
-struct Share<'a> {
+struct Clip<'a> {
     surface: Polyhedron<'a>,
     turn: Matrix3<f64>,
     corners: &'a mut Vec<Corner>,
-    shares: Shares<'a>,
+    into: Sums<'a>,
 }
 
-impl WithSimd for Share<'_> {
+impl WithSimd for Clip<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { surface, turn, corners, mut shares } = self;
-        let (axes, stride) = (shares.axes, shares.stride);
+        let Self { surface, turn, corners, mut into } = self;
+        let (axes, stride) = (into.axes, into.stride);
         corners.clear();
         corners.extend(surface.vertices.iter().map(|x: &Point| {
             let place = turn * x.coords;
@@ -231,9 +229,9 @@ impl WithSimd for Share<'_> {
             let cell =
                 (0..3).map(|axis| if crosses[axis] { 0 } else { stride[axis] * number(a.cell, axis) }).sum();
             if differ == 0 {
-                shares.add(&places, cell);
+                into.add(&places, cell);
             } else {
-                shares.share_out::<2>(&places, cell, crosses, &mut parts);
+                into.share_out::<2>(&places, cell, crosses, &mut parts);
             }
         }
     }
@@ -264,9 +262,9 @@ impl Clipper {
         let stride = [1, lengths[0] + 2, (lengths[0] + 2) * (lengths[1] + 2)];
         self.sums.clear();
         self.sums.resize(stride[2] * (lengths[2] + 2), [0.0; 2]);
-        let shares = Shares { axes: &self.axes, stride, sums: &mut self.sums };
+        let into = Sums { axes: &self.axes, stride, sums: &mut self.sums };
         let turn = *pose.orientation.to_rotation_matrix().matrix();
-        Arch::new().dispatch(Share { surface, turn, corners: &mut self.corners, shares });
+        Arch::new().dispatch(Clip { surface, turn, corners: &mut self.corners, into });
         self.collect(lattice.base, stride, nodes);
     }
 

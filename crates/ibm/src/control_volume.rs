@@ -137,7 +137,7 @@ fn value(lattice: &Lattice, field: &[f64], x: Point) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{Collocated, lattice};
+    use crate::testing::{Collocated, Staggered, lattice};
     use interfaces::Nodes;
 
     /// u = (sin y, sin z, sin x) + (1, 0.5, 0.2), p = sin (x + 2y): against Gauss's theorem.
@@ -199,32 +199,12 @@ mod tests {
     /// A uniform stream between bounded sides of a staggered grid leaves no force, as near to them as a box may come.
     #[test]
     fn a_uniform_stream_pushes_nothing() {
-        let (h, n) = (0.1, 20);
-        let sides: Vec<f64> = (0..=n).map(|i| h * f64::from(i)).collect();
-        let [faces, centres] = [Nodes::faces(&sides, false), Nodes::centres(&sides, false)];
-        let cells = Lattice::new([centres.clone(), centres.clone()], 0, [1, 20]);
-        let component = |c: usize| {
-            let axes = [0, 1].map(|a| if a == c { faces.clone() } else { centres.clone() });
-            let along_x = axes[0].len();
-            let lattice = Lattice::new(axes, 0, [1, along_x]);
-            Collocated::new(lattice, |_| [0.6, -0.8, 0.0])
-        };
-        struct Both([Collocated; 2]);
-        impl VelocityField for Both {
-            fn dim(&self) -> usize {
-                2
-            }
-            fn lattice(&self, c: usize) -> &Lattice {
-                &self.0[c].lattice
-            }
-            fn component(&self, c: usize) -> &[f64] {
-                &self.0[c].values[c]
-            }
-            fn component_mut(&mut self, c: usize) -> &mut [f64] {
-                &mut self.0[c].values[c]
-            }
-        }
-        let (stream, pressure) = (Both([0, 1].map(component)), vec![0.7; 400]);
+        let h = 0.1;
+        let sides: Vec<f64> = (0..=20).map(|i| h * f64::from(i)).collect();
+        let cells = Lattice::new([(); 2].map(|()| Nodes::centres(&sides, false)), 0, [1, 20]);
+        let mut stream = Staggered::between(&sides);
+        stream.set(|_| [0.6, -0.8, 0.0]);
+        let pressure = vec![0.7; 400];
         let corners = [Point::new(2.0 * h, 2.0 * h, 0.0), Point::new(18.0 * h, 18.0 * h, 0.0)];
         let found = ControlVolume::new(&stream, &cells, &pressure, [2.0, 0.3], corners).unwrap().outflow();
         assert!(found.force.norm() < 1e-13 && found.torque.norm() < 1e-13, "{found:?}");

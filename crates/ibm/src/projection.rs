@@ -2,7 +2,7 @@
 use crate::clip::Clipper;
 use crate::subcells::Cell;
 use crate::{FractionRule, SolidNode, cell_fraction};
-use interfaces::{Bodies, BodyId, Lattice, Point, Rotation, Solid, Vector};
+use interfaces::{Bodies, BodyId, Lattice, Nodes, Point, Rotation, Solid, Vector};
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
 
@@ -86,7 +86,7 @@ impl Projector {
         let Self { columns, distances, .. } = &*self;
         let reach = 0.5 * widest.norm();
         let base = lattice.base;
-        Arch::new().dispatch(Shares { base, solid, to_body, dim, reach, rule, columns, distances, nodes });
+        Arch::new().dispatch(CutCells { base, solid, to_body, dim, reach, rule, columns, distances, nodes });
     }
 
     /// Fills in the distances: exact where a cut cell needs them, of the right sign and not less than half a diagonal (of the
@@ -170,7 +170,7 @@ impl Projector {
 }
 
 /// λ of the nodes in the body's box.
-struct Shares<'a> {
+struct CutCells<'a> {
     base: usize,
     solid: &'a dyn Solid,
     to_body: Rotation,
@@ -183,7 +183,7 @@ struct Shares<'a> {
     nodes: &'a mut Vec<SolidNode>,
 }
 
-impl WithSimd for Shares<'_> {
+impl WithSimd for CutCells<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -255,6 +255,13 @@ fn plane(dim: usize) -> Vector {
     Vector::new(1.0, 1.0, if dim == 2 { 0.0 } else { 1.0 })
 }
 
+/// The nodes whose control volumes a body between the ends of `span` may reach; only those that carry an unknown where the axis is
+/// bounded.
+pub(crate) fn reached(nodes: &Nodes, span: [f64; 2]) -> Range<isize> {
+    let (first, end) = (nodes.locate(span[0]).0, nodes.locate(span[1]).0 + 2);
+    if nodes.is_periodic() { first..end } else { first.max(0)..end.min(nodes.len() as isize) }
+}
+
 /// The nodes along axis `a` that a body between `span` may cover, one more on both sides that it may
 /// cut, and one more again for differences.
 fn columns(out: &mut Vec<Column>, lattice: &Lattice, a: usize, span: [f64; 2], centre: f64) {
@@ -265,13 +272,7 @@ fn columns(out: &mut Vec<Column>, lattice: &Lattice, a: usize, span: [f64; 2], c
         out.push(Column { arm, width: 1.0, offset: Some(0), first: [0.0; 3], second: [0.0; 3] });
         return;
     }
-    let (first, last) = (nodes.locate(span[0]).0, nodes.locate(span[1]).0 + 1);
-    let range = if nodes.is_periodic() {
-        first..last + 1
-    } else {
-        let n = nodes.len() as isize;
-        first.max(0)..(last + 1).min(n)
-    };
+    let range = reached(nodes, span);
     if range.is_empty() {
         return;
     }

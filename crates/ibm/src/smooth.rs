@@ -10,15 +10,15 @@ use interfaces::{
 };
 use stencils::Stencils;
 
-/// Smooth direct forcing (Uhlmann 2005; several passes as in Wang et al. 2008; a smooth [`Kernel`] as Yang et al. 2009), with markers moved into the solid by the kernel's own
-/// [`Kernel::retraction`], which puts the no-slip surface where the body's is.
+/// Smooth direct forcing (Uhlmann 2005; several passes as in Wang et al. 2008; a smooth [`Kernel`] as Yang et al. 2009), with
+/// markers moved into the solid by the kernel's own [`Kernel::retraction`], which puts the no-slip surface where the body's is.
 ///
 /// ```text
 /// ΔF_m = (1/c) (U + Ω×r_m + u_s − E u)_m / dt,   u += dt Σ_m δ_h(x − x_m) ΔF_m ΔV_m,   ΔV_m = A_m h
 /// ```
 ///
-/// u_s is the surface's own motion, if it has one; E reads the velocity at the markers with the same kernel that spreads. Momentum is conserved:
-/// what the fluid gets, the body loses.
+/// u_s is the surface's own motion, if it has one; E reads the velocity at the markers with the same kernel that spreads.
+/// Momentum is conserved: what the fluid gets, the body loses.
 #[derive(Clone, Debug)]
 pub struct SmoothForcing {
     density: f64,

@@ -179,7 +179,20 @@ impl Staggered {
         };
         Self { lattices: (0..D).map(lattice).collect(), values: vec![vec![0.0; cells.iter().product()]; D] }
     }
-    /// The lattice of the cells' centres.
+    /// Of the plane, between bounded sides: component c on the faces inside, between the cells that these `sides` bound along
+    /// both axes.
+    pub(crate) fn between(sides: &[f64]) -> Self {
+        let lattice = |c: usize| {
+            let axes = [0, 1]
+                .map(|a| if a == c { Nodes::faces(sides, false) } else { Nodes::centres(sides, false) });
+            let along_x = axes[0].len();
+            Lattice::new(axes, 0, [1, along_x])
+        };
+        let lattices: Vec<Lattice> = [0, 1].map(lattice).into();
+        let values = lattices.iter().map(|l| vec![0.0; l.shape().iter().product()]).collect();
+        Self { lattices, values }
+    }
+    /// The lattice of the cells' centres, if it is periodic.
     pub(crate) fn cells(&self) -> Lattice {
         let mut cells = self.lattices[0].clone();
         cells.axes[0] = self.lattices[1].axes[0].clone();

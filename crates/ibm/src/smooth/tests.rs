@@ -260,3 +260,21 @@ fn surfaces_may_move_by_themselves() {
         }
     }
 }
+
+/// A disc whose markers are mirror images of one another leaves a flow that is its own mirror image, whether its kernel stands about the
+/// nearest node or between two.
+#[test]
+fn what_is_symmetric_stays_symmetric() {
+    for kernel in [Kernel::Yang, Kernel::QuarticSpline, Kernel::QuinticSpline] {
+        let mut bodies = Balls::new(2, 0.5, vec![[1.3, 1.5, 0.0]]);
+        bodies.twists[0].linear.x = 1.0;
+        let mut velocity = Collocated::new(lattice(2, [0.05; 3], 3.0), |_| [0.0; 3]);
+        let mut forcing = SmoothForcing::new(1.0).with_kernel(kernel);
+        forcing.place(&velocity, &bodies).unwrap();
+        forcing.force(&mut velocity, &bodies);
+        let (u, n) = (&velocity.values[0], 60);
+        let worst = (0..n * n).map(|at| (u[at] - u[at % n + n * (n - 1 - at / n)]).abs()).fold(0.0, f64::max);
+        assert!(worst < 1e-13, "{kernel:?}: {worst}");
+        assert!(u.iter().fold(0.0, |most: f64, u| most.max(*u)) > 0.9, "{kernel:?}");
+    }
+}

@@ -40,6 +40,8 @@ pub(crate) struct Touch {
     pub(crate) overlap: Overlap,
     /// Velocity of the first body against the second at the contact \[m/s\].
     pub(crate) velocity: Vector,
+    /// Angular velocity of the first body against the second \[rad/s\].
+    pub(crate) spin: Vector,
     /// Reduced mass M \[kg\]; in a plane scene that of a slice as deep as L_c, so that bodies of all sizes rebound
     /// alike and no unit of depth enters.
     pub(crate) mass: f64,
@@ -62,7 +64,7 @@ pub(crate) struct Touch {
 pub(crate) fn force(p: &PairProperties, t: &Touch, spring: &mut Vector, dt: f64) -> Vector {
     let n = t.overlap.normal;
     let dashpot = p.damping * (p.stiffness * t.mass / t.length.powi(3)).sqrt();
-    let pressure = p.stiffness * t.overlap.volume / t.length + dashpot * t.overlap.rate(t.velocity);
+    let pressure = p.stiffness * t.overlap.volume / t.length + dashpot * t.overlap.rate(t.velocity, t.spin);
     let pressure = pressure.max(0.0);
 
     let sliding = t.velocity - n * n.dot(&t.velocity);
@@ -72,8 +74,8 @@ pub(crate) fn force(p: &PairProperties, t: &Touch, spring: &mut Vector, dt: f64)
     if spring.norm() > 0.0 {
         *spring *= length / spring.norm();
     }
-    *spring -= sliding * (dt * p.tangential * p.stiffness * t.overlap.area / t.length);
-    let viscous = -sliding * (p.tangential * dashpot * t.overlap.area);
+    *spring -= sliding * (dt * p.tangential * p.stiffness * t.overlap.area() / t.length);
+    let viscous = -sliding * (p.tangential * dashpot * t.overlap.area());
     let mut along = *spring + viscous;
     let limit = p.friction * pressure;
     if along.norm() > limit {

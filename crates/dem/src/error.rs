@@ -1,4 +1,5 @@
 //! What can go wrong.
+use crate::Route;
 use interfaces::BodyId;
 
 /// Why a shape, a body or a step could not be made.
@@ -93,6 +94,28 @@ pub enum DemError {
         a: &'static str,
         /// The other one.
         b: &'static str,
+    },
+    /// A pose is not finite.
+    #[error(
+        "the {name} is at {position:?} m, and position or orientation is not finite; give finite numbers"
+    )]
+    Pose {
+        /// Which shape.
+        name: &'static str,
+        /// Where.
+        position: [f64; 3],
+    },
+    /// A route was asked for that does not lead to this pair's overlap.
+    #[error(
+        "the overlap of a {a} and a {b} cannot be had by {route}; leave the choice of the route to the solver"
+    )]
+    Route {
+        /// One shape.
+        a: &'static str,
+        /// The other one.
+        b: &'static str,
+        /// The route.
+        route: Route,
     },
     /// The step's length is unusable.
     #[error("a step of {dt} s was asked for; give a positive, finite number of seconds")]

@@ -2,11 +2,13 @@
 mod broad_phase;
 mod checkpoint;
 mod motion;
+mod round;
 #[cfg(test)]
 mod tests;
 
-use crate::overlap::wall_overlap;
-use crate::{DemError, HalfSpace, Material, Shape, overlap};
+use crate::{DemError, HalfSpace, Material};
+pub use round::Round;
+
 use broad_phase::{BroadPhase, Listed};
 use interfaces::{
     Bodies, BodyId, Freedom, Inertia, Kinematics, Load, Periods, Pose, Solid, Twist, Vector, Wrench,
@@ -39,7 +41,7 @@ pub struct RigidBodies {
 
 #[derive(Clone, Copy, Debug)]
 struct Body {
-    shape: Shape,
+    shape: Round,
     material: Material,
     inertia: Inertia,
     pose: Pose,
@@ -96,7 +98,7 @@ impl RigidBodies {
     /// or a sphere among discs. Overlaps are left to [`check_overlaps`](Self::check_overlaps).
     pub fn add(
         &mut self,
-        shape: impl Into<Shape>,
+        shape: impl Into<Round>,
         material: Material,
         pose: Pose,
         twist: Twist,
@@ -165,13 +167,15 @@ impl RigidBodies {
             for (i, a) in self.bodies[..j].iter().enumerate() {
                 let apart = self.periods.nearest(b.pose.position - a.pose.position);
                 let at_b = a.pose.position + apart;
-                if let Some(o) = overlap(&a.shape, a.pose.position, &b.shape, at_b)? {
-                    return Err(DemError::OverlappingStart { a: BodyId(i), b: BodyId(j), depth: o.depth });
+                if a.shape.overlap(a.pose.position, &b.shape, at_b)?.is_some() {
+                    let depth = a.shape.radius() + b.shape.radius() - apart.norm();
+                    return Err(DemError::OverlappingStart { a: BodyId(i), b: BodyId(j), depth });
                 }
             }
             for (wall, (plane, _)) in self.walls.iter().enumerate() {
-                if let Some(o) = wall_overlap(&b.shape, b.pose.position, plane) {
-                    return Err(DemError::InWall { body: BodyId(j), wall, depth: o.depth });
+                if b.shape.wall_overlap(b.pose.position, plane).is_some() {
+                    let depth = b.shape.radius() - plane.signed_distance(b.pose.position);
+                    return Err(DemError::InWall { body: BodyId(j), wall, depth });
                 }
             }
         }
@@ -183,10 +187,10 @@ impl RigidBodies {
     pub fn smallest_gap(&self) -> Option<f64> {
         let gaps = (0..self.bodies.len()).flat_map(|j| {
             let b = &self.bodies[j];
-            let radius = b.shape.bounding_radius();
+            let radius = b.shape.radius();
             let pairs = self.bodies[..j].iter().map(move |a| {
                 let apart = self.periods.nearest(b.pose.position - a.pose.position);
-                apart.norm() - radius - a.shape.bounding_radius()
+                apart.norm() - radius - a.shape.radius()
             });
             pairs.chain(self.walls.iter().map(move |(w, _)| w.signed_distance(b.pose.position) - radius))
         });
@@ -217,7 +221,7 @@ impl RigidBodies {
         self.periods
     }
     /// The shape of body `b`.
-    pub fn shape(&self, b: BodyId) -> &Shape {
+    pub fn shape(&self, b: BodyId) -> &Round {
         &self.bodies[b.0].shape
     }
 }
@@ -225,7 +229,7 @@ impl RigidBodies {
 impl Body {
     /// How far the body may come from where its centre was listed, along any axis.
     fn reach(&self) -> f64 {
-        self.shape.bounding_radius() + self.listed.margin
+        self.shape.radius() + self.listed.margin
     }
     /// May its centre not be moved? Contacts then feel an infinite mass.
     fn pinned(&self) -> bool {

@@ -9,57 +9,32 @@ pub use sphere::Sphere;
 
 use interfaces::{Inertia, Solid};
 
-/// The shapes a rigid body may have.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
-    /// A disc in the plane z = 0.
-    Disc(Disc),
-    /// A sphere.
-    Sphere(Sphere),
-}
-
-impl Shape {
-    /// As the others see it.
-    pub fn solid(&self) -> &dyn Solid {
-        match self {
-            Self::Disc(s) => s,
-            Self::Sphere(s) => s,
-        }
-    }
-    /// Mass properties at `density` \[kg/m³\].
-    pub fn inertia(&self, density: f64) -> Inertia {
-        match self {
-            Self::Disc(s) => s.inertia(density),
-            Self::Sphere(s) => s.inertia(density),
-        }
-    }
-    /// Radius of the smallest sphere around the centre of mass that holds the shape \[m\].
-    pub fn bounding_radius(&self) -> f64 {
-        match self {
-            Self::Disc(s) => s.radius(),
-            Self::Sphere(s) => s.radius(),
-        }
-    }
-    /// Does it live in the plane z = 0?
-    pub(crate) fn is_plane(&self) -> bool {
-        matches!(self, Self::Disc(_))
-    }
+/// A shape with mass, centre of mass at the origin of its frame.
+///
+/// A type of your own that is a [`Solid`] needs `inertia` and `bounding_radius` only; its overlaps are then computed from
+/// its signed distance.
+pub trait Shape: Solid {
     /// A word for messages.
-    pub(crate) fn name(&self) -> &'static str {
-        match self {
-            Self::Disc(_) => "disc",
-            Self::Sphere(_) => "sphere",
-        }
+    fn name(&self) -> &'static str;
+    /// Mass properties at `density` \[kg/m³\].
+    fn inertia(&self, density: f64) -> Inertia;
+    /// Radius of the smallest sphere around the centre of mass that holds the shape \[m\].
+    fn bounding_radius(&self) -> f64;
+    /// What is known of the shape besides its distance: this decides how its overlaps are computed.
+    fn form(&self) -> Form<'_> {
+        Form::Distance
     }
 }
 
-impl From<Disc> for Shape {
-    fn from(s: Disc) -> Self {
-        Self::Disc(s)
-    }
-}
-impl From<Sphere> for Shape {
-    fn from(s: Sphere) -> Self {
-        Self::Sphere(s)
-    }
+/// What is known of a shape.
+#[derive(Clone, Copy)]
+pub enum Form<'a> {
+    /// A disc in the plane z = 0.
+    Disc(&'a Disc),
+    /// A sphere.
+    Sphere(&'a Sphere),
+    /// All behind a plane.
+    HalfSpace(&'a HalfSpace),
+    /// Its signed distance only.
+    Distance,
 }

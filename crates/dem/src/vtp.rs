@@ -1,5 +1,5 @@
 //! Bodies for ParaView.
-use crate::{RigidBodies, Shape};
+use crate::{RigidBodies, Round};
 use interfaces::vtk::{self, DataArray};
 use interfaces::{BodyId, Kinematics, Point, Vector};
 use std::f64::consts::TAU;
@@ -22,10 +22,10 @@ impl RigidBodies {
             let pose = self.pose(BodyId(b));
             let centre = self.periods().wrap(pose.position, corner);
             let shape = self.shape(BodyId(b));
-            let r = shape.bounding_radius();
+            let r = shape.radius();
             let planes: &[[Vector; 2]] = match shape {
-                Shape::Disc(_) => &[[Vector::new(1.0, 0.0, 0.0), Vector::new(0.0, 1.0, 0.0)]],
-                Shape::Sphere(_) => &[
+                Round::Disc(_) => &[[Vector::new(1.0, 0.0, 0.0), Vector::new(0.0, 1.0, 0.0)]],
+                Round::Sphere(_) => &[
                     [Vector::new(1.0, 0.0, 0.0), Vector::new(0.0, 1.0, 0.0)],
                     [Vector::new(0.0, 1.0, 0.0), Vector::new(0.0, 0.0, 1.0)],
                     [Vector::new(0.0, 0.0, 1.0), Vector::new(1.0, 0.0, 0.0)],

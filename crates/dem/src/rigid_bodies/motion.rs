@@ -1,8 +1,7 @@
 //! Contacts and motion.
 use super::{Body, Listed, Pair, RigidBodies, Spring};
 use crate::contact::{Touch, force, series};
-use crate::overlap::wall_overlap;
-use crate::{DemError, Material, PairProperties, Shape};
+use crate::{DemError, Material, PairProperties, Round};
 use interfaces::{BodyId, Dynamics, Load, Rotation, Twist, Vector, Wrench};
 use std::f64::consts::PI;
 
@@ -30,7 +29,7 @@ impl RigidBodies {
     /// not more than their `skin` (in radii) apart.
     pub(super) fn find_near(&mut self, dt: f64, skin: f64) {
         for b in &mut self.bodies {
-            let margin = b.path(dt) + skin * b.shape.bounding_radius();
+            let margin = b.path(dt) + skin * b.shape.radius();
             b.listed = Listed { centre: b.pose.position, margin };
         }
         self.broad_phase.sweep(&self.periods, &self.bodies, &mut self.near);
@@ -79,13 +78,13 @@ impl RigidBodies {
         let (overlap, arm_b, twist_b, material_b, mass, length) = match self.bodies.get(pair.1) {
             Some(b) => {
                 let apart = self.periods.nearest(b.pose.position - a.pose.position);
-                let within = a.shape.bounding_radius() + b.shape.bounding_radius();
+                let within = a.shape.radius() + b.shape.radius();
                 if apart.iter().any(|x| x.abs() > within) {
                     return Ok(None);
                 }
                 self.overlap_calls += 1;
                 let at_b = a.pose.position + apart;
-                let Some(overlap) = crate::overlap(&a.shape, a.pose.position, &b.shape, at_b)? else {
+                let Some(overlap) = a.shape.overlap(a.pose.position, &b.shape, at_b)? else {
                     return Ok(None);
                 };
                 let (arm_a, arm_b) = (overlap.centroid - a.pose.position, overlap.centroid - at_b);
@@ -98,11 +97,11 @@ impl RigidBodies {
             }
             None => {
                 let (wall, material) = &self.walls[pair.1 - self.bodies.len()];
-                if wall.signed_distance(a.pose.position) > a.shape.bounding_radius() {
+                if wall.signed_distance(a.pose.position) > a.shape.radius() {
                     return Ok(None);
                 }
                 self.overlap_calls += 1;
-                let Some(overlap) = wall_overlap(&a.shape, a.pose.position, wall) else { return Ok(None) };
+                let Some(overlap) = a.shape.wall_overlap(a.pose.position, wall) else { return Ok(None) };
                 let length = (overlap.centroid - a.pose.position).norm();
                 (overlap, Vector::zeros(), Twist::default(), *material, a.inertia.mass, length)
             }
@@ -116,6 +115,7 @@ impl RigidBodies {
         let touch = Touch {
             overlap,
             velocity: a.twist.at(arm_a) - twist_b.at(arm_b),
+            spin: a.twist.angular - twist_b.angular,
             mass: if a.shape.is_plane() { mass * length } else { mass },
             length,
         };
@@ -176,14 +176,14 @@ impl Body {
     /// π√(M/k) for a contact with `other` (a wall, or the body's like), k = Y A/L_c at the foreseen depth, cut by
     /// 1 + the ratio of damping to √(kM), so that the dashpot stays stable.
     fn half_period(&self, other: &Material, wall: bool, length_factor: f64) -> f64 {
-        let r = self.shape.bounding_radius();
+        let r = self.shape.radius();
         let (share, mass) = if wall { (1.0, self.inertia.mass) } else { (0.5, 0.5 * self.inertia.mass) };
         let depth = share * FORESEEN_DEPTH * r;
         let chord = (depth * (2.0 * r - depth)).sqrt();
         let length = length_factor * share * r;
         let (area, depth_of_scene) = match self.shape {
-            Shape::Disc(_) => (2.0 * chord, length),
-            Shape::Sphere(_) => (PI * chord * chord, 1.0),
+            Round::Disc(_) => (2.0 * chord, length),
+            Round::Sphere(_) => (PI * chord * chord, 1.0),
         };
         let p = PairProperties::new(&self.material, other);
         let damping = p.damping * (area * depth_of_scene).sqrt() / length;

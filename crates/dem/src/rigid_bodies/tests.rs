@@ -5,15 +5,15 @@ mod friction;
 mod near;
 mod state;
 
-use crate::{Disc, Material, RigidBodies, Shape, Sphere};
+use crate::{Disc, Material, RigidBodies, Round, Sphere};
 use interfaces::{BodyId, Freedom, Kinematics, Load, Periods, Pose, Twist, Vector, Wrench};
 
 pub(crate) const R: f64 = 0.01;
 
-pub(crate) fn disc() -> Shape {
+pub(crate) fn disc() -> Round {
     Disc::new(R).unwrap().into()
 }
-pub(crate) fn sphere() -> Shape {
+pub(crate) fn sphere() -> Round {
     Sphere::new(R).unwrap().into()
 }
 /// Neither damping nor friction.
@@ -23,14 +23,14 @@ pub(crate) fn elastic() -> Material {
 pub(crate) fn moving(linear: [f64; 3], angular: [f64; 3]) -> Twist {
     Twist { linear: linear.into(), angular: angular.into() }
 }
-pub(crate) fn freedom(shape: Shape) -> Freedom {
+pub(crate) fn freedom(shape: Round) -> Freedom {
     if shape.is_plane() { Freedom::PLANAR } else { Freedom::FREE }
 }
 pub(crate) fn push(force: Vector) -> Load {
     Load { wrench: Wrench { force, torque: Vector::zeros() }, ..Load::default() }
 }
 /// Bodies of one shape and material in free space.
-pub(crate) fn scene(shape: Shape, material: Material, bodies: &[([f64; 3], Twist)]) -> RigidBodies {
+pub(crate) fn scene(shape: Round, material: Material, bodies: &[([f64; 3], Twist)]) -> RigidBodies {
     let mut all = RigidBodies::new(Periods::default());
     for (place, twist) in bodies {
         all.add(shape, material, Pose::at(*place), *twist, freedom(shape)).unwrap();
@@ -38,7 +38,7 @@ pub(crate) fn scene(shape: Shape, material: Material, bodies: &[([f64; 3], Twist
     all
 }
 /// Two equal bodies, `gap` apart along x, that approach each other at `speed`.
-pub(crate) fn head_on(shape: Shape, material: Material, gap: f64, speed: f64) -> RigidBodies {
+pub(crate) fn head_on(shape: Round, material: Material, gap: f64, speed: f64) -> RigidBodies {
     let x = R + 0.5 * gap;
     let bodies = [
         ([-x, 0.0, 0.0], moving([0.5 * speed, 0.0, 0.0], [0.0; 3])),

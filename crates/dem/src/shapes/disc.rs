@@ -1,5 +1,5 @@
 //! The disc.
-use crate::DemError;
+use crate::{DemError, Form, Shape};
 use interfaces::{Aabb, Inertia, Point, Solid, SurfaceElement, Vector};
 use nalgebra::Matrix3;
 use std::f64::consts::{PI, TAU};
@@ -26,8 +26,14 @@ impl Disc {
     pub fn radius(&self) -> f64 {
         self.radius
     }
+}
+
+impl Shape for Disc {
+    fn name(&self) -> &'static str {
+        "disc"
+    }
     /// Mass ρπr² \[kg/m\], area πr² \[m²\], moment of inertia ½mr² about z.
-    pub fn inertia(&self, density: f64) -> Inertia {
+    fn inertia(&self, density: f64) -> Inertia {
         let r2 = self.radius * self.radius;
         let (volume, mass) = (PI * r2, density * PI * r2);
         let about_z = 0.5 * mass * r2;
@@ -35,6 +41,12 @@ impl Disc {
         // is that of a thin plate.
         let tensor = Matrix3::from_diagonal(&Vector::new(0.5 * about_z, 0.5 * about_z, about_z));
         Inertia { mass, volume, tensor }
+    }
+    fn bounding_radius(&self) -> f64 {
+        self.radius
+    }
+    fn form(&self) -> Form<'_> {
+        Form::Disc(self)
     }
 }
 

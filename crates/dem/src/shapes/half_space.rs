@@ -1,8 +1,10 @@
 //! The plane wall.
-use crate::DemError;
-use interfaces::{Point, Vector};
+use crate::{DemError, Form, Shape};
+use interfaces::{Aabb, Inertia, Point, Pose, Solid, Vector};
+use nalgebra::Matrix3;
 
-/// A plane wall: everything behind the plane through `point` is solid, `normal` points out of it.
+/// A plane wall: everything behind the plane through `point` is solid, `normal` points out of it. Volume, mass and extent
+/// are infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfSpace {
     point: Point,
@@ -24,8 +26,47 @@ impl HalfSpace {
     pub fn normal(&self) -> Vector {
         self.normal
     }
+    /// The wall once its frame stands at `pose`.
+    #[must_use]
+    pub fn posed(&self, pose: &Pose) -> Self {
+        Self { point: pose.to_world(self.point), normal: pose.orientation * self.normal }
+    }
     /// Distance of `x` from the plane, negative in the wall \[m\].
     pub fn signed_distance(&self, x: Point) -> f64 {
         self.normal.dot(&(x - self.point))
+    }
+}
+
+/// Half the extent of the box around all space \[m\]; its squares are finite.
+const EVERYWHERE: f64 = 1e100;
+
+impl Shape for HalfSpace {
+    fn name(&self) -> &'static str {
+        "half-space"
+    }
+    fn inertia(&self, _density: f64) -> Inertia {
+        let tensor = Matrix3::from_diagonal_element(f64::INFINITY);
+        Inertia { mass: f64::INFINITY, volume: f64::INFINITY, tensor }
+    }
+    fn bounding_radius(&self) -> f64 {
+        f64::INFINITY
+    }
+    fn form(&self) -> Form<'_> {
+        Form::HalfSpace(self)
+    }
+}
+
+impl Solid for HalfSpace {
+    fn signed_distance(&self, x: Point, _band: f64) -> f64 {
+        self.normal.dot(&(x - self.point))
+    }
+    fn aabb(&self) -> Aabb {
+        Aabb::around(Point::origin(), Vector::repeat(EVERYWHERE))
+    }
+    fn normal(&self, _x: Point, _band: f64) -> Vector {
+        self.normal
+    }
+    fn curvature(&self, _x: Point, _band: f64) -> f64 {
+        0.0
     }
 }

@@ -1,5 +1,5 @@
 //! The sphere.
-use crate::DemError;
+use crate::{DemError, Form, Shape};
 use interfaces::{Aabb, Inertia, Point, Solid, SurfaceElement, Vector};
 use nalgebra::Matrix3;
 use std::f64::consts::PI;
@@ -26,12 +26,24 @@ impl Sphere {
     pub fn radius(&self) -> f64 {
         self.radius
     }
+}
+
+impl Shape for Sphere {
+    fn name(&self) -> &'static str {
+        "sphere"
+    }
     /// Mass ρ 4πr³/3, volume, moment of inertia ⅖mr².
-    pub fn inertia(&self, density: f64) -> Inertia {
+    fn inertia(&self, density: f64) -> Inertia {
         let r2 = self.radius * self.radius;
         let volume = 4.0 / 3.0 * PI * r2 * self.radius;
         let mass = density * volume;
         Inertia { mass, volume, tensor: Matrix3::from_diagonal_element(0.4 * mass * r2) }
+    }
+    fn bounding_radius(&self) -> f64 {
+        self.radius
+    }
+    fn form(&self) -> Form<'_> {
+        Form::Sphere(self)
     }
 }
 

@@ -71,7 +71,7 @@ fn arrays_and_counts_agree() {
         let mut bodies = RigidBodies::new(Periods::new([Some(10.0), None, None]));
         for x in [3.0, -2.0] {
             let pose = Pose { position: Point::new(x, 1.0, 0.0), orientation: quarter };
-            let shape: Shape =
+            let shape: Round =
                 if spheres { Sphere::new(0.5).unwrap().into() } else { Disc::new(0.5).unwrap().into() };
             bodies.add(shape, Material::default(), pose, twist, Freedom::PLANAR).unwrap();
         }

@@ -1,6 +1,6 @@
 //! Every error: which value, why, what to do.
 use super::*;
-use crate::{DemError, HalfSpace, overlap};
+use crate::{DemError, HalfSpace};
 use interfaces::{Dynamics, Point};
 
 const NAN: f64 = f64::NAN;
@@ -74,7 +74,7 @@ fn starts() {
     let mut bodies = scene(disc(), elastic(), &[([0.0; 3], still)]);
     let error = bodies.add(sphere(), elastic(), Pose::at([1.0, 0.0, 0.0]), still, Freedom::FREE).unwrap_err();
     says(&error, &["disc", "sphere", "dimension"]);
-    assert_eq!(overlap(&disc(), Point::origin(), &sphere(), Point::origin()), Err(error));
+    assert_eq!(disc().overlap(Point::origin(), &sphere(), Point::origin()), Err(error));
 }
 
 #[test]

@@ -58,7 +58,7 @@ fn collide(bodies: &mut RigidBodies, dt: f64) -> f64 {
 
 /// Largest |ΔE|/E of collisions at `n` to `n` + 1 steps per `unit` of time, over 40 phases of the first touch
 /// within a step; whole numbers of steps alone would profit from symmetry in time.
-fn energy_error(shape: Shape, speed: f64, unit: f64, n: f64) -> f64 {
+fn energy_error(shape: Round, speed: f64, unit: f64, n: f64) -> f64 {
     let mut worst = 0.0_f64;
     for share in 0..16 {
         let dt = unit / (n + f64::from(share) / 16.0);

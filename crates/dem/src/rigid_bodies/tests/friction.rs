@@ -1,7 +1,6 @@
 //! Bodies on a wall: rest, rolling, sliding. Gravity is tilted instead of the wall.
 use super::*;
 use crate::HalfSpace;
-use crate::overlap::wall_overlap;
 use approx::assert_relative_eq;
 use interfaces::{Bodies, Dynamics, Point};
 
@@ -21,11 +20,11 @@ fn floor() -> HalfSpace {
 
 /// The body with its weight on the floor y = 0, gravity turned by `angle` towards +x; it stands as deep as its
 /// weight presses it.
-fn on_floor(shape: Shape, material: Material, angle: f64, speed: f64) -> RigidBodies {
+fn on_floor(shape: Round, material: Material, angle: f64, speed: f64) -> RigidBodies {
     let weight = shape.inertia(material.density).mass * G;
     let force = |depth: f64| {
         let at = Point::new(0.0, R - depth, 0.0);
-        let o = wall_overlap(&shape, at, &floor()).unwrap();
+        let o = shape.wall_overlap(at, &floor()).unwrap();
         stiffness(&material) * o.volume / (4.0 * (o.centroid - at).norm())
     };
     let (mut low, mut high) = (1e-12 * R, 0.5 * R);
@@ -114,7 +113,7 @@ fn at_rest_the_contact_bears_the_weight() {
         bodies.advance(3.0).unwrap();
         assert!(bodies.twist(BodyId(0)).linear.norm() < 1e-9);
         let at = bodies.pose(BodyId(0)).position;
-        let o = wall_overlap(&shape, at, &floor()).unwrap();
+        let o = shape.wall_overlap(at, &floor()).unwrap();
         let length = 4.0 * (o.centroid - at).norm();
         assert_relative_eq!(stiffness(&material) * o.volume / length, weight, max_relative = 1e-9);
         // Standing, what the wall gives over a step is the weight's impulse.

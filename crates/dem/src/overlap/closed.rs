@@ -39,19 +39,24 @@ fn cap(r: f64, s: f64) -> Part {
     }
 }
 
-pub(super) fn discs(ra: f64, a: Point, rb: f64, b: Point) -> Option<Overlap> {
+/// Round bodies have no moment about the centroid: it lies on the line of centres, and so does the gradient.
+fn overlap(volume: f64, centroid: Point, normal: Vector, area: f64) -> Overlap {
+    Overlap { volume, centroid, normal, gradient: -area * normal, moment: Vector::zeros() }
+}
+
+pub(crate) fn discs(ra: f64, a: Point, rb: f64, b: Point) -> Option<Overlap> {
     pair(ra, a, rb, b, segment, |r| PI * r * r)
 }
 
-pub(super) fn spheres(ra: f64, a: Point, rb: f64, b: Point) -> Option<Overlap> {
+pub(crate) fn spheres(ra: f64, a: Point, rb: f64, b: Point) -> Option<Overlap> {
     pair(ra, a, rb, b, cap, |r| 4.0 / 3.0 * PI * r.powi(3))
 }
 
-pub(super) fn disc_wall(r: f64, at: Point, distance: f64, normal: Vector) -> Option<Overlap> {
+pub(crate) fn disc_wall(r: f64, at: Point, distance: f64, normal: Vector) -> Option<Overlap> {
     wall(r, at, distance, normal, segment, PI * r * r)
 }
 
-pub(super) fn sphere_wall(r: f64, at: Point, distance: f64, normal: Vector) -> Option<Overlap> {
+pub(crate) fn sphere_wall(r: f64, at: Point, distance: f64, normal: Vector) -> Option<Overlap> {
     wall(r, at, distance, normal, cap, 4.0 / 3.0 * PI * r.powi(3))
 }
 
@@ -73,7 +78,7 @@ fn pair(
     if d <= (ra - rb).abs() {
         // One inside the other: no force from the gradient, but the volume is known.
         let (r, centroid) = if ra < rb { (ra, a) } else { (rb, b) };
-        return Some(Overlap { volume: whole(r), centroid, normal, area: 0.0, depth });
+        return Some(overlap(whole(r), centroid, normal, 0.0));
     }
     // Depth of each one's part beyond the plane of the common circle, without cancellation.
     let (sa, sb) = (depth * (2.0 * rb - depth) / (2.0 * d), depth * (2.0 * ra - depth) / (2.0 * d));
@@ -82,13 +87,8 @@ fn pair(
     let from_a = a - normal * pa.centroid;
     let from_b = b + normal * pb.centroid;
     let share = if volume > 0.0 { pb.volume / volume } else { 0.5 };
-    Some(Overlap {
-        volume,
-        centroid: from_a + (from_b - from_a) * share,
-        normal,
-        area: if sa < sb { pa.cut } else { pb.cut },
-        depth,
-    })
+    let area = if sa < sb { pa.cut } else { pb.cut };
+    Some(overlap(volume, from_a + (from_b - from_a) * share, normal, area))
 }
 
 fn wall(
@@ -103,9 +103,9 @@ fn wall(
     if depth <= 0.0 {
         None
     } else if depth >= 2.0 * r {
-        Some(Overlap { volume: whole, centroid: at, normal, area: 0.0, depth })
+        Some(overlap(whole, at, normal, 0.0))
     } else {
         let p = part(r, depth);
-        Some(Overlap { volume: p.volume, centroid: at - normal * p.centroid, normal, area: p.cut, depth })
+        Some(overlap(p.volume, at - normal * p.centroid, normal, p.cut))
     }
 }

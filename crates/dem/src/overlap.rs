@@ -1,5 +1,6 @@
 //! The volume that two bodies share; one file per route to it.
 pub(crate) mod closed;
+mod facets;
 mod solver;
 
 pub use solver::{OverlapSolver, Route, overlap};

@@ -1,9 +1,12 @@
 //! Shapes.
 mod disc;
+mod facets;
 mod half_space;
 mod sphere;
 
 pub use disc::Disc;
+pub use facets::Facets;
+pub(crate) use facets::Node;
 pub use half_space::HalfSpace;
 pub use sphere::Sphere;
 
@@ -35,6 +38,8 @@ pub enum Form<'a> {
     Sphere(&'a Sphere),
     /// All behind a plane.
     HalfSpace(&'a HalfSpace),
+    /// A closed surface of triangles.
+    Facets(&'a Facets),
     /// Its signed distance only.
     Distance,
 }

@@ -1,4 +1,5 @@
 //! Which route leads to the overlap of a pair.
+use super::facets::FacetOverlap;
 use super::{Overlap, closed};
 use crate::{DemError, Form, Shape};
 use interfaces::Pose;
@@ -9,12 +10,15 @@ use std::fmt;
 pub enum Route {
     /// A formula.
     ClosedForm,
+    /// Sums over the crossings of triangles.
+    Facets,
 }
 
 impl fmt::Display for Route {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::ClosedForm => "closed form",
+            Self::Facets => "crossings of triangles",
         })
     }
 }
@@ -36,6 +40,7 @@ impl fmt::Display for Route {
 pub struct OverlapSolver {
     route: Option<Route>,
     patches: Vec<Overlap>,
+    facets: FacetOverlap,
 }
 
 impl OverlapSolver {
@@ -89,6 +94,7 @@ impl OverlapSolver {
                 self.solve(b, at_b, a, at_a)?;
                 self.patches.iter_mut().for_each(|o| *o = o.swapped());
             }
+            (Form::Facets(p), Form::Facets(q)) => self.facets.overlap(p, at_a, q, at_b, out),
             _ => return Err(DemError::Unsupported { a: a.name(), b: b.name() }),
         }
         Ok(&self.patches)

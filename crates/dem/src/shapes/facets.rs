@@ -1,0 +1,169 @@
+//! A closed surface of triangles, as overlaps need it.
+mod tree;
+
+pub(crate) use tree::Node;
+
+use interfaces::Vector;
+use nalgebra::Matrix3;
+use std::collections::HashMap;
+
+/// The triangles of a closed surface, how they hang together, and a tree of boxes around them.
+#[derive(Clone, Debug)]
+pub struct Facets {
+    pub(crate) vertices: Vec<Vector>,
+    pub(crate) faces: Vec<Face>,
+    pub(crate) edges: Vec<Edge>,
+    /// Edges at every vertex: those of vertex v are `spokes[hubs[v]..hubs[v + 1]]`.
+    pub(crate) spokes: Vec<u32>,
+    pub(crate) hubs: Vec<u32>,
+    /// A vertex of every connected shell.
+    pub(crate) shells: Vec<u32>,
+    /// The shell of every vertex.
+    pub(crate) shell_of: Vec<u32>,
+    pub(crate) tree: Vec<Node>,
+    /// Largest distance of a vertex from the origin.
+    pub(crate) radius: f64,
+}
+
+/// A triangle, its corners counter-clockwise seen from outside.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Face {
+    pub(crate) corners: [u32; 3],
+    /// Edge i runs from corner i to corner i + 1, or back.
+    pub(crate) edges: [u32; 3],
+}
+
+/// An edge; its direction is that in which the face `left` has it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Edge {
+    pub(crate) from: u32,
+    pub(crate) to: u32,
+    pub(crate) left: u32,
+    pub(crate) right: u32,
+}
+
+/// Moments of a body of density one.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Moments {
+    /// ∫ dV.
+    pub(crate) volume: f64,
+    /// ∫ x dV.
+    pub(crate) first: Vector,
+    /// ∫ x xᵀ dV.
+    pub(crate) second: Matrix3<f64>,
+}
+
+impl Facets {
+    /// Of triangles, every edge of which belongs to two of them, once in each direction.
+    ///
+    /// # Errors
+    /// A face that breaks this rule.
+    pub(crate) fn new(vertices: Vec<Vector>, mut corners: Vec<[u32; 3]>) -> Result<Self, usize> {
+        let tree = tree::build(&vertices, &mut corners);
+        let mut edges = Vec::with_capacity(corners.len() * 3 / 2);
+        let mut faces: Vec<Face> = corners.iter().map(|c| Face { corners: *c, edges: [0; 3] }).collect();
+        let mut open: HashMap<(u32, u32), u32> = HashMap::with_capacity(corners.len() * 3 / 2);
+        for (f, face) in faces.iter_mut().enumerate() {
+            for i in 0..3 {
+                let (from, to) = (face.corners[i], face.corners[(i + 1) % 3]);
+                if let Some(e) = open.remove(&(to, from)) {
+                    let edge: &mut Edge = &mut edges[e as usize];
+                    edge.right = f as u32;
+                    face.edges[i] = e;
+                } else {
+                    face.edges[i] = edges.len() as u32;
+                    edges.push(Edge { from, to, left: f as u32, right: u32::MAX });
+                    if open.insert((from, to), face.edges[i]).is_some() {
+                        return Err(f);
+                    }
+                }
+            }
+        }
+        if let Some(&e) = open.values().next() {
+            return Err(edges[e as usize].left as usize);
+        }
+        let (spokes, hubs) = spokes(&edges, vertices.len());
+        let radius = vertices.iter().map(|v| v.norm()).fold(0.0, f64::max);
+        let (shells, shell_of) = (Vec::new(), vec![u32::MAX; vertices.len()]);
+        let mut all = Self { vertices, faces, edges, spokes, hubs, shells, shell_of, tree, radius };
+        all.find_shells();
+        Ok(all)
+    }
+
+    /// Numbers the connected parts of the surface.
+    fn find_shells(&mut self) {
+        let mut todo = Vec::new();
+        for start in 0..self.vertices.len() as u32 {
+            if self.shell_of[start as usize] != u32::MAX || self.spokes_of(start).is_empty() {
+                continue;
+            }
+            let shell = self.shells.len() as u32;
+            self.shells.push(start);
+            self.shell_of[start as usize] = shell;
+            todo.push(start);
+            while let Some(v) = todo.pop() {
+                for i in self.hubs[v as usize]..self.hubs[v as usize + 1] {
+                    let other = self.edges[self.spokes[i as usize] as usize].other(v);
+                    if self.shell_of[other as usize] == u32::MAX {
+                        self.shell_of[other as usize] = shell;
+                        todo.push(other);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The edges that meet in a vertex.
+    #[inline]
+    pub(crate) fn spokes_of(&self, v: u32) -> &[u32] {
+        &self.spokes[self.hubs[v as usize] as usize..self.hubs[v as usize + 1] as usize]
+    }
+
+    /// By the divergence theorem. Of a tetrahedron with the corners 0, a, b, c and the volume V = a·(b × c)/6:
+    /// ∫ x dV = V s/4 and ∫ x xᵀ dV = V (a aᵀ + b bᵀ + c cᵀ + s sᵀ)/20 with s = a + b + c.
+    pub(crate) fn moments(&self) -> Moments {
+        let mut sum = Moments::default();
+        for face in &self.faces {
+            let [a, b, c] = face.corners.map(|v| self.vertices[v as usize]);
+            let (v, s) = (a.dot(&b.cross(&c)) / 6.0, a + b + c);
+            sum.volume += v;
+            sum.first += s * (v / 4.0);
+            let squares = a * a.transpose() + b * b.transpose() + c * c.transpose() + s * s.transpose();
+            sum.second += squares * (v / 20.0);
+        }
+        sum
+    }
+}
+
+impl Moments {
+    /// ∫ (|x|² 1 − x xᵀ) dV.
+    pub(crate) fn inertia(&self) -> Matrix3<f64> {
+        Matrix3::from_diagonal_element(self.second.trace()) - self.second
+    }
+}
+
+impl Edge {
+    /// The end that is not `v`.
+    #[inline]
+    pub(crate) fn other(&self, v: u32) -> u32 {
+        if self.from == v { self.to } else { self.from }
+    }
+}
+
+fn spokes(edges: &[Edge], n: usize) -> (Vec<u32>, Vec<u32>) {
+    let mut hubs = vec![0_u32; n + 1];
+    for v in edges.iter().flat_map(|e| [e.from, e.to]) {
+        hubs[v as usize + 1] += 1;
+    }
+    for v in 0..n {
+        hubs[v + 1] += hubs[v];
+    }
+    let (mut next, mut spokes) = (hubs.clone(), vec![0; 2 * edges.len()]);
+    for (e, edge) in edges.iter().enumerate() {
+        for v in [edge.from, edge.to] {
+            spokes[next[v as usize] as usize] = e as u32;
+            next[v as usize] += 1;
+        }
+    }
+    (spokes, hubs)
+}

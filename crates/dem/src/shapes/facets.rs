@@ -1,7 +1,7 @@
 //! A closed surface of triangles, as overlaps need it.
 mod tree;
 
-pub(crate) use tree::Node;
+pub(crate) use tree::{Node, WIDTH, above, below};
 
 use interfaces::Vector;
 use nalgebra::Matrix3;
@@ -13,14 +13,19 @@ pub struct Facets {
     pub(crate) vertices: Vec<Vector>,
     pub(crate) faces: Vec<Face>,
     pub(crate) edges: Vec<Edge>,
-    /// Edges at every vertex: those of vertex v are `spokes[hubs[v]..hubs[v + 1]]`.
-    pub(crate) spokes: Vec<u32>,
+    /// Edges at every vertex, and their other ends: those of vertex v are `spokes[hubs[v]..hubs[v + 1]]`.
+    pub(crate) spokes: Vec<[u32; 2]>,
     pub(crate) hubs: Vec<u32>,
+    /// Faces by their first corner: those of vertex v are `fans[first_fans[v]..first_fans[v + 1]]`.
+    pub(crate) fans: Vec<u32>,
+    pub(crate) first_fans: Vec<u32>,
     /// A vertex of every connected shell.
     pub(crate) shells: Vec<u32>,
     /// The shell of every vertex.
     pub(crate) shell_of: Vec<u32>,
     pub(crate) tree: Vec<Node>,
+    /// The box around all, as [low, high].
+    pub(crate) bounds: [Vector; 2],
     /// Largest distance of a vertex from the origin.
     pub(crate) radius: f64,
 }
@@ -82,10 +87,15 @@ impl Facets {
         if let Some(&e) = open.values().next() {
             return Err(edges[e as usize].left as usize);
         }
-        let (spokes, hubs) = spokes(&edges, vertices.len());
+        let ends = (0..).zip(&edges).flat_map(|(e, edge)| [(edge.from, [e, edge.to]), (edge.to, [e, edge.from])]);
+        let (spokes, hubs) = by_vertex(ends, vertices.len());
+        let first_corners = (0..).zip(&faces).map(|(f, face)| (face.corners[0], f));
+        let (fans, first_fans) = by_vertex(first_corners, vertices.len());
+        let start = [Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY)];
+        let bounds = vertices.iter().fold(start, |[low, high], v| [low.inf(v), high.sup(v)]);
         let radius = vertices.iter().map(|v| v.norm()).fold(0.0, f64::max);
         let (shells, shell_of) = (Vec::new(), vec![u32::MAX; vertices.len()]);
-        let mut all = Self { vertices, faces, edges, spokes, hubs, shells, shell_of, tree, radius };
+        let mut all = Self { vertices, faces, edges, spokes, hubs, fans, first_fans, shells, shell_of, tree, bounds, radius };
         all.find_shells();
         Ok(all)
     }
@@ -103,7 +113,7 @@ impl Facets {
             todo.push(start);
             while let Some(v) = todo.pop() {
                 for i in self.hubs[v as usize]..self.hubs[v as usize + 1] {
-                    let other = self.edges[self.spokes[i as usize] as usize].other(v);
+                    let [_, other] = self.spokes[i as usize];
                     if self.shell_of[other as usize] == u32::MAX {
                         self.shell_of[other as usize] = shell;
                         todo.push(other);
@@ -113,10 +123,15 @@ impl Facets {
         }
     }
 
-    /// The edges that meet in a vertex.
+    /// The edges that meet in a vertex, and their other ends.
     #[inline]
-    pub(crate) fn spokes_of(&self, v: u32) -> &[u32] {
+    pub(crate) fn spokes_of(&self, v: u32) -> &[[u32; 2]] {
         &self.spokes[self.hubs[v as usize] as usize..self.hubs[v as usize + 1] as usize]
+    }
+    /// The faces whose first corner is vertex `v`.
+    #[inline]
+    pub(crate) fn fan(&self, v: u32) -> &[u32] {
+        &self.fans[self.first_fans[v as usize] as usize..self.first_fans[v as usize + 1] as usize]
     }
 
     /// By the divergence theorem. Of a tetrahedron with the corners 0, a, b, c and the volume V = a·(b × c)/6:
@@ -142,28 +157,18 @@ impl Moments {
     }
 }
 
-impl Edge {
-    /// The end that is not `v`.
-    #[inline]
-    pub(crate) fn other(&self, v: u32) -> u32 {
-        if self.from == v { self.to } else { self.from }
-    }
-}
-
-fn spokes(edges: &[Edge], n: usize) -> (Vec<u32>, Vec<u32>) {
-    let mut hubs = vec![0_u32; n + 1];
-    for v in edges.iter().flat_map(|e| [e.from, e.to]) {
-        hubs[v as usize + 1] += 1;
-    }
+/// Sorts items by vertex: those of vertex v are at `starts[v]..starts[v + 1]`.
+fn by_vertex<T: Copy + Default>(items: impl Iterator<Item = (u32, T)> + Clone, n: usize) -> (Vec<T>, Vec<u32>) {
+    let mut starts = vec![0_u32; n + 1];
+    items.clone().for_each(|(v, _)| starts[v as usize + 1] += 1);
     for v in 0..n {
-        hubs[v + 1] += hubs[v];
+        starts[v + 1] += starts[v];
     }
-    let (mut next, mut spokes) = (hubs.clone(), vec![0; 2 * edges.len()]);
-    for (e, edge) in edges.iter().enumerate() {
-        for v in [edge.from, edge.to] {
-            spokes[next[v as usize] as usize] = e as u32;
-            next[v as usize] += 1;
-        }
+    let mut next = starts.clone();
+    let mut sorted = vec![T::default(); starts[n] as usize];
+    for (v, item) in items {
+        sorted[next[v as usize] as usize] = item;
+        next[v as usize] += 1;
     }
-    (spokes, hubs)
+    (sorted, starts)
 }

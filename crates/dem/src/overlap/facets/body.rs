@@ -1,6 +1,6 @@
 //! One of the two bodies, and the marks that an overlap leaves on it.
-use super::signs::Side;
-use crate::shapes::Facets;
+use super::signs::{Side, is_behind};
+use crate::shapes::{Facets, Node, WIDTH};
 use interfaces::Vector;
 use nalgebra::Matrix3;
 
@@ -10,8 +10,15 @@ pub(super) struct Marks {
     run: u32,
     places: Vec<Marked<Vector>>,
     planes: Vec<Marked<Plane>>,
+    nodes: Vec<Marked<Node>>,
     edges: Vec<Marked<Crossed>>,
     inside: Vec<Marked<u32>>,
+    /// Faces that the other body's surface crosses.
+    cut: Vec<Marked<()>>,
+    /// Those faces, each once.
+    pub(super) cut_faces: Vec<u32>,
+    /// Vertices at which crossed edges end.
+    crossed_at: Vec<Marked<()>>,
     /// The vertices that lie in the other body.
     pub(super) found: Vec<u32>,
     /// Is it known of a shell's vertices which of them do?
@@ -31,6 +38,27 @@ pub(super) struct Plane {
     pub(super) normal: Vector,
     /// Its point nearest to the reference point, from there \[m\].
     pub(super) foot: Vector,
+    /// normal·(x − a) has the right sign where it is beyond this times the largest component of x − a.
+    round_off: f64,
+}
+
+impl Plane {
+    /// Which of three corners `p` of the body `of` lie behind the face with these `corners`, a bit for each.
+    #[inline]
+    pub(super) fn behind(&self, of: Side, p: &[Vector; 3], corners: &[Vector; 3]) -> u32 {
+        let mut behind = 0;
+        for i in 0..3 {
+            let d = p[i] - corners[0];
+            let (height, size) = (self.normal.dot(&d), d.x.abs().max(d.y.abs()).max(d.z.abs()));
+            let is_behind = if height.abs() > self.round_off * size {
+                height < 0.0
+            } else {
+                is_behind(of, p[i], *corners)
+            };
+            behind |= u32::from(is_behind) << i;
+        }
+        behind
+    }
 }
 
 /// What crosses an edge.
@@ -68,6 +96,10 @@ impl Marks {
         fit(&mut self.inside, facets.vertices.len());
         fit(&mut self.planes, facets.faces.len());
         fit(&mut self.edges, facets.edges.len());
+        fit(&mut self.nodes, facets.tree.len());
+        fit(&mut self.cut, facets.faces.len());
+        fit(&mut self.crossed_at, facets.vertices.len());
+        self.cut_faces.clear();
         self.found.clear();
         self.known.clear();
         self.known.resize(facets.shells.len(), false);
@@ -107,6 +139,53 @@ impl Body<'_> {
         let [a, b, c] = self.facets.faces[f as usize].corners;
         [self.place(a), self.place(b), self.place(c)]
     }
+    /// A node of the tree, its boxes in the common frame.
+    #[inline(always)]
+    pub(super) fn node(&mut self, n: u32) -> &Node {
+        let at = n as usize;
+        if self.moved.is_none() {
+            return &self.facets.tree[at];
+        }
+        if self.marks.nodes[at].run != self.marks.run {
+            let value = self.turned_node(at);
+            self.marks.nodes[at] = Marked { run: self.marks.run, value };
+        }
+        &self.marks.nodes[at].value
+    }
+    #[inline(always)]
+    fn turned_node(&mut self, at: usize) -> Node {
+        let node = &self.facets.tree[at];
+        let mut turned = Node { children: node.children, is_leaf: node.is_leaf, ..Node::default() };
+        if node.is_leaf {
+            let first = node.children[0];
+            let count = WIDTH.min(self.facets.faces.len() - first as usize);
+            for slot in 0..count {
+                if node.low[0][slot] <= node.high[0][slot] {
+                    let [a, b, c] = self.corners(first + slot as u32);
+                    turned.set(slot, a.inf(&b).inf(&c), a.sup(&b).sup(&c));
+                }
+            }
+        } else if let Some((turn, shift)) = &self.moved {
+            let turn = turn.map(|x| x as f32);
+            let shift = shift.map(|x| x as f32);
+            // For rounding to single precision.
+            let slack = 1e-6 * (self.facets.radius as f32 + shift.amax());
+            for i in 0..3 {
+                for slot in 0..WIDTH {
+                    let (mut centre, mut half) = (shift[i], slack);
+                    for k in 0..3 {
+                        centre += turn[(i, k)] * 0.5 * (node.high[k][slot] + node.low[k][slot]);
+                        half += turn[(i, k)].abs() * 0.5 * (node.high[k][slot] - node.low[k][slot]);
+                    }
+                    // Of an empty box the half is −∞ and the centre no number.
+                    let filled = half > 0.0;
+                    turned.low[i][slot] = if filled { centre - half } else { f32::INFINITY };
+                    turned.high[i][slot] = if filled { centre + half } else { f32::NEG_INFINITY };
+                }
+            }
+        }
+        turned
+    }
     /// The plane of a face.
     #[inline]
     pub(super) fn plane(&mut self, f: u32) -> Plane {
@@ -115,11 +194,14 @@ impl Body<'_> {
             return mark.value;
         }
         let [a, b, c] = self.corners(f);
-        let normal = (b - a).cross(&(c - a));
+        let (u, v) = (b - a, c - a);
+        let normal = u.cross(&v);
+        // With sums and products rounded by ε each, 48 ε |u| |v| at most.
+        let round_off = 64.0 * f64::EPSILON * u.amax() * v.amax();
         let square = normal.norm_squared();
         let height = normal.dot(&(a - self.reference));
         let foot = if square > 0.0 { normal * (height / square) } else { Vector::zeros() };
-        let value = Plane { normal, foot };
+        let value = Plane { normal, foot, round_off };
         self.marks.planes[f as usize] = Marked { run: self.marks.run, value };
         value
     }
@@ -132,6 +214,10 @@ impl Body<'_> {
     #[inline]
     pub(super) fn cross(&mut self, e: u32, crossed: Crossed) {
         self.marks.edges[e as usize] = Marked { run: self.marks.run, value: crossed };
+        let edge = &self.facets.edges[e as usize];
+        for v in [edge.from, edge.to] {
+            self.marks.crossed_at[v as usize].run = self.marks.run;
+        }
     }
     /// The group of a vertex that is known to lie in the other body.
     #[inline]
@@ -144,11 +230,22 @@ impl Body<'_> {
         self.marks.inside[v as usize] = Marked { run: self.marks.run, value: group };
         self.marks.found.push(v);
     }
-    /// Is a face whole within the other body, as far as its corners and edges tell?
+    /// Marks a face that the other body's surface crosses.
     #[inline]
-    pub(super) fn is_whole(&self, f: u32) -> bool {
-        let face = &self.facets.faces[f as usize];
-        face.corners.iter().all(|&v| self.group(v).is_some())
-            && face.edges.iter().all(|&e| self.crossed(e).first == NONE)
+    pub(super) fn cut(&mut self, f: u32) {
+        let mark = &mut self.marks.cut[f as usize];
+        if mark.run != self.marks.run {
+            mark.run = self.marks.run;
+            self.marks.cut_faces.push(f);
+        }
+    }
+    #[inline]
+    pub(super) fn is_cut(&self, f: u32) -> bool {
+        self.marks.cut[f as usize].run == self.marks.run
+    }
+    /// Do crossed edges end in a vertex?
+    #[inline]
+    pub(super) fn has_crossed(&self, v: u32) -> bool {
+        self.marks.crossed_at[v as usize].run == self.marks.run
     }
 }

@@ -1,6 +1,8 @@
 //! What hangs together.
 use super::Sums;
+use super::body::NONE;
 use super::crossings::Crossings;
+use nalgebra::Matrix3;
 
 /// Disjoint sets of crossings, and of vertices by their group's number (Tarjan 1975, J. ACM 22, 215).
 #[derive(Clone, Debug, Default)]
@@ -50,6 +52,14 @@ impl Groups {
     pub(super) fn sums(&mut self, i: u32) -> &mut Sums {
         let root = self.root(i);
         &mut self.sums[root as usize]
+    }
+    /// Adds sums that were taken in a frame turned by `turn`.
+    pub(super) fn add_turned(&mut self, i: u32, own: &Sums, turn: &Matrix3<f64>) {
+        if i != NONE {
+            let sums = self.sums(i);
+            sums.volume += own.volume;
+            sums.first += turn * own.first;
+        }
     }
     /// One sum for every connected region. Groups with negative volume, beyond `round_off`, are borders of hollows, which belong
     /// to the region around them: that with the nearest centroid among those large enough.

@@ -1,9 +1,11 @@
 //! Which vertices of one body lie in the other, and the sums over all edges.
-use super::body::{Body, NONE};
+use super::body::{Body, Crossed, NONE};
 use super::crossings::Crossings;
 use super::groups::Groups;
 use super::signs::{Side, ray_crosses};
 use super::{Bodies, Sums};
+use crate::shapes::WIDTH;
+use nalgebra::Matrix3;
 
 impl Bodies<'_> {
     /// Marks the vertices of either body that lie in the other, with the groups they belong to.
@@ -48,32 +50,37 @@ impl Bodies<'_> {
             None => (p, nalgebra::Vector3::x()),
             Some((turn, shift)) => (turn.tr_mul(&(p - shift)), turn.row(0).transpose()),
         };
+        let [low, high] = facets.bounds;
+        if !(low <= start && start <= high) {
+            return false;
+        }
+        // What the ray may drift off by rounding.
         let slack = 1e-13 * (facets.radius + start.norm());
         let mut winding = 0;
         stack.clear();
         stack.push([0, 0]);
         while let Some([n, _]) = stack.pop() {
             let node = &facets.tree[n as usize];
-            let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
-            for i in 0..3 {
-                let (gap, half) = (node.centre[i] - start[i], node.half[i] + slack);
-                if along[i].abs() > 1e-12 {
-                    let (s, t) = ((gap - half) / along[i], (gap + half) / along[i]);
-                    // The slack covers what the ray drifts off over the body's length.
-                    (enter, leave) = (enter.max(s.min(t)), leave.min(s.max(t)));
-                } else if gap.abs() > half {
-                    leave = -1.0;
+            for slot in (0..WIDTH).filter(|&i| node.low[0][i] <= node.high[0][i]) {
+                let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
+                for i in 0..3 {
+                    let low = f64::from(node.low[i][slot]) - slack - start[i];
+                    let high = f64::from(node.high[i][slot]) + slack - start[i];
+                    if along[i].abs() > 1e-12 {
+                        let (s, t) = (low / along[i], high / along[i]);
+                        (enter, leave) = (enter.max(s.min(t)), leave.min(s.max(t)));
+                    } else if low > 0.0 || high < 0.0 {
+                        leave = -1.0;
+                    }
                 }
-            }
-            if enter > leave + slack {
-                continue;
-            }
-            if node.count == 0 {
-                stack.push([n + 1, 0]);
-                stack.push([node.first, 0]);
-            } else {
-                let faces = node.first..node.first + node.count;
-                winding += faces.map(|f| ray_crosses(side, p, other.corners(f))).sum::<i32>();
+                if !(enter <= leave + slack) {
+                    continue;
+                }
+                if node.is_leaf {
+                    winding += ray_crosses(side, p, other.corners(node.children[slot] + slot as u32));
+                } else {
+                    stack.push([node.children[slot], 0]);
+                }
             }
         }
         winding > 0
@@ -89,13 +96,10 @@ impl Bodies<'_> {
             sums.add_edge(p, q, left, right);
             sums.add_curve(p, q);
         }
-        for (number, c) in (0..).zip(&crossings.all) {
-            let body = self.on(c.side);
-            let sign = if c.leaves { 1.0 } else { -1.0 };
-            body.add_edge(c.edge, [sign * c.along, sign * c.along * c.along], [true; 2], groups.sums(number));
+        for body in [&mut self.first, &mut self.second] {
+            body.sum_cut(crossings, groups);
+            body.sum_whole(groups);
         }
-        self.first.sum_inside(groups);
-        self.second.sum_inside(groups);
         groups.patches(1e-14 * self.second.facets.radius.powi(3))
     }
 }
@@ -111,57 +115,67 @@ impl Body<'_> {
                 continue;
             }
             self.set_group(v, group);
-            for &e in self.facets.spokes_of(v) {
-                let crossed = self.crossed(e);
-                let edge = &self.facets.edges[e as usize];
+            let has_crossed = self.has_crossed(v);
+            for &[e, other] in self.facets.spokes_of(v) {
+                let crossed = if has_crossed { self.crossed(e) } else { Crossed::default() };
                 if crossed.first == NONE {
-                    let other = edge.other(v);
                     if self.group(other).is_none() {
                         stack.push([other, group]);
                     }
                     continue;
                 }
-                let starts = edge.from == v;
+                let starts = self.facets.edges[e as usize].from == v;
                 groups.join(group, end_crossing(self, e, crossings, !starts));
                 // Out and in again.
                 if crossed.net == 0 {
-                    stack.push([edge.other(v), end_crossing(self, e, crossings, starts)]);
+                    stack.push([other, end_crossing(self, e, crossings, starts)]);
                 }
             }
         }
     }
 
-    /// Adds a part of an edge, given by [`Sums::add_line`]'s sums over its ends, to its faces on the left and right.
-    #[inline]
-    fn add_edge(&mut self, e: u32, ends: [f64; 2], [left, right]: [bool; 2], sums: &mut Sums) {
-        let edge = self.facets.edges[e as usize];
-        let (p, q) = (self.arm(edge.from), self.arm(edge.to));
-        let mut foot = |wanted: bool, f: u32| if wanted { self.plane(f).foot } else { Default::default() };
-        let (left, right) = (foot(left, edge.left), foot(right, edge.right));
-        sums.add_line(p, q - p, ends, left, right);
-    }
-
-    /// Sums over the ends of edges at the vertices that lie in the other body; of whole faces at once.
-    fn sum_inside(&mut self, groups: &mut Groups) {
-        for i in 0..self.marks.found.len() {
-            let v = self.marks.found[i];
-            let Some(group) = self.group(v) else { continue };
-            let sums = groups.sums(group);
-            for &e in self.facets.spokes_of(v) {
+    /// Sums over the borders of the faces that are cut: what of their edges lies in the other body.
+    fn sum_cut(&mut self, crossings: &Crossings, groups: &mut Groups) {
+        for i in 0..self.marks.cut_faces.len() {
+            let f = self.marks.cut_faces[i];
+            let (face, foot) = (self.facets.faces[f as usize], self.plane(f).foot);
+            for e in face.edges {
                 let edge = self.facets.edges[e as usize];
-                let whole = [edge.left, edge.right].map(|f| self.is_whole(f));
-                if edge.to == v && whole != [true; 2] {
-                    self.add_edge(e, [1.0; 2], whole.map(|w| !w), sums);
+                let (p, q) = (self.arm(edge.from), self.arm(edge.to));
+                let (u, side) = (q - p, if edge.left == f { 1.0 } else { -1.0 });
+                for (number, c) in crossings.of(self.crossed(e)) {
+                    let end = if c.leaves { side * c.along } else { -side * c.along };
+                    groups.sums(number).add_line(p, u, [end, end * c.along], foot);
                 }
-                for (f, whole) in [edge.left, edge.right].into_iter().zip(whole) {
-                    let face = &self.facets.faces[f as usize];
-                    if whole && face.corners[0] == v && face.edges[0] == e {
-                        let [a, b, c] = face.corners.map(|v| self.arm(v));
-                        sums.add_face(a, b, c);
-                    }
+                if let Some(group) = self.group(edge.to) {
+                    groups.sums(group).add_line(p, u, [side; 2], foot);
                 }
             }
         }
+    }
+
+    /// Sums over the faces that lie whole in the other body, in this body's own frame.
+    fn sum_whole(&mut self, groups: &mut Groups) {
+        let (reference, turn) = match &self.moved {
+            None => (self.reference, Matrix3::identity()),
+            Some((turn, shift)) => (turn.tr_mul(&(self.reference - shift)), *turn),
+        };
+        let (mut own, mut last) = (Sums::default(), NONE);
+        for &v in &self.marks.found {
+            let Some(group) = self.group(v) else { continue };
+            if group != last {
+                groups.add_turned(last, &own, &turn);
+                (own, last) = (Sums::default(), group);
+            }
+            for &f in self.facets.fan(v) {
+                let [_, b, c] = self.facets.faces[f as usize].corners;
+                if self.group(b).is_some() && self.group(c).is_some() && !self.is_cut(f) {
+                    let [a, b, c] = [v, b, c].map(|v| self.facets.vertices[v as usize] - reference);
+                    own.add_face(a, b, c);
+                }
+            }
+        }
+        groups.add_turned(last, &own, &turn);
     }
 }
 

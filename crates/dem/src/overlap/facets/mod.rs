@@ -21,6 +21,7 @@ use body::{Body, Marks};
 use crossings::Crossings;
 use groups::Groups;
 use interfaces::{Point, Pose, Vector};
+use nalgebra::Matrix3;
 use signs::Side;
 
 /// Overlaps of closed surfaces of triangles; keeps the memory that they take.
@@ -94,11 +95,10 @@ impl<'a> Bodies<'a> {
 }
 
 /// The middle of what the boxes of the two share, in the frame of the second; `None` if they are apart.
-fn meeting(a: &Facets, turn: &nalgebra::Matrix3<f64>, shift: Vector, b: &Facets) -> Option<Vector> {
-    let (Some(a), Some(b)) = (a.tree.first(), b.tree.first()) else { return None };
-    let (centre, half) = (turn * a.centre + shift, turn.abs() * a.half);
-    let slack = Vector::repeat(1e-14 * (centre.norm() + half.norm() + b.centre.norm() + b.half.norm()));
-    let low = (centre - half).sup(&(b.centre - b.half)) - slack;
-    let high = (centre + half).inf(&(b.centre + b.half)) + slack;
+fn meeting(a: &Facets, turn: &Matrix3<f64>, shift: Vector, b: &Facets) -> Option<Vector> {
+    let ([low, high], [low_b, high_b]) = (a.bounds, b.bounds);
+    let (centre, half) = (turn * (0.5 * (low + high)) + shift, turn.abs() * (0.5 * (high - low)));
+    let slack = Vector::repeat(1e-14 * (a.radius + b.radius + shift.norm()));
+    let (low, high) = (low_b.sup(&(centre - half)) - slack, high_b.inf(&(centre + half)) + slack);
     (low <= high).then(|| 0.5 * (low + high))
 }

@@ -2,63 +2,73 @@
 use super::Bodies;
 use super::body::Body;
 use super::crossings::{Crossings, Segment};
-use super::signs::{Side, is_behind, passes};
-use crate::shapes::Node;
+use super::signs::{Side, passes};
+use crate::shapes::WIDTH;
 use interfaces::Vector;
-use nalgebra::Matrix3;
+use pulp::{Arch, Simd, WithSimd};
 
 impl Bodies<'_> {
     /// Walks down both trees where their boxes meet, and finds where the faces there cross.
     pub(super) fn find_pairs(&mut self, stack: &mut Vec<[u32; 2]>, crossings: &mut Crossings) {
-        let (a, b) = (self.first.facets, self.second.facets);
-        let boxes = Boxes::new(self.first.moved.unwrap_or((Matrix3::identity(), Vector::zeros())), a.radius + b.radius);
+        Arch::new().dispatch(Walk { bodies: self, stack, crossings });
+    }
+}
+
+/// The walk down both trees, in the widest vectors that the processor has.
+struct Walk<'w, 'b> {
+    bodies: &'w mut Bodies<'b>,
+    stack: &'w mut Vec<[u32; 2]>,
+    crossings: &'w mut Crossings,
+}
+
+impl WithSimd for Walk<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { bodies: Bodies { first, second }, stack, crossings } = self;
+        let tree = &second.facets.tree;
         stack.clear();
         stack.push([0, 0]);
         while let Some([m, n]) = stack.pop() {
-            let (p, q) = (&a.tree[m as usize], &b.tree[n as usize]);
-            if !boxes.meet(p, q) {
-                continue;
-            }
-            if p.count > 0 && q.count > 0 {
-                for f in p.first..p.first + p.count {
-                    for g in q.first..q.first + q.count {
-                        cross(&mut self.first, f, &mut self.second, g, crossings);
+            let (p, q) = (first.node(m), &tree[n as usize]);
+            let hits = p.meets(q);
+            let (own, others) = (p.children, q.children);
+            match (p.is_leaf, q.is_leaf) {
+                (true, true) => {
+                    for (i, hits) in hits.into_iter().enumerate().filter(|(_, hits)| *hits != 0) {
+                        let f = own[i] + i as u32;
+                        for j in bits(hits) {
+                            cross(first, f, second, others[j] + j as u32, crossings);
+                        }
                     }
                 }
-            } else if q.count > 0 || (p.count == 0 && p.half.max() >= q.half.max()) {
-                stack.push([m + 1, n]);
-                stack.push([p.first, n]);
-            } else {
-                stack.push([m, n + 1]);
-                stack.push([m, q.first]);
+                (true, false) => {
+                    let met = hits.iter().fold(0, |all, hits| all | hits);
+                    stack.extend(bits(met).map(|j| [m, others[j]]));
+                }
+                (false, true) => {
+                    let met = (0..WIDTH).filter(|&i| hits[i] != 0);
+                    stack.extend(met.map(|i| [own[i], n]));
+                }
+                (false, false) => {
+                    for (i, hits) in hits.into_iter().enumerate() {
+                        stack.extend(bits(hits).map(|j| [own[i], others[j]]));
+                    }
+                }
             }
         }
     }
 }
 
-/// Boxes of the first body's frame against those of the second's.
-struct Boxes {
-    turn: Matrix3<f64>,
-    size: Matrix3<f64>,
-    shift: Vector,
-    slack: f64,
-}
-
-impl Boxes {
-    fn new((turn, shift): (Matrix3<f64>, Vector), extent: f64) -> Self {
-        Self { turn, size: turn.abs(), shift, slack: 1e-14 * (extent + shift.norm()) }
-    }
-    #[inline]
-    fn meet(&self, p: &Node, q: &Node) -> bool {
-        let apart = self.turn * p.centre + self.shift - q.centre;
-        let within = self.size * p.half + q.half;
-        if (0..3).any(|i| apart[i].abs() > within[i] + self.slack) {
-            return false;
-        }
-        let apart = self.turn.tr_mul(&apart);
-        let within = self.size.tr_mul(&q.half) + p.half;
-        !(0..3).any(|i| apart[i].abs() > within[i] + self.slack)
-    }
+/// The numbers of the bits that are set.
+#[inline(always)]
+fn bits(mut of: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lowest = of.trailing_zeros();
+        of &= of.wrapping_sub(1);
+        (lowest < 32).then_some(lowest as usize)
+    })
 }
 
 /// An edge of a face that crosses the plane of another: its number, and its ends, that behind the plane first.
@@ -71,39 +81,43 @@ struct Straddling {
     leaves: bool,
 }
 
-/// The edges along which a face's border leaves and enters what lies behind a plane.
+/// The edges along which a face's border leaves and enters what lies behind a plane; `behind` has a bit for every corner there.
 #[inline]
-fn straddling(own: &Body<'_>, f: u32, corners: &[Vector; 3], behind: [bool; 3]) -> [Straddling; 2] {
-    let face = &own.facets.faces[f as usize];
-    let edge = |i: usize| {
-        let next = (i + 1) % 3;
-        let (inner, outer) = if behind[i] { (i, next) } else { (next, i) };
-        let forward = own.facets.edges[face.edges[i] as usize].left == f;
-        let leaves = behind[i] == forward;
-        Straddling { edge: face.edges[i], behind: corners[inner], ahead: corners[outer], leaves }
+fn straddling(own: &Body<'_>, f: u32, corners: &[Vector; 3], behind: u32) -> [Straddling; 2] {
+    const NEXT: [usize; 3] = [1, 2, 0];
+    // Of one corner alone on its side: the edge that leaves starts there or ends there.
+    let (alone, is_behind) = match behind {
+        0b001 => (0, true),
+        0b010 => (1, true),
+        0b100 => (2, true),
+        0b110 => (0, false),
+        0b101 => (1, false),
+        _ => (2, false),
     };
-    let at = |leaving: bool| (0..3).find(|&i| behind[i] == leaving && behind[(i + 1) % 3] != leaving).unwrap_or(0);
-    [edge(at(true)), edge(at(false))]
+    let face = &own.facets.faces[f as usize];
+    let before = NEXT[NEXT[alone]];
+    let edge = |i: usize, leaving: bool| {
+        let (inner, outer) = if leaving { (i, NEXT[i]) } else { (NEXT[i], i) };
+        let forward = own.facets.edges[face.edges[i] as usize].left == f;
+        Straddling {
+            edge: face.edges[i],
+            behind: corners[inner],
+            ahead: corners[outer],
+            leaves: leaving == forward,
+        }
+    };
+    if is_behind { [edge(alone, true), edge(before, false)] } else { [edge(before, true), edge(alone, false)] }
 }
 
 /// Finds the segment in which two faces cross, if they do (after Devillers & Guigue 2002, INRIA report 4488).
-#[inline]
 fn cross(first: &mut Body<'_>, f: u32, second: &mut Body<'_>, g: u32, crossings: &mut Crossings) {
     let (a, b) = (first.corners(f), second.corners(g));
-    for i in 0..3 {
-        let (low_a, high_a) = (a[0][i].min(a[1][i]).min(a[2][i]), a[0][i].max(a[1][i]).max(a[2][i]));
-        let (low_b, high_b) = (b[0][i].min(b[1][i]).min(b[2][i]), b[0][i].max(b[1][i]).max(b[2][i]));
-        if low_a > high_b || low_b > high_a {
-            return;
-        }
-    }
-    let mixed = |s: &[bool; 3]| s[0] != s[1] || s[1] != s[2];
-    let behind_b = a.map(|p| is_behind(Side::First, p, b));
-    if !mixed(&behind_b) {
+    let behind_b = second.plane(g).behind(Side::First, &a, &b);
+    if behind_b == 0 || behind_b == 0b111 {
         return;
     }
-    let behind_a = b.map(|p| is_behind(Side::Second, p, a));
-    if !mixed(&behind_a) {
+    let behind_a = first.plane(f).behind(Side::Second, &b, &a);
+    if behind_a == 0 || behind_a == 0b111 {
         return;
     }
     // Along n_a × n_b, the first face's border leaves at the low end and enters at the high one; the second's, the other way.
@@ -123,5 +137,7 @@ fn cross(first: &mut Body<'_>, f: u32, second: &mut Body<'_>, g: u32, crossings:
     } else {
         crossings.get(second, first, high_b.edge, f, high_b.leaves)
     };
+    first.cut(f);
+    second.cut(g);
     crossings.segments.push(Segment { first: f, second: g, ends: [low, high] });
 }

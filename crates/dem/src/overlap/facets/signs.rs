@@ -23,7 +23,7 @@ impl Side {
 }
 
 /// Does a corner `p` of the body `of` lie behind the face `a` `b` `c` of the other one?
-#[inline]
+#[cold]
 pub(super) fn is_behind(of: Side, p: Vector, [a, b, c]: [Vector; 3]) -> bool {
     let behind = orient(a, b, c, p);
     if behind != 0.0 {
@@ -37,6 +37,17 @@ pub(super) fn is_behind(of: Side, p: Vector, [a, b, c]: [Vector; 3]) -> bool {
 /// Sign of (q − p)×(s − r)·(r − p): how the line from `p` to `q` on the first body passes that from `r` to `s` on the second.
 #[inline]
 pub(super) fn passes(p: Vector, q: Vector, r: Vector, s: Vector) -> f64 {
+    let (u, v, w) = (q - p, s - r, r - p);
+    let near = u.cross(&v).dot(&w);
+    // Sums and products are rounded by ε each.
+    if near.abs() > 64.0 * f64::EPSILON * u.amax() * v.amax() * w.amax() {
+        return near;
+    }
+    passes_nearly(p, q, r, s)
+}
+
+#[cold]
+fn passes_nearly(p: Vector, q: Vector, r: Vector, s: Vector) -> f64 {
     let passes = orient(p, q, r, s);
     if passes != 0.0 {
         return passes;

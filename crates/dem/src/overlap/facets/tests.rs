@@ -150,9 +150,11 @@ fn ball(levels: usize) -> Facets {
 fn times() {
     let mut solver = FacetOverlap::default();
     let mut out = Vec::new();
-    for levels in [0, 1, 3, 5] {
+    let only = std::env::var("LEVEL").ok().map(|l| l.parse::<usize>().unwrap());
+    for levels in [0, 1, 3, 5].into_iter().filter(|l| only.is_none_or(|o| o == *l)) {
         let ball = ball(levels);
-        for d in [1.95, 1.8, 1.5, 0.7] {
+        let d_only = std::env::var("D").ok().map(|l| l.parse::<f64>().unwrap());
+        for d in [1.95, 1.8, 1.5, 0.7].into_iter().filter(|l| d_only.is_none_or(|o| o == *l)) {
             let turn = Rotation::from_scaled_axis(Vector::new(0.3, 0.7, -0.4));
             let at = Pose { position: Point::from(Vector::new(0.8, 0.5, 0.33).normalize() * d), orientation: turn };
             let origin = Pose::at([0.0; 3]);
@@ -171,6 +173,9 @@ fn times() {
                 ball.faces.len(), best * 1e6, solver.crossings.all.len(), out.first().map(|o| o.volume)
             );
         }
+    }
+    if only.is_some() {
+        return;
     }
     let cube = brick([1.0; 3]);
     for (name, at) in [("corner", turned([0.8, 0.7, 0.75], Vector::new(0.3, 0.2, 0.5))), ("aligned", Pose::at([0.9, 0.8, 0.7])), ("stacked", Pose::at([0.98, 0.0, 0.0])), ("deep", turned([0.0; 3], Vector::new(0.3, 0.2, 0.5)))] {

@@ -1,39 +1,118 @@
-//! A tree of boxes around triangles.
+//! A tree of boxes around triangles, eight by eight.
 use interfaces::Vector;
 
-/// A leaf holds at most so many triangles.
-const MOST: usize = 4;
+/// Boxes that a node holds.
+pub(crate) const WIDTH: usize = 8;
 
-/// A box around the triangles `first..first + count`; `count` is zero where two boxes follow instead: the next in the list, and
-/// that with number `first`.
+/// Eight boxes, each around a node or a triangle, of numbers rounded outwards. Missing ones are empty: they meet nothing.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
-    pub(crate) centre: Vector,
-    pub(crate) half: Vector,
-    pub(crate) first: u32,
-    pub(crate) count: u32,
+    pub(crate) low: [[f32; WIDTH]; 3],
+    pub(crate) high: [[f32; WIDTH]; 3],
+    /// The nodes in the boxes; of a leaf, the number of the first triangle, repeated.
+    pub(crate) children: [u32; WIDTH],
+    pub(crate) is_leaf: bool,
 }
 
-/// Sorts the triangles into the tree's order.
+impl Default for Node {
+    fn default() -> Self {
+        let (low, high) = ([[f32::INFINITY; WIDTH]; 3], [[f32::NEG_INFINITY; WIDTH]; 3]);
+        Self { low, high, children: [u32::MAX; WIDTH], is_leaf: false }
+    }
+}
+
+impl Node {
+    #[inline]
+    pub(crate) fn set(&mut self, slot: usize, low: Vector, high: Vector) {
+        for a in 0..3 {
+            (self.low[a][slot], self.high[a][slot]) = (below(low[a]), above(high[a]));
+        }
+    }
+    /// For each of these boxes, which of the other's it meets, one bit each.
+    #[inline(always)]
+    pub(crate) fn meets(&self, other: &Self) -> [u32; WIDTH] {
+        let mut all = [0; WIDTH];
+        for slot in 0..WIDTH {
+            let mut apart = [0_u32; WIDTH];
+            for a in 0..3 {
+                let (low, high) = (self.low[a][slot], self.high[a][slot]);
+                for i in 0..WIDTH {
+                    apart[i] |= u32::from(other.low[a][i] > high) | u32::from(other.high[a][i] < low);
+                }
+            }
+            let mut met = 0;
+            for i in 0..WIDTH {
+                met |= (apart[i] ^ 1) << i;
+            }
+            all[slot] = met;
+        }
+        all
+    }
+}
+
+/// The greatest single-precision number not above `x`.
+#[inline]
+pub(crate) fn below(x: f64) -> f32 {
+    let near = x as f32;
+    if f64::from(near) > x { near.next_down() } else { near }
+}
+
+/// The least one not below `x`.
+#[inline]
+pub(crate) fn above(x: f64) -> f32 {
+    let near = x as f32;
+    if f64::from(near) < x { near.next_up() } else { near }
+}
+
+/// Sorts the triangles into the tree's order; the root is the first node.
 pub(super) fn build(vertices: &[Vector], faces: &mut [[u32; 3]]) -> Vec<Node> {
-    let mut nodes = Vec::with_capacity(faces.len());
+    let mut nodes = Vec::with_capacity(faces.len() / 4 + 1);
     if !faces.is_empty() {
-        halve(vertices, faces, 0, &mut nodes);
+        grow(vertices, faces, 0, &mut nodes);
     }
     nodes
 }
 
-fn halve(vertices: &[Vector], faces: &mut [[u32; 3]], first: u32, nodes: &mut Vec<Node>) {
-    let start = (Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY));
-    let corners = faces.iter().flatten().map(|&v| vertices[v as usize]);
-    let (low, high) = corners.fold(start, |(l, h), x| (l.inf(&x), h.sup(&x)));
-    let (own, count) = (nodes.len(), faces.len() as u32);
-    // A hair wider, for the rounding of centre and half.
-    let half = 0.5 * (high - low) + 1e-15 * low.abs().sup(&high.abs());
-    nodes.push(Node { centre: 0.5 * (low + high), half, first, count });
-    if faces.len() <= MOST {
-        return;
+/// Adds a node around these faces and all below it; answers its number.
+fn grow(vertices: &[Vector], faces: &mut [[u32; 3]], first: usize, nodes: &mut Vec<Node>) -> u32 {
+    let own = nodes.len();
+    nodes.push(Node::default());
+    let corners = |f: &[u32; 3]| f.map(|v| vertices[v as usize]);
+    if faces.len() <= WIDTH {
+        nodes[own].is_leaf = true;
+        nodes[own].children = [first as u32; WIDTH];
+        for (slot, f) in faces.iter().enumerate() {
+            let [a, b, c] = corners(f);
+            nodes[own].set(slot, a.inf(&b).inf(&c), a.sup(&b).sup(&c));
+        }
+        return own as u32;
     }
+    // Halved three times, so that all leaves but the last are full.
+    let mut ends = vec![0, faces.len()];
+    for _ in 0..3 {
+        for i in (0..ends.len() - 1).rev() {
+            let (start, end) = (ends[i], ends[i + 1]);
+            let middle = start + ((end - start) / 2).next_multiple_of(WIDTH);
+            if end - start > WIDTH && middle < end {
+                split(vertices, &mut faces[start..end], middle - start);
+                ends.insert(i + 1, middle);
+            }
+        }
+    }
+    for (slot, pair) in ends.windows(2).enumerate() {
+        let part = &mut faces[pair[0]..pair[1]];
+        let start = (Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY));
+        let around = |(low, high): (Vector, Vector), x: Vector| (low.inf(&x), high.sup(&x));
+        let (low, high) = part.iter().flat_map(corners).fold(start, around);
+        let child = grow(vertices, part, first + pair[0], nodes);
+        nodes[own].set(slot, low, high);
+        nodes[own].children[slot] = child;
+    }
+    own as u32
+}
+
+/// Puts the lower faces, along the axis on which their centres are spread most, before number `middle`.
+fn split(vertices: &[Vector], faces: &mut [[u32; 3]], middle: usize) {
     let centre = |f: &[u32; 3], axis: usize| f.iter().map(|&v| vertices[v as usize][axis]).sum::<f64>();
     let spread = |axis: usize| {
         let places = || faces.iter().map(|f| centre(f, axis));
@@ -41,11 +120,5 @@ fn halve(vertices: &[Vector], faces: &mut [[u32; 3]], first: u32, nodes: &mut Ve
     };
     let spreads = [spread(0), spread(1), spread(2)];
     let axis = (1..3).fold(0, |best, a| if spreads[a] > spreads[best] { a } else { best });
-    let middle = faces.len() / 2;
     faces.select_nth_unstable_by(middle, |f, g| centre(f, axis).total_cmp(&centre(g, axis)));
-    let (below, above) = faces.split_at_mut(middle);
-    halve(vertices, below, first, nodes);
-    let second = nodes.len() as u32;
-    halve(vertices, above, first + middle as u32, nodes);
-    (nodes[own].first, nodes[own].count) = (second, 0);
 }

@@ -6,7 +6,7 @@ mod sphere;
 
 pub use disc::Disc;
 pub use facets::Facets;
-pub(crate) use facets::{Node, WIDTH, above, below};
+pub(crate) use facets::{Leaf, Node, WIDTH, moved};
 pub use half_space::HalfSpace;
 pub use sphere::Sphere;
 

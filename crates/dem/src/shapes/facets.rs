@@ -1,7 +1,9 @@
 //! A closed surface of triangles, as overlaps need it.
+mod leaf;
 mod tree;
 
-pub(crate) use tree::{Node, WIDTH, above, below};
+pub(crate) use leaf::{Leaf, moved};
+pub(crate) use tree::{Node, WIDTH};
 
 use interfaces::Vector;
 use nalgebra::Matrix3;
@@ -24,6 +26,8 @@ pub struct Facets {
     /// The shell of every vertex.
     pub(crate) shell_of: Vec<u32>,
     pub(crate) tree: Vec<Node>,
+    /// The faces, eight by eight.
+    pub(crate) leaves: Vec<Leaf>,
     /// The box around all, as [low, high].
     pub(crate) bounds: [Vector; 2],
     /// Largest distance of a vertex from the origin.
@@ -95,7 +99,9 @@ impl Facets {
         let bounds = vertices.iter().fold(start, |[low, high], v| [low.inf(v), high.sup(v)]);
         let radius = vertices.iter().map(|v| v.norm()).fold(0.0, f64::max);
         let (shells, shell_of) = (Vec::new(), vec![u32::MAX; vertices.len()]);
-        let mut all = Self { vertices, faces, edges, spokes, hubs, fans, first_fans, shells, shell_of, tree, bounds, radius };
+        let triangle = |f: &Face| f.corners.map(|v| vertices[v as usize]);
+        let leaves = faces.chunks(WIDTH).map(|c| Leaf::new(c.iter().map(triangle))).collect();
+        let mut all = Self { vertices, faces, edges, spokes, hubs, fans, first_fans, shells, shell_of, tree, leaves, bounds, radius };
         all.find_shells();
         Ok(all)
     }

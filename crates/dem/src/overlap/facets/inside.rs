@@ -11,30 +11,32 @@ impl Bodies<'_> {
     /// Marks the vertices of either body that lie in the other, with the groups they belong to.
     pub(super) fn find_inside(&mut self, crossings: &Crossings, groups: &mut Groups, stack: &mut Vec<[u32; 2]>) {
         for (number, c) in (0..).zip(&crossings.all) {
-            let body = self.on(c.side);
+            let body = if c.of_first { &mut self.first } else { &mut self.second };
             let crossed = body.crossed(c.edge);
-            let edge = body.facets.edges[c.edge as usize];
-            if crossed.net != 0 {
-                body.marks.known[body.facets.shell_of[edge.from as usize] as usize] = true;
-            }
             // Each edge once, from its first crossing on.
             if crossed.first != number {
                 continue;
             }
-            join_along(c.edge, body, crossings, groups);
+            let edge = body.facets.edges[c.edge as usize];
+            if c.next != NONE {
+                join_along(crossed, crossings, groups);
+            }
             if crossed.net != 0 {
+                body.marks.known[body.facets.shell_of[edge.from as usize] as usize] = true;
                 let (v, last) = if crossed.net > 0 { (edge.to, true) } else { (edge.from, false) };
-                let nearest = end_crossing(body, c.edge, crossings, last);
-                body.spread(v, nearest, crossings, groups, stack);
+                body.find(v, end_crossing(crossed, crossings, last), groups);
             }
         }
         for side in [Side::First, Side::Second] {
+            self.on(side).spread(0, crossings, groups);
             for shell in 0..self.on(side).facets.shells.len() {
                 let body = self.on(side);
                 let start = body.facets.shells[shell];
                 if !body.marks.known[shell] && self.contains(side, start, stack) {
-                    let group = groups.add();
-                    self.on(side).spread(start, group, crossings, groups, stack);
+                    let (group, body) = (groups.add(), self.on(side));
+                    let before = body.marks.found.len();
+                    body.find(start, group, groups);
+                    body.spread(before, crossings, groups);
                 }
             }
         }
@@ -91,9 +93,9 @@ impl Bodies<'_> {
         groups.start_sums();
         for s in &crossings.segments {
             let [p, q] = s.ends.map(|c| crossings.all[c as usize].arm);
-            let (left, right) = (self.first.plane(s.first).foot, self.second.plane(s.second).foot);
+            let (left, right) = (&self.first.marks.cut[s.first as usize], &self.second.marks.cut[s.second as usize]);
             let sums = groups.sums(s.ends[0]);
-            sums.add_edge(p, q, left, right);
+            sums.add_edge(p, q, left.foot, right.foot);
             sums.add_curve(p, q);
         }
         for body in [&mut self.first, &mut self.second] {
@@ -105,30 +107,42 @@ impl Bodies<'_> {
 }
 
 impl Body<'_> {
-    /// Marks a vertex that lies in the other body, and all that hang together with it by edges.
-    fn spread(&mut self, v: u32, group: u32, crossings: &Crossings, groups: &mut Groups, stack: &mut Vec<[u32; 2]>) {
-        stack.clear();
-        stack.push([v, group]);
-        while let Some([v, group]) = stack.pop() {
-            if let Some(own) = self.group(v) {
-                groups.join(own, group);
+    /// Marks a vertex that lies in the other body.
+    #[inline]
+    fn find(&mut self, v: u32, group: u32, groups: &mut Groups) {
+        match self.group(v) {
+            Some(own) => groups.join(own, group),
+            None => self.set_group(v, group),
+        }
+    }
+
+    /// Marks the vertices that hang together by edges with those found, from number `next` of these on.
+    fn spread(&mut self, mut next: usize, crossings: &Crossings, groups: &mut Groups) {
+        let facets = self.facets;
+        while let Some(&v) = self.marks.found.get(next) {
+            next += 1;
+            let Some(group) = self.group(v) else { continue };
+            if !self.has_crossed(v) {
+                for &[_, other] in facets.spokes_of(v) {
+                    match self.group(other) {
+                        Some(own) if own != group => groups.join(own, group),
+                        Some(_) => {}
+                        None => self.set_group(other, group),
+                    }
+                }
                 continue;
             }
-            self.set_group(v, group);
-            let has_crossed = self.has_crossed(v);
-            for &[e, other] in self.facets.spokes_of(v) {
-                let crossed = if has_crossed { self.crossed(e) } else { Crossed::default() };
+            for &[e, other] in facets.spokes_of(v) {
+                let crossed = self.crossed(e);
                 if crossed.first == NONE {
-                    if self.group(other).is_none() {
-                        stack.push([other, group]);
-                    }
+                    self.find(other, group, groups);
                     continue;
                 }
-                let starts = self.facets.edges[e as usize].from == v;
-                groups.join(group, end_crossing(self, e, crossings, !starts));
+                let starts = facets.edges[e as usize].from == v;
+                groups.join(group, end_crossing(crossed, crossings, !starts));
                 // Out and in again.
                 if crossed.net == 0 {
-                    stack.push([other, end_crossing(self, e, crossings, starts)]);
+                    self.find(other, end_crossing(crossed, crossings, starts), groups);
                 }
             }
         }
@@ -136,19 +150,22 @@ impl Body<'_> {
 
     /// Sums over the borders of the faces that are cut: what of their edges lies in the other body.
     fn sum_cut(&mut self, crossings: &Crossings, groups: &mut Groups) {
-        for i in 0..self.marks.cut_faces.len() {
-            let f = self.marks.cut_faces[i];
-            let (face, foot) = (self.facets.faces[f as usize], self.plane(f).foot);
+        for cut in &self.marks.cut {
+            let face = &self.facets.faces[cut.face as usize];
             for e in face.edges {
-                let edge = self.facets.edges[e as usize];
-                let (p, q) = (self.arm(edge.from), self.arm(edge.to));
-                let (u, side) = (q - p, if edge.left == f { 1.0 } else { -1.0 });
-                for (number, c) in crossings.of(self.crossed(e)) {
-                    let end = if c.leaves { side * c.along } else { -side * c.along };
-                    groups.sums(number).add_line(p, u, [end, end * c.along], foot);
+                let (edge, crossed) = (&self.facets.edges[e as usize], self.crossed(e));
+                let end = self.group(edge.to);
+                if crossed.first == NONE && end.is_none() {
+                    continue;
                 }
-                if let Some(group) = self.group(edge.to) {
-                    groups.sums(group).add_line(p, u, [side; 2], foot);
+                let (p, q) = (self.arm(edge.from), self.arm(edge.to));
+                let (u, side) = (q - p, if edge.left == cut.face { 1.0 } else { -1.0 });
+                for (number, c) in crossings.of(crossed) {
+                    let end = if c.leaves { side * c.along } else { -side * c.along };
+                    groups.sums(number).add_line(p, u, [end, end * c.along], cut.foot);
+                }
+                if let Some(group) = end {
+                    groups.sums(group).add_line(p, u, [side; 2], cut.foot);
                 }
             }
         }
@@ -180,15 +197,15 @@ impl Body<'_> {
 }
 
 /// The crossing of an edge nearest to its end (`last`) or its start.
-fn end_crossing(body: &Body<'_>, e: u32, crossings: &Crossings, last: bool) -> u32 {
+#[inline]
+fn end_crossing(crossed: Crossed, crossings: &Crossings, last: bool) -> u32 {
     let order = |a: f64, b: f64| if last { b.total_cmp(&a) } else { a.total_cmp(&b) };
-    let nearest = crossings.of(body.crossed(e)).min_by(|(_, a), (_, b)| order(a.along, b.along));
+    let nearest = crossings.of(crossed).min_by(|(_, a), (_, b)| order(a.along, b.along));
     nearest.map_or(NONE, |(number, _)| number)
 }
 
 /// Joins crossings of an edge between which it lies in the other body.
-fn join_along(e: u32, body: &Body<'_>, crossings: &Crossings, groups: &mut Groups) {
-    let crossed = body.crossed(e);
+fn join_along(crossed: Crossed, crossings: &Crossings, groups: &mut Groups) {
     for (number, c) in crossings.of(crossed).filter(|(_, c)| !c.leaves) {
         // Where it leaves next.
         let ahead = crossings.of(crossed).filter(|(_, d)| d.leaves && d.along >= c.along);

@@ -1,9 +1,9 @@
 //! Which faces cross, and where.
 use super::Bodies;
 use super::body::Body;
-use super::crossings::{Crossings, Segment};
-use super::signs::{Side, passes};
-use crate::shapes::WIDTH;
+use super::crossings::{Crossings, Segment, Straddling};
+use super::signs::{Side, is_behind, passes};
+use crate::shapes::{Leaf, WIDTH};
 use interfaces::Vector;
 use pulp::{Arch, Simd, WithSimd};
 
@@ -28,37 +28,70 @@ impl WithSimd for Walk<'_, '_> {
     fn with_simd<S: Simd>(self, _: S) {
         let Self { bodies: Bodies { first, second }, stack, crossings } = self;
         let tree = &second.facets.tree;
+        let shift = first.moved.map_or(0.0, |(_, shift)| shift.amax());
+        // normal·(x − a) is rounded by less than this times the square of the face's size: with sums and products rounded by ε
+        // each, 48 ε of that and of the largest coordinate.
+        let round_off = 64.0 * f64::EPSILON * (first.facets.radius + second.facets.radius + shift);
         stack.clear();
         stack.push([0, 0]);
         while let Some([m, n]) = stack.pop() {
+            first.prepare(m);
             let (p, q) = (first.node(m), &tree[n as usize]);
             let hits = p.meets(q);
             let (own, others) = (p.children, q.children);
             match (p.is_leaf, q.is_leaf) {
                 (true, true) => {
-                    for (i, hits) in hits.into_iter().enumerate().filter(|(_, hits)| *hits != 0) {
-                        let f = own[i] + i as u32;
-                        for j in bits(hits) {
-                            cross(first, f, second, others[j] + j as u32, crossings);
+                    for (j, hits) in hits.into_iter().enumerate().filter(|(_, hits)| *hits != 0) {
+                        let (faces, others) = (first.leaf(own[0]), second.leaf(others[0]));
+                        let sides = sides(faces, others, j, round_off);
+                        for i in bits(hits) {
+                            let [behind_first, behind_second, unsure] = sides.map(|s| s[i] as u32);
+                            let same = |behind: u32| behind == 0 || behind == 0b111;
+                            if unsure != 0 || !(same(behind_first) || same(behind_second)) {
+                                let unsure = unsure != 0;
+                                let at = [[own[0], i as u32], [q.children[0], j as u32]];
+                                cross(first, second, at, [behind_first, behind_second], unsure, crossings);
+                            }
                         }
                     }
                 }
                 (true, false) => {
-                    let met = hits.iter().fold(0, |all, hits| all | hits);
-                    stack.extend(bits(met).map(|j| [m, others[j]]));
+                    stack.extend((0..WIDTH).filter(|&j| hits[j] != 0).map(|j| [m, others[j]]));
                 }
                 (false, true) => {
-                    let met = (0..WIDTH).filter(|&i| hits[i] != 0);
-                    stack.extend(met.map(|i| [own[i], n]));
+                    let met = hits.iter().fold(0, |all, hits| all | hits);
+                    stack.extend(bits(met).map(|i| [own[i], n]));
                 }
                 (false, false) => {
-                    for (i, hits) in hits.into_iter().enumerate() {
-                        stack.extend(bits(hits).map(|j| [own[i], others[j]]));
+                    for j in (0..WIDTH).filter(|&j| hits[j] != 0) {
+                        stack.extend(bits(hits[j]).map(|i| [own[i], others[j]]));
                     }
                 }
             }
         }
     }
+}
+
+/// Of every face of `own` and face `j` of the `other` leaf: which of the other's corners lie behind our face, which of ours behind the
+/// other, a bit each, and whether any of that is not sure.
+#[inline(always)]
+fn sides(own: &Leaf, other: &Leaf, j: usize, round_off: f64) -> [[u64; WIDTH]; 3] {
+    let [mut behind_own, mut behind_other, mut unsure] = [[0_u64; WIDTH]; 3];
+    let n = [other.normals[0][j], other.normals[1][j], other.normals[2][j]];
+    let (height, doubt) = (other.heights[j], other.sizes[j] * round_off);
+    for k in 0..3 {
+        let theirs = [other.corners[k][0][j], other.corners[k][1][j], other.corners[k][2][j]];
+        let ours = &own.corners[k];
+        for i in 0..WIDTH {
+            let h = own.normals[0][i] * theirs[0] + own.normals[1][i] * theirs[1] + own.normals[2][i] * theirs[2]
+                - own.heights[i];
+            let d = n[0] * ours[0][i] + n[1] * ours[1][i] + n[2] * ours[2][i] - height;
+            behind_own[i] |= u64::from(h < 0.0) << k;
+            behind_other[i] |= u64::from(d < 0.0) << k;
+            unsure[i] |= u64::from(h.abs() <= own.sizes[i] * round_off) | u64::from(d.abs() <= doubt);
+        }
+    }
+    [behind_own, behind_other, unsure]
 }
 
 /// The numbers of the bits that are set.
@@ -67,18 +100,8 @@ fn bits(mut of: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let lowest = of.trailing_zeros();
         of &= of.wrapping_sub(1);
-        (lowest < 32).then_some(lowest as usize)
+        (lowest < 32).then_some(lowest as usize & (WIDTH - 1))
     })
-}
-
-/// An edge of a face that crosses the plane of another: its number, and its ends, that behind the plane first.
-#[derive(Clone, Copy)]
-struct Straddling {
-    edge: u32,
-    behind: Vector,
-    ahead: Vector,
-    /// Does it leave, in the direction of [`Edge`](crate::shapes::Edge)?
-    leaves: bool,
 }
 
 /// The edges along which a face's border leaves and enters what lies behind a plane; `behind` has a bit for every corner there.
@@ -99,45 +122,52 @@ fn straddling(own: &Body<'_>, f: u32, corners: &[Vector; 3], behind: u32) -> [St
     let edge = |i: usize, leaving: bool| {
         let (inner, outer) = if leaving { (i, NEXT[i]) } else { (NEXT[i], i) };
         let forward = own.facets.edges[face.edges[i] as usize].left == f;
-        Straddling {
-            edge: face.edges[i],
-            behind: corners[inner],
-            ahead: corners[outer],
-            leaves: leaving == forward,
-        }
+        let (behind, ahead) = (corners[inner], corners[outer]);
+        Straddling { edge: face.edges[i], behind, ahead, leaves: leaving == forward }
     };
     if is_behind { [edge(alone, true), edge(before, false)] } else { [edge(before, true), edge(alone, false)] }
 }
 
-/// Finds the segment in which two faces cross, if they do (after Devillers & Guigue 2002, INRIA report 4488).
-fn cross(first: &mut Body<'_>, f: u32, second: &mut Body<'_>, g: u32, crossings: &mut Crossings) {
-    let (a, b) = (first.corners(f), second.corners(g));
-    let behind_b = second.plane(g).behind(Side::First, &a, &b);
-    if behind_b == 0 || behind_b == 0b111 {
-        return;
-    }
-    let behind_a = first.plane(f).behind(Side::Second, &b, &a);
-    if behind_a == 0 || behind_a == 0b111 {
-        return;
+/// Finds the segment in which two faces cross, if they do (after Devillers & Guigue 2002, INRIA report 4488). Each is given by the
+/// first of its leaf and the number in it, with the other's corners behind it, which may be `unsure`.
+fn cross(
+    first: &mut Body<'_>,
+    second: &mut Body<'_>,
+    at: [[u32; 2]; 2],
+    [mut behind_a, mut behind_b]: [u32; 2],
+    unsure: bool,
+    crossings: &mut Crossings,
+) {
+    let [[leaf_a, i], [leaf_b, j]] = at;
+    let (f, g) = (leaf_a + i, leaf_b + j);
+    let (own, other) = (first.leaf(leaf_a), second.leaf(leaf_b));
+    let (a, b) = (own.triangle(i as usize), other.triangle(j as usize));
+    let (n_a, n_b) = (own.normal(i as usize), other.normal(j as usize));
+    if unsure {
+        let bits = |behind: [bool; 3]| (0..3).map(|k| u32::from(behind[k]) << k).sum();
+        behind_b = bits(a.map(|p| is_behind(Side::First, p, b)));
+        behind_a = bits(b.map(|p| is_behind(Side::Second, p, a)));
+        if [behind_a, behind_b].iter().any(|&behind| behind == 0 || behind == 0b111) {
+            return;
+        }
     }
     // Along n_a × n_b, the first face's border leaves at the low end and enters at the high one; the second's, the other way.
     let [low_a, high_a] = straddling(first, f, &a, behind_b);
     let [high_b, low_b] = straddling(second, g, &b, behind_a);
-    let before = |e: Straddling, k: Straddling| passes(e.behind, e.ahead, k.behind, k.ahead) < 0.0;
-    if !before(low_a, high_b) || before(high_a, low_b) {
+    let before = |e: &Straddling, k: &Straddling| passes(e.behind, e.ahead, k.behind, k.ahead) < 0.0;
+    if !before(&low_a, &high_b) || before(&high_a, &low_b) {
         return;
     }
-    let low = if before(low_a, low_b) {
-        crossings.get(second, first, low_b.edge, f, low_b.leaves)
+    let low = if before(&low_a, &low_b) {
+        crossings.get(second, &low_b, f, a[0], n_a)
     } else {
-        crossings.get(first, second, low_a.edge, g, low_a.leaves)
+        crossings.get(first, &low_a, g, b[0], n_b)
     };
-    let high = if before(high_a, high_b) {
-        crossings.get(first, second, high_a.edge, g, high_a.leaves)
+    let high = if before(&high_a, &high_b) {
+        crossings.get(first, &high_a, g, b[0], n_b)
     } else {
-        crossings.get(second, first, high_b.edge, f, high_b.leaves)
+        crossings.get(second, &high_b, f, a[0], n_a)
     };
-    first.cut(f);
-    second.cut(g);
+    let (f, g) = (first.cut(f, a[0], n_a), second.cut(g, b[0], n_b));
     crossings.segments.push(Segment { first: f, second: g, ends: [low, high] });
 }

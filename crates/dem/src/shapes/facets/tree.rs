@@ -1,5 +1,7 @@
 //! A tree of boxes around triangles, eight by eight.
+use super::leaf::Leaf;
 use interfaces::Vector;
+use nalgebra::Matrix3;
 
 /// Boxes that a node holds.
 pub(crate) const WIDTH: usize = 8;
@@ -9,7 +11,10 @@ pub(crate) const WIDTH: usize = 8;
 pub(crate) struct Node {
     pub(crate) low: [[f32; WIDTH]; 3],
     pub(crate) high: [[f32; WIDTH]; 3],
-    /// The nodes in the boxes; of a leaf, the number of the first triangle, repeated.
+    /// The box around all.
+    low_all: [f32; 3],
+    high_all: [f32; 3],
+    /// The nodes in the boxes; of a leaf, the first of its triangles, repeated.
     pub(crate) children: [u32; WIDTH],
     pub(crate) is_leaf: bool,
 }
@@ -17,54 +22,117 @@ pub(crate) struct Node {
 impl Default for Node {
     fn default() -> Self {
         let (low, high) = ([[f32::INFINITY; WIDTH]; 3], [[f32::NEG_INFINITY; WIDTH]; 3]);
-        Self { low, high, children: [u32::MAX; WIDTH], is_leaf: false }
+        let (low_all, high_all) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        Self { low, high, low_all, high_all, children: [u32::MAX; WIDTH], is_leaf: false }
     }
 }
 
 impl Node {
-    #[inline]
-    pub(crate) fn set(&mut self, slot: usize, low: Vector, high: Vector) {
+    fn set(&mut self, slot: usize, low: Vector, high: Vector) {
         for a in 0..3 {
             (self.low[a][slot], self.high[a][slot]) = (below(low[a]), above(high[a]));
         }
+        self.set_all();
     }
-    /// For each of these boxes, which of the other's it meets, one bit each.
+    #[inline(always)]
+    fn set_all(&mut self) {
+        for a in 0..3 {
+            (self.low_all[a], self.high_all[a]) = (f32::INFINITY, f32::NEG_INFINITY);
+            for i in 0..WIDTH {
+                self.low_all[a] = if self.low[a][i] < self.low_all[a] { self.low[a][i] } else { self.low_all[a] };
+                self.high_all[a] = if self.high[a][i] > self.high_all[a] { self.high[a][i] } else { self.high_all[a] };
+            }
+        }
+    }
+    /// Which of these boxes meet another one, a bit each.
+    #[inline(always)]
+    fn meet(&self, low: [f32; 3], high: [f32; 3]) -> u32 {
+        let mut apart = [false; WIDTH];
+        for i in 0..WIDTH {
+            apart[i] = (self.low[0][i] > high[0])
+                | (self.high[0][i] < low[0])
+                | (self.low[1][i] > high[1])
+                | (self.high[1][i] < low[1])
+                | (self.low[2][i] > high[2])
+                | (self.high[2][i] < low[2]);
+        }
+        let mut met = 0;
+        for i in 0..WIDTH {
+            met |= u32::from(!apart[i]) << i;
+        }
+        met
+    }
+    /// For each of the other's boxes, which of these it meets, a bit each.
     #[inline(always)]
     pub(crate) fn meets(&self, other: &Self) -> [u32; WIDTH] {
         let mut all = [0; WIDTH];
-        for slot in 0..WIDTH {
-            let mut apart = [0_u32; WIDTH];
-            for a in 0..3 {
-                let (low, high) = (self.low[a][slot], self.high[a][slot]);
-                for i in 0..WIDTH {
-                    apart[i] |= u32::from(other.low[a][i] > high) | u32::from(other.high[a][i] < low);
-                }
-            }
-            let mut met = 0;
-            for i in 0..WIDTH {
-                met |= (apart[i] ^ 1) << i;
-            }
-            all[slot] = met;
+        let mut near = other.meet(self.low_all, self.high_all);
+        while near != 0 {
+            let j = near.trailing_zeros() as usize & (WIDTH - 1);
+            near &= near - 1;
+            let [low, high] = [&other.low, &other.high].map(|side| [side[0][j], side[1][j], side[2][j]]);
+            all[j] = self.meet(low, high);
         }
         all
+    }
+
+    /// The boxes around these boxes, turned and shifted; `extent` is a length that none of their places exceeds.
+    #[inline(always)]
+    pub(crate) fn moved(&self, turn: &Matrix3<f64>, shift: &Vector, extent: f64) -> Self {
+        let mut moved = Self { children: self.children, is_leaf: self.is_leaf, ..Self::default() };
+        // For rounding to single precision.
+        let slack = 1e-6 * (extent as f32 + shift.amax() as f32);
+        for a in 0..3 {
+            let (row, s) = ([0, 1, 2].map(|k| 0.5 * turn[(a, k)] as f32), shift[a] as f32);
+            for i in 0..WIDTH {
+                let (mut centre, mut half) = (s, slack);
+                for k in 0..3 {
+                    centre += row[k] * (self.high[k][i] + self.low[k][i]);
+                    half += row[k].abs() * (self.high[k][i] - self.low[k][i]);
+                }
+                // Of an empty box the half is −∞ or no number.
+                let filled = half > 0.0;
+                moved.low[a][i] = if filled { centre - half } else { f32::INFINITY };
+                moved.high[a][i] = if filled { centre + half } else { f32::NEG_INFINITY };
+            }
+        }
+        moved.set_all();
+        moved
+    }
+
+    /// The boxes around the triangles of a leaf.
+    #[inline(always)]
+    pub(crate) fn around(&self, leaf: &Leaf) -> Self {
+        let mut around = *self;
+        let [p, q, r] = &leaf.corners;
+        for a in 0..3 {
+            for i in 0..WIDTH {
+                let (low, high) = (p[a][i].min(q[a][i]).min(r[a][i]), p[a][i].max(q[a][i]).max(r[a][i]));
+                let filled = self.low[a][i] <= self.high[a][i];
+                // A rounding of 2⁻²⁴, outwards.
+                let (low, high) = (low - low.abs() * 1e-7, high + high.abs() * 1e-7);
+                around.low[a][i] = if filled { low as f32 } else { f32::INFINITY };
+                around.high[a][i] = if filled { high as f32 } else { f32::NEG_INFINITY };
+            }
+        }
+        around.set_all();
+        around
     }
 }
 
 /// The greatest single-precision number not above `x`.
-#[inline]
-pub(crate) fn below(x: f64) -> f32 {
+fn below(x: f64) -> f32 {
     let near = x as f32;
     if f64::from(near) > x { near.next_down() } else { near }
 }
 
 /// The least one not below `x`.
-#[inline]
-pub(crate) fn above(x: f64) -> f32 {
+fn above(x: f64) -> f32 {
     let near = x as f32;
     if f64::from(near) < x { near.next_up() } else { near }
 }
 
-/// Sorts the triangles into the tree's order; the root is the first node.
+/// Sorts the triangles into the tree's order; the root is the first node, and every leaf begins at a multiple of [`WIDTH`].
 pub(super) fn build(vertices: &[Vector], faces: &mut [[u32; 3]]) -> Vec<Node> {
     let mut nodes = Vec::with_capacity(faces.len() / 4 + 1);
     if !faces.is_empty() {

@@ -24,7 +24,8 @@ impl Bodies<'_> {
             if crossed.net != 0 {
                 body.marks.known[body.facets.shell_of[edge.from as usize] as usize] = true;
                 let (v, last) = if crossed.net > 0 { (edge.to, true) } else { (edge.from, false) };
-                body.find(v, end_crossing(crossed, crossings, last), groups);
+                let group = groups.root(end_crossing(crossed, crossings, last));
+                body.find(v, group, groups);
             }
         }
         for side in [Side::First, Side::Second] {
@@ -142,7 +143,8 @@ impl Body<'_> {
                 groups.join(group, end_crossing(crossed, crossings, !starts));
                 // Out and in again.
                 if crossed.net == 0 {
-                    self.find(other, end_crossing(crossed, crossings, starts), groups);
+                    let group = groups.root(end_crossing(crossed, crossings, starts));
+                    self.find(other, group, groups);
                 }
             }
         }
@@ -180,6 +182,7 @@ impl Body<'_> {
         let (mut own, mut last) = (Sums::default(), NONE);
         for &v in &self.marks.found {
             let Some(group) = self.group(v) else { continue };
+            let group = groups.root(group);
             if group != last {
                 groups.add_turned(last, &own, &turn);
                 (own, last) = (Sums::default(), group);

@@ -1,4 +1,5 @@
 //! The volume that two bodies share; one file per route to it.
+mod clip;
 pub(crate) mod closed;
 mod facets;
 mod solver;
@@ -45,3 +46,6 @@ impl Overlap {
 
 #[cfg(test)]
 mod tests;
+
+#[cfg(test)]
+mod polyhedra_tests;

@@ -1,4 +1,5 @@
 //! Which route leads to the overlap of a pair.
+use super::clip::Clipper;
 use super::facets::FacetOverlap;
 use super::{Overlap, closed};
 use crate::{DemError, Form, Shape};
@@ -10,6 +11,8 @@ use std::fmt;
 pub enum Route {
     /// A formula.
     ClosedForm,
+    /// Cutting one body off at the planes of the other.
+    Clip,
     /// Sums over the crossings of triangles.
     Facets,
 }
@@ -18,6 +21,7 @@ impl fmt::Display for Route {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::ClosedForm => "closed form",
+            Self::Clip => "clipping",
             Self::Facets => "crossings of triangles",
         })
     }
@@ -40,8 +44,12 @@ impl fmt::Display for Route {
 pub struct OverlapSolver {
     route: Option<Route>,
     patches: Vec<Overlap>,
+    clipper: Clipper,
     facets: FacetOverlap,
 }
+
+/// Polyhedra are clipped while one of them has no more vertices than this; beyond, crossings are found faster.
+const CLIPPED: usize = 30;
 
 impl OverlapSolver {
     /// One that takes the best route for every pair.
@@ -94,6 +102,12 @@ impl OverlapSolver {
                 self.solve(b, at_b, a, at_a)?;
                 self.patches.iter_mut().for_each(|o| *o = o.swapped());
             }
+            (Form::Hull(p), Form::Hull(q)) if p.vertices().len().min(q.vertices().len()) <= CLIPPED => {
+                self.clipper.overlap(p, at_a, q, at_b, out);
+            }
+            (Form::Hull(p), Form::Hull(q)) => self.facets.overlap(p.facets(), at_a, q.facets(), at_b, out),
+            (Form::Hull(p), Form::Facets(q)) => self.facets.overlap(p.facets(), at_a, q, at_b, out),
+            (Form::Facets(p), Form::Hull(q)) => self.facets.overlap(p, at_a, q.facets(), at_b, out),
             (Form::Facets(p), Form::Facets(q)) => self.facets.overlap(p, at_a, q, at_b, out),
             _ => return Err(DemError::Unsupported { a: a.name(), b: b.name() }),
         }

@@ -1,5 +1,4 @@
 //! One of the two bodies, and the marks that an overlap leaves on it.
-use super::signs::Side;
 use crate::shapes::{Facets, Leaf, Node, WIDTH, moved};
 use interfaces::Vector;
 use nalgebra::Matrix3;
@@ -85,7 +84,6 @@ impl Marks {
 
 /// A body in the frame in which both are worked on.
 pub(super) struct Body<'a> {
-    pub(super) side: Side,
     pub(super) facets: &'a Facets,
     pub(super) marks: &'a mut Marks,
     /// From the body's frame: the turn and the place of its origin; none if the frames are the same.

@@ -63,8 +63,8 @@ impl FacetOverlap {
         marks_b.start(b);
         let moved = Some((turn, shift));
         let mut bodies = Bodies {
-            first: Body { side: Side::First, facets: a, marks: marks_a, moved, reference },
-            second: Body { side: Side::Second, facets: b, marks: marks_b, moved: None, reference },
+            first: Body { facets: a, marks: marks_a, moved, reference },
+            second: Body { facets: b, marks: marks_b, moved: None, reference },
         };
         self.crossings.clear();
         bodies.find_pairs(&mut self.stack, &mut self.crossings);

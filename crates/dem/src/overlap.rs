@@ -2,6 +2,7 @@
 mod clip;
 pub(crate) mod closed;
 mod facets;
+mod half_space;
 mod solver;
 
 pub use solver::{OverlapSolver, Route, overlap};

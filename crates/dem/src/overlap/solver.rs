@@ -1,6 +1,7 @@
 //! Which route leads to the overlap of a pair.
 use super::clip::Clipper;
 use super::facets::FacetOverlap;
+use super::half_space::HalfSpaceOverlap;
 use super::{Overlap, closed};
 use crate::{DemError, Form, Shape};
 use interfaces::Pose;
@@ -46,6 +47,7 @@ pub struct OverlapSolver {
     patches: Vec<Overlap>,
     clipper: Clipper,
     facets: FacetOverlap,
+    half_space: HalfSpaceOverlap,
 }
 
 /// Polyhedra are clipped while one of them has no more vertices than this; beyond, crossings are found faster.
@@ -98,7 +100,9 @@ impl OverlapSolver {
                 let distance = w.signed_distance(at_a.position);
                 out.extend(closed::sphere_wall(p.radius(), at_a.position, distance, w.normal()));
             }
-            (Form::HalfSpace(_), Form::Disc(_) | Form::Sphere(_)) => {
+            (Form::Hull(p), Form::HalfSpace(w)) => self.half_space.overlap(p.facets(), at_a, &w.posed(at_b), out),
+            (Form::Facets(p), Form::HalfSpace(w)) => self.half_space.overlap(p, at_a, &w.posed(at_b), out),
+            (Form::HalfSpace(_), Form::Disc(_) | Form::Sphere(_) | Form::Hull(_) | Form::Facets(_)) => {
                 self.solve(b, at_b, a, at_a)?;
                 self.patches.iter_mut().for_each(|o| *o = o.swapped());
             }

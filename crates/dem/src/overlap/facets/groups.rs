@@ -6,7 +6,7 @@ use nalgebra::Matrix3;
 
 /// Disjoint sets of crossings, and of vertices by their group's number (Tarjan 1975, J. ACM 22, 215).
 #[derive(Clone, Debug, Default)]
-pub(super) struct Groups {
+pub(crate) struct Groups {
     parents: Vec<u32>,
     /// One for every group; those of numbers that are not their own parent stay empty.
     sums: Vec<Sums>,
@@ -22,14 +22,18 @@ impl Groups {
             self.join(s.ends[0], s.ends[1]);
         }
     }
+    /// None yet.
+    pub(crate) fn restart(&mut self) {
+        self.parents.clear();
+    }
     /// Another group.
-    pub(super) fn add(&mut self) -> u32 {
+    pub(crate) fn add(&mut self) -> u32 {
         let new = self.parents.len() as u32;
         self.parents.push(new);
         new
     }
     #[inline]
-    pub(super) fn root(&mut self, mut i: u32) -> u32 {
+    pub(crate) fn root(&mut self, mut i: u32) -> u32 {
         while self.parents[i as usize] != i {
             let up = self.parents[self.parents[i as usize] as usize];
             self.parents[i as usize] = up;
@@ -38,23 +42,23 @@ impl Groups {
         i
     }
     #[inline]
-    pub(super) fn join(&mut self, i: u32, j: u32) {
+    pub(crate) fn join(&mut self, i: u32, j: u32) {
         let (i, j) = (self.root(i), self.root(j));
         self.parents[i.max(j) as usize] = i.min(j);
     }
 
     /// Makes sums for all groups, all zero.
-    pub(super) fn start_sums(&mut self) {
+    pub(crate) fn start_sums(&mut self) {
         self.sums.clear();
         self.sums.resize(self.parents.len(), Sums::default());
     }
     #[inline]
-    pub(super) fn sums(&mut self, i: u32) -> &mut Sums {
+    pub(crate) fn sums(&mut self, i: u32) -> &mut Sums {
         let root = self.root(i);
         &mut self.sums[root as usize]
     }
     /// Adds sums that were taken in a frame turned by `turn`.
-    pub(super) fn add_turned(&mut self, i: u32, own: &Sums, turn: &Matrix3<f64>) {
+    pub(crate) fn add_turned(&mut self, i: u32, own: &Sums, turn: &Matrix3<f64>) {
         if i != NONE {
             let sums = self.sums(i);
             sums.volume += own.volume;
@@ -63,7 +67,7 @@ impl Groups {
     }
     /// One sum for every connected region. Groups with negative volume, beyond `round_off`, are borders of hollows, which belong
     /// to the region around them: that with the nearest centroid among those large enough.
-    pub(super) fn patches(&mut self, round_off: f64) -> &[Sums] {
+    pub(crate) fn patches(&mut self, round_off: f64) -> &[Sums] {
         self.patches.clear();
         let roots = || (0..self.parents.len()).filter(|&i| self.parents[i] == i as u32);
         self.patches.extend(roots().map(|i| self.sums[i]).filter(|s| s.volume > 0.0));

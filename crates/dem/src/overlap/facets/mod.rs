@@ -13,13 +13,13 @@ mod sums;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use groups::Groups;
 pub(crate) use sums::Sums;
 
 use super::Overlap;
 use crate::shapes::Facets;
 use body::{Body, Marks};
 use crossings::Crossings;
-use groups::Groups;
 use interfaces::{Point, Pose, Vector};
 use nalgebra::Matrix3;
 use signs::Side;

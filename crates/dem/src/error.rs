@@ -96,7 +96,9 @@ pub enum DemError {
         b: &'static str,
     },
     /// Faces that make no convex body.
-    #[error("face {face} (from 0) of the polyhedron {what}; give flat faces, counter-clockwise seen from outside, of a closed convex body")]
+    #[error(
+        "face {face} (from 0) of the polyhedron {what}; give flat faces, counter-clockwise seen from outside, of a closed convex body"
+    )]
     Polyhedron {
         /// The face.
         face: usize,

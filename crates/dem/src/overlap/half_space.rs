@@ -1,6 +1,6 @@
 //! Flat-faced bodies and plane walls.
-use super::facets::{Groups, Sums};
 use super::Overlap;
+use super::facets::{Groups, Sums};
 use crate::HalfSpace;
 use crate::shapes::{Facets, WIDTH};
 use interfaces::{Point, Pose, Vector};
@@ -36,7 +36,8 @@ impl HalfSpaceOverlap {
             return;
         }
         // In the middle of what is behind the plane, but on it.
-        let middle = self.behind.iter().map(|&v| body.vertices[v as usize]).sum::<Vector>() / self.behind.len() as f64;
+        let middle =
+            self.behind.iter().map(|&v| body.vertices[v as usize]).sum::<Vector>() / self.behind.len() as f64;
         let reference = middle - normal * (normal.dot(&middle) - offset);
         self.groups.start_sums();
         for i in 0..self.faces.len() {
@@ -68,7 +69,8 @@ impl HalfSpaceOverlap {
             for slot in 0..WIDTH {
                 // The box's corner deepest in the wall; of an empty box it is at infinity.
                 let side = |a: usize| if normal[a] > 0.0 { node.low[a][slot] } else { node.high[a][slot] };
-                let deepest: f64 = (0..3).map(|a| if normal[a] == 0.0 { 0.0 } else { normal[a] * f64::from(side(a)) }).sum();
+                let deepest: f64 =
+                    (0..3).map(|a| if normal[a] == 0.0 { 0.0 } else { normal[a] * f64::from(side(a)) }).sum();
                 if !(deepest <= offset) || node.low[0][slot] > node.high[0][slot] {
                     continue;
                 }
@@ -120,7 +122,8 @@ impl HalfSpaceOverlap {
             return;
         }
         // Always from the end behind the plane, so that both faces of an edge find the same.
-        let cut = |i: usize, o: usize| arms[i] + (arms[o] - arms[i]) * (heights[i] / (heights[i] - heights[o]));
+        let cut =
+            |i: usize, o: usize| arms[i] + (arms[o] - arms[i]) * (heights[i] / (heights[i] - heights[o]));
         let [mut enters, mut leaves] = [Vector::zeros(); 2];
         for i in 0..3 {
             let next = (i + 1) % 3;

@@ -100,7 +100,9 @@ impl OverlapSolver {
                 let distance = w.signed_distance(at_a.position);
                 out.extend(closed::sphere_wall(p.radius(), at_a.position, distance, w.normal()));
             }
-            (Form::Hull(p), Form::HalfSpace(w)) => self.half_space.overlap(p.facets(), at_a, &w.posed(at_b), out),
+            (Form::Hull(p), Form::HalfSpace(w)) => {
+                self.half_space.overlap(p.facets(), at_a, &w.posed(at_b), out)
+            }
             (Form::Facets(p), Form::HalfSpace(w)) => self.half_space.overlap(p, at_a, &w.posed(at_b), out),
             (Form::HalfSpace(_), Form::Disc(_) | Form::Sphere(_) | Form::Hull(_) | Form::Facets(_)) => {
                 self.solve(b, at_b, a, at_a)?;

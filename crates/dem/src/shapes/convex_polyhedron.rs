@@ -69,7 +69,9 @@ impl ConvexPolyhedron {
         let (low, high) = corners().fold(start, |(l, h), x| (l.inf(&x), h.sup(&x)));
         // About the middle first, so that a body far from the origin loses no digits.
         let middle = 0.5 * (low + high);
-        let open = |t: usize| wrong(of[t], "has an edge that no other face has, or that a neighbour has in the same direction");
+        let open = |t: usize| {
+            wrong(of[t], "has an edge that no other face has, or that a neighbour has in the same direction")
+        };
         let centred = |centre: Vector| points.iter().map(|p| p - centre).collect::<Vec<_>>();
         let first = Facets::new(centred(middle), triangles.clone()).map_err(open)?.moments();
         let size = (high - low).max();

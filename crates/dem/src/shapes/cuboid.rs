@@ -22,13 +22,16 @@ impl Cuboid {
                 return Err(DemError::Length { what: "edge of a box", value });
             }
         }
-        let corner = |i: usize| [0, 1, 2].map(|a| if i >> a & 1 == 1 { 0.5 * edges[a] } else { -0.5 * edges[a] });
+        let corner =
+            |i: usize| [0, 1, 2].map(|a| if i >> a & 1 == 1 { 0.5 * edges[a] } else { -0.5 * edges[a] });
         let vertices: Vec<_> = (0..8).map(corner).collect();
-        let faces =
-            [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]].map(Vec::from);
+        let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]
+            .map(Vec::from);
         // Numbers whose products or quotients leave the range make no body.
-        let hull = ConvexPolyhedron::new(&vertices, &faces)
-            .map_err(|_| DemError::Length { what: "smallest edge of a box, against the largest,", value: edges.into_iter().fold(f64::INFINITY, f64::min) })?;
+        let hull = ConvexPolyhedron::new(&vertices, &faces).map_err(|_| DemError::Length {
+            what: "smallest edge of a box, against the largest,",
+            value: edges.into_iter().fold(f64::INFINITY, f64::min),
+        })?;
         Ok(Self { half: Vector::from(edges) * 0.5, hull })
     }
     /// Edge lengths \[m\].

@@ -91,7 +91,8 @@ impl Facets {
         if let Some(&e) = open.values().next() {
             return Err(edges[e as usize].left as usize);
         }
-        let ends = (0..).zip(&edges).flat_map(|(e, edge)| [(edge.from, [e, edge.to]), (edge.to, [e, edge.from])]);
+        let ends =
+            (0..).zip(&edges).flat_map(|(e, edge)| [(edge.from, [e, edge.to]), (edge.to, [e, edge.from])]);
         let (spokes, hubs) = by_vertex(ends, vertices.len());
         let first_corners = (0..).zip(&faces).map(|(f, face)| (face.corners[0], f));
         let (fans, first_fans) = by_vertex(first_corners, vertices.len());
@@ -101,7 +102,21 @@ impl Facets {
         let (shells, shell_of) = (Vec::new(), vec![u32::MAX; vertices.len()]);
         let triangle = |f: &Face| f.corners.map(|v| vertices[v as usize]);
         let leaves = faces.chunks(WIDTH).map(|c| Leaf::new(c.iter().map(triangle))).collect();
-        let mut all = Self { vertices, faces, edges, spokes, hubs, fans, first_fans, shells, shell_of, tree, leaves, bounds, radius };
+        let mut all = Self {
+            vertices,
+            faces,
+            edges,
+            spokes,
+            hubs,
+            fans,
+            first_fans,
+            shells,
+            shell_of,
+            tree,
+            leaves,
+            bounds,
+            radius,
+        };
         all.find_shells();
         Ok(all)
     }
@@ -164,7 +179,10 @@ impl Moments {
 }
 
 /// Sorts items by vertex: those of vertex v are at `starts[v]..starts[v + 1]`.
-fn by_vertex<T: Copy + Default>(items: impl Iterator<Item = (u32, T)> + Clone, n: usize) -> (Vec<T>, Vec<u32>) {
+fn by_vertex<T: Copy + Default>(
+    items: impl Iterator<Item = (u32, T)> + Clone,
+    n: usize,
+) -> (Vec<T>, Vec<u32>) {
     let mut starts = vec![0_u32; n + 1];
     items.clone().for_each(|(v, _)| starts[v as usize + 1] += 1);
     for v in 0..n {

@@ -154,6 +154,12 @@ impl Body<'_> {
         }
         mark.value
     }
+    /// The foot of a face that is cut.
+    #[inline]
+    pub(super) fn foot(&self, f: u32) -> Vector {
+        let mark = &self.marks.faces[f as usize];
+        if mark.run == self.marks.run { self.marks.cut[mark.value as usize].foot } else { Vector::zeros() }
+    }
     /// What crosses an edge.
     #[inline]
     pub(super) fn crossed(&self, e: u32) -> Crossed {

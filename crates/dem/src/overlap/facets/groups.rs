@@ -74,7 +74,8 @@ impl Groups {
         for hollow in roots().map(|i| self.sums[i]).filter(|s| s.volume < -round_off) {
             let distance = |s: &Sums| (s.first / s.volume - hollow.first / hollow.volume).norm();
             let large = |s: &&mut Sums| s.volume >= -hollow.volume;
-            let around = self.patches.iter_mut().filter(large).min_by(|s, t| distance(s).total_cmp(&distance(t)));
+            let around =
+                self.patches.iter_mut().filter(large).min_by(|s, t| distance(s).total_cmp(&distance(t)));
             if let Some(around) = around {
                 around.add(&hollow);
             }

@@ -5,11 +5,17 @@ use super::groups::Groups;
 use super::signs::{Side, ray_crosses};
 use super::{Bodies, Sums};
 use crate::shapes::WIDTH;
+use interfaces::Vector;
 use nalgebra::Matrix3;
 
 impl Bodies<'_> {
     /// Marks the vertices of either body that lie in the other, with the groups they belong to.
-    pub(super) fn find_inside(&mut self, crossings: &Crossings, groups: &mut Groups, stack: &mut Vec<[u32; 2]>) {
+    pub(super) fn find_inside(
+        &mut self,
+        crossings: &Crossings,
+        groups: &mut Groups,
+        stack: &mut Vec<[u32; 2]>,
+    ) {
         for (number, c) in (0..).zip(&crossings.all) {
             let body = if c.of_first { &mut self.first } else { &mut self.second };
             let crossed = body.crossed(c.edge);
@@ -94,13 +100,18 @@ impl Bodies<'_> {
         groups.start_sums();
         for s in &crossings.segments {
             let [p, q] = s.ends.map(|c| crossings.all[c as usize].arm);
-            let (left, right) = (&self.first.marks.cut[s.first as usize], &self.second.marks.cut[s.second as usize]);
+            let (left, right) =
+                (&self.first.marks.cut[s.first as usize], &self.second.marks.cut[s.second as usize]);
             let sums = groups.sums(s.ends[0]);
             sums.add_edge(p, q, left.foot, right.foot);
             sums.add_curve(p, q);
         }
-        for body in [&mut self.first, &mut self.second] {
-            body.sum_cut(crossings, groups);
+        for (number, c) in (0..).zip(&crossings.all) {
+            let body = if c.of_first { &self.first } else { &self.second };
+            body.sum_crossed(number, crossings, groups);
+        }
+        for body in [&self.first, &self.second] {
+            body.sum_cut(groups);
             body.sum_whole(groups);
         }
         groups.patches(1e-14 * self.second.facets.radius.powi(3))
@@ -150,31 +161,50 @@ impl Body<'_> {
         }
     }
 
-    /// Sums over the borders of the faces that are cut: what of their edges lies in the other body.
-    fn sum_cut(&mut self, crossings: &Crossings, groups: &mut Groups) {
+    /// Sums over an edge that is crossed, the first time at crossing `number`: the parts that lie in the other body.
+    fn sum_crossed(&self, number: u32, crossings: &Crossings, groups: &mut Groups) {
+        let c = &crossings.all[number as usize];
+        let (crossed, edge) = (self.crossed(c.edge), self.facets.edges[c.edge as usize]);
+        if crossed.first != number {
+            return;
+        }
+        let [left, right] = [edge.left, edge.right].map(|f| self.foot(f));
+        if c.next == NONE {
+            // In or out once: all between here and an end.
+            if c.leaves {
+                groups.sums(number).add_edge(self.arm(edge.from), c.arm, left, right);
+            } else {
+                groups.sums(number).add_edge(c.arm, self.arm(edge.to), left, right);
+            }
+            return;
+        }
+        let p = self.arm(edge.from);
+        let u = self.arm(edge.to) - p;
+        for (number, c) in crossings.of(crossed) {
+            let end = if c.leaves { c.along } else { -c.along };
+            groups.sums(number).add_line(p, u, [end, end * c.along], left, right);
+        }
+        if let Some(group) = self.group(edge.to) {
+            groups.sums(group).add_line(p, u, [1.0; 2], left, right);
+        }
+    }
+
+    /// Sums over the other edges of the faces that are cut, where they lie in the other body.
+    fn sum_cut(&self, groups: &mut Groups) {
         for cut in &self.marks.cut {
             let face = &self.facets.faces[cut.face as usize];
-            for e in face.edges {
-                let (edge, crossed) = (&self.facets.edges[e as usize], self.crossed(e));
-                let end = self.group(edge.to);
-                if crossed.first == NONE && end.is_none() {
-                    continue;
-                }
-                let (p, q) = (self.arm(edge.from), self.arm(edge.to));
-                let (u, side) = (q - p, if edge.left == cut.face { 1.0 } else { -1.0 });
-                for (number, c) in crossings.of(crossed) {
-                    let end = if c.leaves { side * c.along } else { -side * c.along };
-                    groups.sums(number).add_line(p, u, [end, end * c.along], cut.foot);
-                }
-                if let Some(group) = end {
-                    groups.sums(group).add_line(p, u, [side; 2], cut.foot);
+            for i in 0..3 {
+                let Some(group) = self.group(face.corners[i]) else { continue };
+                if self.crossed(face.edges[i]).first == NONE {
+                    let (p, q) = (self.arm(face.corners[i]), self.arm(face.corners[(i + 1) % 3]));
+                    groups.sums(group).add_edge(p, q, cut.foot, Vector::zeros());
                 }
             }
         }
     }
 
     /// Sums over the faces that lie whole in the other body, in this body's own frame.
-    fn sum_whole(&mut self, groups: &mut Groups) {
+    fn sum_whole(&self, groups: &mut Groups) {
         let (reference, turn) = match &self.moved {
             None => (self.reference, Matrix3::identity()),
             Some((turn, shift)) => (turn.tr_mul(&(self.reference - shift)), *turn),

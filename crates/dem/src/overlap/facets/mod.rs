@@ -71,9 +71,7 @@ impl FacetOverlap {
         self.groups.clear(&self.crossings);
         bodies.find_inside(&self.crossings, &mut self.groups, &mut self.stack);
         let sums = bodies.sum(&self.crossings, &mut self.groups);
-        let to_world = |x: Vector| {
-            (at_b.to_world(Point::from(reference + x)), at_b.orientation * x)
-        };
+        let to_world = |x: Vector| (at_b.to_world(Point::from(reference + x)), at_b.orientation * x);
         let towards = apart.try_normalize(0.0).unwrap_or_default();
         out.extend(sums.iter().filter(|s| s.volume > 0.0).map(|s| s.overlap(to_world, towards)));
     }

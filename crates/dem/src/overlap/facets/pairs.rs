@@ -37,34 +37,30 @@ impl WithSimd for Walk<'_, '_> {
         while let Some([m, n]) = stack.pop() {
             first.prepare(m);
             let (p, q) = (first.node(m), &tree[n as usize]);
-            let hits = p.meets(q);
             let (own, others) = (p.children, q.children);
-            match (p.is_leaf, q.is_leaf) {
-                (true, true) => {
-                    for (j, hits) in hits.into_iter().enumerate().filter(|(_, hits)| *hits != 0) {
-                        let (faces, others) = (first.leaf(own[0]), second.leaf(others[0]));
-                        let sides = sides(faces, others, j, round_off);
-                        for i in bits(hits) {
-                            let [behind_first, behind_second, unsure] = sides.map(|s| s[i] as u32);
-                            let same = |behind: u32| behind == 0 || behind == 0b111;
-                            if unsure != 0 || !(same(behind_first) || same(behind_second)) {
-                                let unsure = unsure != 0;
-                                let at = [[own[0], i as u32], [q.children[0], j as u32]];
-                                cross(first, second, at, [behind_first, behind_second], unsure, crossings);
-                            }
+            let near = q.gaps_to_all(p);
+            if p.is_leaf && !q.is_leaf {
+                stack.extend((0..WIDTH).filter(|&j| near[j] <= 0.0).map(|j| [m, others[j]]));
+                continue;
+            }
+            if q.is_leaf && !p.is_leaf {
+                let near = p.gaps_to_all(q);
+                stack.extend((0..WIDTH).filter(|&i| near[i] <= 0.0).map(|i| [own[i], n]));
+                continue;
+            }
+            for j in (0..WIDTH).filter(|&j| near[j] <= 0.0) {
+                let gaps = first.node(m).gaps_to(q, j);
+                if !q.is_leaf {
+                    stack.extend((0..WIDTH).filter(|&i| gaps[i] <= 0.0).map(|i| [own[i], others[j]]));
+                } else if gaps.iter().any(|gap| *gap <= 0.0) {
+                    let sides = sides(first.leaf(own[0]), second.leaf(others[0]), j, round_off);
+                    for i in (0..WIDTH).filter(|&i| gaps[i] <= 0.0) {
+                        let [behind_first, behind_second, unsure] = sides.map(|s| s[i] as u32);
+                        let same = |behind: u32| behind == 0 || behind == 0b111;
+                        if unsure != 0 || !(same(behind_first) || same(behind_second)) {
+                            let at = [[own[0], i as u32], [others[0], j as u32]];
+                            cross(first, second, at, [behind_first, behind_second], unsure != 0, crossings);
                         }
-                    }
-                }
-                (true, false) => {
-                    stack.extend((0..WIDTH).filter(|&j| hits[j] != 0).map(|j| [m, others[j]]));
-                }
-                (false, true) => {
-                    let met = hits.iter().fold(0, |all, hits| all | hits);
-                    stack.extend(bits(met).map(|i| [own[i], n]));
-                }
-                (false, false) => {
-                    for j in (0..WIDTH).filter(|&j| hits[j] != 0) {
-                        stack.extend(bits(hits[j]).map(|i| [own[i], others[j]]));
                     }
                 }
             }
@@ -83,8 +79,9 @@ fn sides(own: &Leaf, other: &Leaf, j: usize, round_off: f64) -> [[u64; WIDTH]; 3
         let theirs = [other.corners[k][0][j], other.corners[k][1][j], other.corners[k][2][j]];
         let ours = &own.corners[k];
         for i in 0..WIDTH {
-            let h = own.normals[0][i] * theirs[0] + own.normals[1][i] * theirs[1] + own.normals[2][i] * theirs[2]
-                - own.heights[i];
+            let h =
+                own.normals[0][i] * theirs[0] + own.normals[1][i] * theirs[1] + own.normals[2][i] * theirs[2]
+                    - own.heights[i];
             let d = n[0] * ours[0][i] + n[1] * ours[1][i] + n[2] * ours[2][i] - height;
             behind_own[i] |= u64::from(h < 0.0) << k;
             behind_other[i] |= u64::from(d < 0.0) << k;
@@ -94,21 +91,12 @@ fn sides(own: &Leaf, other: &Leaf, j: usize, round_off: f64) -> [[u64; WIDTH]; 3
     [behind_own, behind_other, unsure]
 }
 
-/// The numbers of the bits that are set.
+/// The edges along which the border of a leaf's triangle leaves and enters what lies behind a plane; `behind` has a bit for every
+/// corner there.
 #[inline(always)]
-fn bits(mut of: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lowest = of.trailing_zeros();
-        of &= of.wrapping_sub(1);
-        (lowest < 32).then_some(lowest as usize & (WIDTH - 1))
-    })
-}
-
-/// The edges along which a face's border leaves and enters what lies behind a plane; `behind` has a bit for every corner there.
-#[inline]
-fn straddling(own: &Body<'_>, f: u32, corners: &[Vector; 3], behind: u32) -> [Straddling; 2] {
+fn straddling(own: &Body<'_>, first: u32, lane: usize, behind: u32) -> [Straddling; 2] {
     const NEXT: [usize; 3] = [1, 2, 0];
-    // Of one corner alone on its side: the edge that leaves starts there or ends there.
+    // The corner that is alone on its side.
     let (alone, is_behind) = match behind {
         0b001 => (0, true),
         0b010 => (1, true),
@@ -117,15 +105,22 @@ fn straddling(own: &Body<'_>, f: u32, corners: &[Vector; 3], behind: u32) -> [St
         0b101 => (1, false),
         _ => (2, false),
     };
+    let (next, before) = (NEXT[alone], NEXT[NEXT[alone]]);
+    let (leaf, f) = (own.leaf(first), first + lane as u32);
+    let corner =
+        |k: usize| Vector::new(leaf.corners[k][0][lane], leaf.corners[k][1][lane], leaf.corners[k][2][lane]);
+    let (peak, p, q) = (corner(alone), corner(next), corner(before));
     let face = &own.facets.faces[f as usize];
-    let before = NEXT[NEXT[alone]];
-    let edge = |i: usize, leaving: bool| {
-        let (inner, outer) = if leaving { (i, NEXT[i]) } else { (NEXT[i], i) };
-        let forward = own.facets.edges[face.edges[i] as usize].left == f;
-        let (behind, ahead) = (corners[inner], corners[outer]);
-        Straddling { edge: face.edges[i], behind, ahead, leaves: leaving == forward }
-    };
-    if is_behind { [edge(alone, true), edge(before, false)] } else { [edge(before, true), edge(alone, false)] }
+    let forward = |e: u32| own.facets.edges[e as usize].left == f;
+    // From the lone corner on, and back to it.
+    let (on, back) = (face.edges[alone], face.edges[before]);
+    if is_behind {
+        let leaving = Straddling { edge: on, behind: peak, ahead: p, leaves: forward(on) };
+        [leaving, Straddling { edge: back, behind: peak, ahead: q, leaves: !forward(back) }]
+    } else {
+        let leaving = Straddling { edge: back, behind: q, ahead: peak, leaves: forward(back) };
+        [leaving, Straddling { edge: on, behind: p, ahead: peak, leaves: !forward(on) }]
+    }
 }
 
 /// Finds the segment in which two faces cross, if they do (after Devillers & Guigue 2002, INRIA report 4488). Each is given by the
@@ -141,9 +136,8 @@ fn cross(
     let [[leaf_a, i], [leaf_b, j]] = at;
     let (f, g) = (leaf_a + i, leaf_b + j);
     let (own, other) = (first.leaf(leaf_a), second.leaf(leaf_b));
-    let (a, b) = (own.triangle(i as usize), other.triangle(j as usize));
-    let (n_a, n_b) = (own.normal(i as usize), other.normal(j as usize));
     if unsure {
+        let (a, b) = (own.triangle(i as usize), other.triangle(j as usize));
         let bits = |behind: [bool; 3]| (0..3).map(|k| u32::from(behind[k]) << k).sum();
         behind_b = bits(a.map(|p| is_behind(Side::First, p, b)));
         behind_a = bits(b.map(|p| is_behind(Side::Second, p, a)));
@@ -152,22 +146,25 @@ fn cross(
         }
     }
     // Along n_a × n_b, the first face's border leaves at the low end and enters at the high one; the second's, the other way.
-    let [low_a, high_a] = straddling(first, f, &a, behind_b);
-    let [high_b, low_b] = straddling(second, g, &b, behind_a);
+    let [low_a, high_a] = straddling(first, leaf_a, i as usize, behind_b);
+    let [high_b, low_b] = straddling(second, leaf_b, j as usize, behind_a);
     let before = |e: &Straddling, k: &Straddling| passes(e.behind, e.ahead, k.behind, k.ahead) < 0.0;
     if !before(&low_a, &high_b) || before(&high_a, &low_b) {
         return;
     }
+    let (own, other) = (first.leaf(leaf_a), second.leaf(leaf_b));
+    let (a, n_a) = (own.corner(i as usize), own.normal(i as usize));
+    let (b, n_b) = (other.corner(j as usize), other.normal(j as usize));
     let low = if before(&low_a, &low_b) {
-        crossings.get(second, &low_b, f, a[0], n_a)
+        crossings.get(second, &low_b, f, a, n_a)
     } else {
-        crossings.get(first, &low_a, g, b[0], n_b)
+        crossings.get(first, &low_a, g, b, n_b)
     };
     let high = if before(&high_a, &high_b) {
-        crossings.get(first, &high_a, g, b[0], n_b)
+        crossings.get(first, &high_a, g, b, n_b)
     } else {
-        crossings.get(second, &high_b, f, a[0], n_a)
+        crossings.get(second, &high_b, f, a, n_a)
     };
-    let (f, g) = (first.cut(f, a[0], n_a), second.cut(g, b[0], n_b));
+    let (f, g) = (first.cut(f, a, n_a), second.cut(g, b, n_b));
     crossings.segments.push(Segment { first: f, second: g, ends: [low, high] });
 }

@@ -34,13 +34,20 @@ impl Sums {
         self.volume += l - r;
         self.first += ((l - r) * (p + q) + l * left - r * right) * 0.25;
     }
-    /// A part of an edge p + t u of a face with this `foot`; given by Σ ± t and Σ ± t² over its ends, with the sign of u those at the
-    /// greater t.
-    #[inline]
-    pub(crate) fn add_line(&mut self, p: Vector, u: Vector, [length, square]: [f64; 2], foot: Vector) {
-        let v = p.cross(&u).dot(&foot) / 6.0;
-        self.volume += v * length;
-        self.first += (v * 0.25) * ((foot + 2.0 * p) * length + square * u);
+    /// Parts of a line p + t u between faces with these feet, given by Σ ± t and Σ ± t² over their ends, those at the greater t
+    /// positive.
+    pub(crate) fn add_line(
+        &mut self,
+        p: Vector,
+        u: Vector,
+        [length, square]: [f64; 2],
+        left: Vector,
+        right: Vector,
+    ) {
+        let area = p.cross(&u);
+        let (l, r) = (area.dot(&left) / 6.0, area.dot(&right) / 6.0);
+        self.volume += (l - r) * length;
+        self.first += ((l * left - r * right + 2.0 * (l - r) * p) * length + (l - r) * square * u) * 0.25;
     }
     /// A whole triangle.
     #[inline]

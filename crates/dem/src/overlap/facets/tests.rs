@@ -82,7 +82,14 @@ fn identical_and_stacked() {
     ] {
         assert_relative_eq!(cubes(Pose::at(at)).unwrap().volume, volume, epsilon = 1e-14);
     }
-    for at in [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 1.0], [1.0, 1.0, 1.0], [1.0, 0.3, 0.2], [-1.0, 0.0, 0.5]] {
+    for at in [
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [0.0, 1.0, 1.0],
+        [1.0, 1.0, 1.0],
+        [1.0, 0.3, 0.2],
+        [-1.0, 0.0, 0.5],
+    ] {
         let volume = cubes(Pose::at(at)).map_or(0.0, |o| o.volume);
         assert!(volume.abs() < 1e-14, "{at:?} {volume}");
     }
@@ -156,7 +163,10 @@ fn times() {
         let d_only = std::env::var("D").ok().map(|l| l.parse::<f64>().unwrap());
         for d in [1.95, 1.8, 1.5, 0.7].into_iter().filter(|l| d_only.is_none_or(|o| o == *l)) {
             let turn = Rotation::from_scaled_axis(Vector::new(0.3, 0.7, -0.4));
-            let at = Pose { position: Point::from(Vector::new(0.8, 0.5, 0.33).normalize() * d), orientation: turn };
+            let at = Pose {
+                position: Point::from(Vector::new(0.8, 0.5, 0.33).normalize() * d),
+                orientation: turn,
+            };
             let origin = Pose::at([0.0; 3]);
             let n = 200_000 / ball.faces.len();
             let mut best = f64::INFINITY;
@@ -170,7 +180,10 @@ fn times() {
             }
             println!(
                 "{} faces, d {d}: {:.2} us, {} crossings, V {:?}",
-                ball.faces.len(), best * 1e6, solver.crossings.all.len(), out.first().map(|o| o.volume)
+                ball.faces.len(),
+                best * 1e6,
+                solver.crossings.all.len(),
+                out.first().map(|o| o.volume)
             );
         }
     }
@@ -178,7 +191,12 @@ fn times() {
         return;
     }
     let cube = brick([1.0; 3]);
-    for (name, at) in [("corner", turned([0.8, 0.7, 0.75], Vector::new(0.3, 0.2, 0.5))), ("aligned", Pose::at([0.9, 0.8, 0.7])), ("stacked", Pose::at([0.98, 0.0, 0.0])), ("deep", turned([0.0; 3], Vector::new(0.3, 0.2, 0.5)))] {
+    for (name, at) in [
+        ("corner", turned([0.8, 0.7, 0.75], Vector::new(0.3, 0.2, 0.5))),
+        ("aligned", Pose::at([0.9, 0.8, 0.7])),
+        ("stacked", Pose::at([0.98, 0.0, 0.0])),
+        ("deep", turned([0.0; 3], Vector::new(0.3, 0.2, 0.5))),
+    ] {
         let n = 20_000;
         let mut best = f64::INFINITY;
         for _ in 0..5 {
@@ -189,6 +207,11 @@ fn times() {
             }
             best = best.min(start.elapsed().as_secs_f64() / n as f64);
         }
-        println!("cubes {name}: {:.2} us, {} crossings, V {:?}", best * 1e6, solver.crossings.all.len(), out.first().map(|o| o.volume));
+        println!(
+            "cubes {name}: {:.2} us, {} crossings, V {:?}",
+            best * 1e6,
+            solver.crossings.all.len(),
+            out.first().map(|o| o.volume)
+        );
     }
 }

@@ -1,5 +1,6 @@
 //! Eight triangles side by side.
 use super::WIDTH;
+use super::tree::more;
 use interfaces::Vector;
 use nalgebra::Matrix3;
 
@@ -57,8 +58,8 @@ impl Leaf {
                 self.normals[axis][i] = n[axis];
             }
             self.heights[i] = n[0] * a[0][i] + n[1] * a[1][i] + n[2] * a[2][i];
-            let longest = |w: [f64; 3]| w[0].abs().max(w[1].abs()).max(w[2].abs());
-            let longest = longest(u).max(longest(v));
+            let longest = |w: [f64; 3]| more(more(w[0].abs(), w[1].abs()), w[2].abs());
+            let longest = more(longest(u), longest(v));
             self.sizes[i] = longest * longest;
         }
     }
@@ -66,7 +67,14 @@ impl Leaf {
     /// The corners of one triangle.
     #[inline(always)]
     pub(crate) fn triangle(&self, lane: usize) -> [Vector; 3] {
-        [0, 1, 2].map(|k| Vector::new(self.corners[k][0][lane], self.corners[k][1][lane], self.corners[k][2][lane]))
+        [0, 1, 2].map(|k| {
+            Vector::new(self.corners[k][0][lane], self.corners[k][1][lane], self.corners[k][2][lane])
+        })
+    }
+    /// The first of its corners.
+    #[inline(always)]
+    pub(crate) fn corner(&self, lane: usize) -> Vector {
+        Vector::new(self.corners[0][0][lane], self.corners[0][1][lane], self.corners[0][2][lane])
     }
     #[inline(always)]
     pub(crate) fn normal(&self, lane: usize) -> Vector {

@@ -39,41 +39,35 @@ impl Node {
         for a in 0..3 {
             (self.low_all[a], self.high_all[a]) = (f32::INFINITY, f32::NEG_INFINITY);
             for i in 0..WIDTH {
-                self.low_all[a] = if self.low[a][i] < self.low_all[a] { self.low[a][i] } else { self.low_all[a] };
-                self.high_all[a] = if self.high[a][i] > self.high_all[a] { self.high[a][i] } else { self.high_all[a] };
+                self.low_all[a] =
+                    if self.low[a][i] < self.low_all[a] { self.low[a][i] } else { self.low_all[a] };
+                self.high_all[a] =
+                    if self.high[a][i] > self.high_all[a] { self.high[a][i] } else { self.high_all[a] };
             }
         }
     }
-    /// Which of these boxes meet another one, a bit each.
+    /// How far these boxes are from another one, along the axis on which they are farthest; not positive where they meet.
     #[inline(always)]
-    fn meet(&self, low: [f32; 3], high: [f32; 3]) -> u32 {
-        let mut apart = [false; WIDTH];
-        for i in 0..WIDTH {
-            apart[i] = (self.low[0][i] > high[0])
-                | (self.high[0][i] < low[0])
-                | (self.low[1][i] > high[1])
-                | (self.high[1][i] < low[1])
-                | (self.low[2][i] > high[2])
-                | (self.high[2][i] < low[2]);
+    fn gaps(&self, low: [f32; 3], high: [f32; 3]) -> [f32; WIDTH] {
+        let mut gaps = [f32::NEG_INFINITY; WIDTH];
+        for a in 0..3 {
+            for i in 0..WIDTH {
+                gaps[i] =
+                    more_single(gaps[i], more_single(self.low[a][i] - high[a], low[a] - self.high[a][i]));
+            }
         }
-        let mut met = 0;
-        for i in 0..WIDTH {
-            met |= u32::from(!apart[i]) << i;
-        }
-        met
+        gaps
     }
-    /// For each of the other's boxes, which of these it meets, a bit each.
+    /// How far these boxes are from the box around all of `other`'s.
     #[inline(always)]
-    pub(crate) fn meets(&self, other: &Self) -> [u32; WIDTH] {
-        let mut all = [0; WIDTH];
-        let mut near = other.meet(self.low_all, self.high_all);
-        while near != 0 {
-            let j = near.trailing_zeros() as usize & (WIDTH - 1);
-            near &= near - 1;
-            let [low, high] = [&other.low, &other.high].map(|side| [side[0][j], side[1][j], side[2][j]]);
-            all[j] = self.meet(low, high);
-        }
-        all
+    pub(crate) fn gaps_to_all(&self, other: &Self) -> [f32; WIDTH] {
+        self.gaps(other.low_all, other.high_all)
+    }
+    /// How far these boxes are from box `j` of `other`.
+    #[inline(always)]
+    pub(crate) fn gaps_to(&self, other: &Self, j: usize) -> [f32; WIDTH] {
+        let [low, high] = [&other.low, &other.high].map(|side| [side[0][j], side[1][j], side[2][j]]);
+        self.gaps(low, high)
     }
 
     /// The boxes around these boxes, turned and shifted; `extent` is a length that none of their places exceeds.
@@ -107,7 +101,8 @@ impl Node {
         let [p, q, r] = &leaf.corners;
         for a in 0..3 {
             for i in 0..WIDTH {
-                let (low, high) = (p[a][i].min(q[a][i]).min(r[a][i]), p[a][i].max(q[a][i]).max(r[a][i]));
+                let (low, high) =
+                    (less(less(p[a][i], q[a][i]), r[a][i]), more(more(p[a][i], q[a][i]), r[a][i]));
                 let filled = self.low[a][i] <= self.high[a][i];
                 // A rounding of 2⁻²⁴, outwards.
                 let (low, high) = (low - low.abs() * 1e-7, high + high.abs() * 1e-7);
@@ -118,6 +113,23 @@ impl Node {
         around.set_all();
         around
     }
+}
+
+/// The less of two numbers that are not NaN: one instruction.
+#[inline(always)]
+fn less(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The greater of two numbers that are not NaN.
+#[inline(always)]
+pub(super) fn more(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+#[inline(always)]
+fn more_single(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }
 
 /// The greatest single-precision number not above `x`.

@@ -105,6 +105,21 @@ pub enum DemError {
         /// What is wrong with it.
         what: &'static str,
     },
+    /// A union of nothing.
+    #[error("a union without parts was asked for; give at least one")]
+    NoParts,
+    /// Parts of a union overlap.
+    #[error(
+        "parts {a} and {b} of the union overlap by {volume:.3e} m³, which would count twice; move them apart until they only touch, or make an implicit shape of them"
+    )]
+    OverlappingParts {
+        /// One part.
+        a: usize,
+        /// The other one.
+        b: usize,
+        /// What they share \[m³\].
+        volume: f64,
+    },
     /// A pose is not finite.
     #[error(
         "the {name} is at {position:?} m, and position or orientation is not finite; give finite numbers"

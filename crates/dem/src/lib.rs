@@ -34,4 +34,4 @@ pub use error::DemError;
 pub use material::Material;
 pub use overlap::{Overlap, OverlapSolver, Route, overlap};
 pub use rigid_bodies::{RigidBodies, Round};
-pub use shapes::{ConvexPolyhedron, Cuboid, Disc, Facets, Form, HalfSpace, Shape, Sphere};
+pub use shapes::{ConvexPolyhedron, Cuboid, Disc, Facets, Form, HalfSpace, Part, Shape, Sphere, Union};

@@ -5,6 +5,7 @@ mod disc;
 mod facets;
 mod half_space;
 mod sphere;
+mod union;
 
 pub use convex_polyhedron::ConvexPolyhedron;
 pub use cuboid::Cuboid;
@@ -13,6 +14,7 @@ pub use facets::Facets;
 pub(crate) use facets::{Leaf, Node, WIDTH, moved};
 pub use half_space::HalfSpace;
 pub use sphere::Sphere;
+pub use union::{Part, Union};
 
 use interfaces::{Inertia, Solid, Vector};
 
@@ -46,6 +48,8 @@ pub enum Form<'a> {
     Hull(&'a ConvexPolyhedron),
     /// A closed surface of triangles.
     Facets(&'a Facets),
+    /// Parts that do not overlap.
+    Union(&'a [Part]),
     /// Its signed distance only.
     Distance,
 }

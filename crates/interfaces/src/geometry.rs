@@ -27,6 +27,12 @@ impl Pose {
     pub fn to_body(&self, x: Point) -> Point {
         Point::from(self.orientation.inverse_transform_vector(&(x - self.position)))
     }
+    /// Where something is in the world that is at `inner` in the body's frame.
+    #[must_use]
+    pub fn of(&self, inner: &Self) -> Self {
+        let position = self.to_world(inner.position);
+        Self { position, orientation: self.orientation * inner.orientation }
+    }
     /// A point of the body's frame in the world.
     pub fn to_world(&self, x: Point) -> Point {
         self.position + self.orientation * x.coords

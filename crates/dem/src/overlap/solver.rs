@@ -82,8 +82,22 @@ impl OverlapSolver {
             }
         }
         self.patches.clear();
+        self.pair(a, at_a, b, at_b)?;
+        Ok(&self.patches)
+    }
+
+    /// Adds the patches of a pair.
+    fn pair(&mut self, a: &dyn Shape, at_a: &Pose, b: &dyn Shape, at_b: &Pose) -> Result<(), DemError> {
         let out = &mut self.patches;
         match (a.form(), b.form()) {
+            (Form::Union(parts), _) => {
+                for part in parts {
+                    let at_part = at_a.of(&part.pose);
+                    if near(&*part.shape, &at_part, b, at_b) {
+                        self.pair(&*part.shape, &at_part, b, at_b)?;
+                    }
+                }
+            }
             (Form::Disc(p), Form::Disc(q)) => {
                 out.extend(closed::discs(p.radius(), at_a.position, q.radius(), at_b.position));
             }
@@ -100,14 +114,6 @@ impl OverlapSolver {
                 let distance = w.signed_distance(at_a.position);
                 out.extend(closed::sphere_wall(p.radius(), at_a.position, distance, w.normal()));
             }
-            (Form::Hull(p), Form::HalfSpace(w)) => {
-                self.half_space.overlap(p.facets(), at_a, &w.posed(at_b), out)
-            }
-            (Form::Facets(p), Form::HalfSpace(w)) => self.half_space.overlap(p, at_a, &w.posed(at_b), out),
-            (Form::HalfSpace(_), Form::Disc(_) | Form::Sphere(_) | Form::Hull(_) | Form::Facets(_)) => {
-                self.solve(b, at_b, a, at_a)?;
-                self.patches.iter_mut().for_each(|o| *o = o.swapped());
-            }
             (Form::Hull(p), Form::Hull(q)) if p.vertices().len().min(q.vertices().len()) <= CLIPPED => {
                 self.clipper.overlap(p, at_a, q, at_b, out);
             }
@@ -115,10 +121,26 @@ impl OverlapSolver {
             (Form::Hull(p), Form::Facets(q)) => self.facets.overlap(p.facets(), at_a, q, at_b, out),
             (Form::Facets(p), Form::Hull(q)) => self.facets.overlap(p, at_a, q.facets(), at_b, out),
             (Form::Facets(p), Form::Facets(q)) => self.facets.overlap(p, at_a, q, at_b, out),
+            (Form::Hull(p), Form::HalfSpace(w)) => {
+                self.half_space.overlap(p.facets(), at_a, &w.posed(at_b), out)
+            }
+            (Form::Facets(p), Form::HalfSpace(w)) => self.half_space.overlap(p, at_a, &w.posed(at_b), out),
+            (_, Form::Union(_))
+            | (Form::HalfSpace(_), Form::Disc(_) | Form::Sphere(_) | Form::Hull(_) | Form::Facets(_)) => {
+                let first = out.len();
+                self.pair(b, at_b, a, at_a)?;
+                self.patches[first..].iter_mut().for_each(|o| *o = o.swapped());
+            }
             _ => return Err(DemError::Unsupported { a: a.name(), b: b.name() }),
         }
-        Ok(&self.patches)
+        Ok(())
     }
+}
+
+/// Do the spheres around two shapes meet?
+fn near(a: &dyn Shape, at_a: &Pose, b: &dyn Shape, at_b: &Pose) -> bool {
+    let within = a.bounding_radius() + b.bounding_radius();
+    (at_a.position - at_b.position).norm_squared() <= within * within
 }
 
 /// [`OverlapSolver::solve`] once, with memory of its own.

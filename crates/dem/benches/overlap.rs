@@ -37,5 +37,5 @@ fn main() {
     row("cubes, face in", &cube, &cube, at([0.9, 0.1, 0.05], [0.03, 0.2, 0.05]));
     row("cubes, aligned", &cube, &cube, at([0.9, 0.8, 0.7], [0.0; 3]));
     row("cubes, deep", &cube, &cube, at([0.1, 0.0, 0.0], [0.3, 0.2, 0.5]));
-    row("cubes, apart, spheres around meet", &cube, &cube, at([1.2, 0.2, 0.1], [0.3, 0.2, 0.5]));
+    row("cubes, apart, spheres around meet", &cube, &cube, at([1.35, 0.2, 0.1], [0.3, 0.2, 0.5]));
 }

@@ -48,8 +48,26 @@ pub(crate) fn discs(ra: f64, a: Point, rb: f64, b: Point) -> Option<Overlap> {
     pair(ra, a, rb, b, segment, |r| PI * r * r)
 }
 
+/// Two caps on the common circle, s_a and s_b deep. The centroid divides the line of centres as the volumes of the caps do: both have
+/// the same moment about their own centre, π/4 of the circle's radius to the fourth.
+#[inline]
 pub(crate) fn spheres(ra: f64, a: Point, rb: f64, b: Point) -> Option<Overlap> {
-    pair(ra, a, rb, b, cap, |r| 4.0 / 3.0 * PI * r.powi(3))
+    let apart = a - b;
+    let d = apart.norm();
+    let depth = ra + rb - d;
+    if depth <= 0.0 {
+        return None;
+    }
+    if d <= (ra - rb).abs() {
+        return pair(ra, a, rb, b, cap, |r| 4.0 / 3.0 * PI * r.powi(3));
+    }
+    let per_distance = 1.0 / d;
+    let [sa, sb] = [rb, ra].map(|other| 0.5 * depth * (2.0 * other - depth) * per_distance);
+    let [va, vb] = [(ra, sa), (rb, sb)].map(|(r, s)| s * s * (r - s / 3.0));
+    let (s, r) = if sa < sb { (sa, ra) } else { (sb, rb) };
+    let normal = apart / d;
+    let share = if va + vb > 0.0 { vb / (va + vb) } else { 0.5 };
+    Some(overlap(PI * (va + vb), a - apart * share, normal, PI * s * (2.0 * r - s)))
 }
 
 pub(crate) fn disc_wall(r: f64, at: Point, distance: f64, normal: Vector) -> Option<Overlap> {
@@ -74,7 +92,7 @@ fn pair(
     if depth <= 0.0 {
         return None;
     }
-    let normal = apart.try_normalize(0.0).unwrap_or(Vector::x());
+    let normal = if d > 0.0 { apart / d } else { Vector::x() };
     if d <= (ra - rb).abs() {
         // One inside the other: no force from the gradient, but the volume is known.
         let (r, centroid) = if ra < rb { (ra, a) } else { (rb, b) };

@@ -130,6 +130,20 @@ pub enum DemError {
         /// Where.
         position: [f64; 3],
     },
+    /// An overlap that no two bodies can have.
+    #[error(
+        "a {a} and a {b} seem to share {volume:.3e} m³, but the boxes around them {most:.3e} m³: a surface crosses itself; look at its admission report"
+    )]
+    Impossible {
+        /// One shape.
+        a: &'static str,
+        /// The other one.
+        b: &'static str,
+        /// What came out \[m³\].
+        volume: f64,
+        /// What the boxes share \[m³\].
+        most: f64,
+    },
     /// A route was asked for that does not lead to this pair's overlap.
     #[error(
         "the overlap of a {a} and a {b} cannot be had by {route}; leave the choice of the route to the solver"

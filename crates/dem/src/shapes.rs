@@ -54,6 +54,17 @@ pub enum Form<'a> {
     Distance,
 }
 
+impl<'a> Form<'a> {
+    /// The triangles of a flat-faced shape.
+    pub(crate) fn facets(&self) -> Option<&'a Facets> {
+        match self {
+            Self::Hull(hull) => Some(hull.facets()),
+            Self::Facets(facets) => Some(facets),
+            _ => None,
+        }
+    }
+}
+
 /// The point of a triangle nearest to `x`.
 pub(crate) fn nearest_in_triangle(x: Vector, [a, b, c]: [Vector; 3]) -> Vector {
     let (u, v) = (b - a, c - a);

@@ -94,7 +94,7 @@ fn parts(cells: &BTreeSet<Cell>) -> usize {
 
 fn solve(solver: &mut FacetOverlap, a: &Facets, at_a: &Pose, b: &Facets, at_b: &Pose) -> Vec<Overlap> {
     let mut out = Vec::new();
-    solver.overlap(a, at_a, b, at_b, &mut out);
+    solver.overlap(a, at_a, b, at_b, &mut out).unwrap();
     out
 }
 
@@ -216,7 +216,7 @@ proptest! {
                 let mut out = Vec::new();
                 match route {
                     0 => clipper.overlap(a, at_a, b, at_b, &mut out),
-                    _ => solver.overlap(a.facets(), at_a, b.facets(), at_b, &mut out),
+                    _ => solver.overlap(a.facets(), at_a, b.facets(), at_b, &mut out).unwrap(),
                 }
                 out.first().copied()
             };

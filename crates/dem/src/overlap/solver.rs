@@ -1,6 +1,6 @@
 //! Which route leads to the overlap of a pair.
 use super::clip::Clipper;
-use super::facets::FacetOverlap;
+use super::facets::{FacetOverlap, Impossible};
 use super::half_space::HalfSpaceOverlap;
 use super::{Overlap, closed};
 use crate::{DemError, Form, Shape};
@@ -122,10 +122,12 @@ impl OverlapSolver {
             (Form::Hull(p), Form::Hull(q)) if p.vertices().len().min(q.vertices().len()) <= CLIPPED => {
                 self.clipper.overlap(p, at_a, q, at_b, out);
             }
-            (Form::Hull(p), Form::Hull(q)) => self.facets.overlap(p.facets(), at_a, q.facets(), at_b, out),
-            (Form::Hull(p), Form::Facets(q)) => self.facets.overlap(p.facets(), at_a, q, at_b, out),
-            (Form::Facets(p), Form::Hull(q)) => self.facets.overlap(p, at_a, q.facets(), at_b, out),
-            (Form::Facets(p), Form::Facets(q)) => self.facets.overlap(p, at_a, q, at_b, out),
+            (Form::Hull(_) | Form::Facets(_), Form::Hull(_) | Form::Facets(_)) => {
+                let (Some(p), Some(q)) = (a.form().facets(), b.form().facets()) else { return Ok(()) };
+                self.facets.overlap(p, at_a, q, at_b, out).map_err(|Impossible { volume, most }| {
+                    DemError::Impossible { a: a.name(), b: b.name(), volume, most }
+                })?;
+            }
             (Form::Hull(p), Form::HalfSpace(w)) => {
                 self.half_space.overlap(p.facets(), at_a, &w.posed(at_b), out)
             }

@@ -66,7 +66,7 @@ impl Groups {
         }
     }
     /// One sum for every connected region. Groups with negative volume, beyond `round_off`, are borders of hollows, which belong
-    /// to the region around them: that with the nearest centroid among those large enough.
+    /// to the region around them: that with the nearest centroid among those large enough. (Without any, they stay as they are.)
     pub(crate) fn patches(&mut self, round_off: f64) -> &[Sums] {
         self.patches.clear();
         let roots = || (0..self.parents.len()).filter(|&i| self.parents[i] == i as u32);
@@ -76,8 +76,9 @@ impl Groups {
             let large = |s: &&mut Sums| s.volume >= -hollow.volume;
             let around =
                 self.patches.iter_mut().filter(large).min_by(|s, t| distance(s).total_cmp(&distance(t)));
-            if let Some(around) = around {
-                around.add(&hollow);
+            match around {
+                Some(around) => around.add(&hollow),
+                None => self.patches.push(hollow),
             }
         }
         &self.patches

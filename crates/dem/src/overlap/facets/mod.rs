@@ -35,6 +35,9 @@ pub(crate) struct FacetOverlap {
 
 impl FacetOverlap {
     /// One patch per connected region.
+    ///
+    /// # Errors
+    /// [`Impossible`], if a surface crosses itself.
     pub(crate) fn overlap(
         &mut self,
         a: &Facets,
@@ -42,22 +45,23 @@ impl FacetOverlap {
         b: &Facets,
         at_b: &Pose,
         out: &mut Vec<Overlap>,
-    ) {
+    ) -> Result<(), Impossible> {
         // In the frame of the smaller one, where the numbers are small.
         if a.radius < b.radius {
             let first = out.len();
-            self.overlap(b, at_b, a, at_a, out);
+            self.overlap(b, at_b, a, at_a, out)?;
             out[first..].iter_mut().for_each(|o| *o = o.swapped());
-            return;
+            return Ok(());
         }
         let apart = at_a.position - at_b.position;
         if apart.norm() > a.radius + b.radius {
-            return;
+            return Ok(());
         }
         let turn = at_b.orientation.inverse() * at_a.orientation;
         let shift = at_b.orientation.inverse_transform_vector(&apart);
         let turn = *turn.to_rotation_matrix().matrix();
-        let Some(reference) = meeting(a, &turn, shift, b) else { return };
+        let Some([low, high]) = meeting(a, &turn, shift, b) else { return Ok(()) };
+        let reference = 0.5 * (low + high);
         let [marks_a, marks_b] = &mut self.marks;
         marks_a.start(a);
         marks_b.start(b);
@@ -72,9 +76,23 @@ impl FacetOverlap {
         bodies.find_inside(&self.crossings, &mut self.groups, &mut self.stack);
         let sums = bodies.sum(&self.crossings, &mut self.groups);
         let to_world = |x: Vector| (at_b.to_world(Point::from(reference + x)), at_b.orientation * x);
+        let round_off = 1e-12 * b.radius.powi(3);
+        let (volume, most) = (sums.iter().map(|s| s.volume).sum::<f64>(), (high - low).product());
+        let least = sums.iter().map(|s| s.volume).fold(0.0, f64::min);
+        if !(-round_off <= least && volume <= most + round_off) {
+            return Err(Impossible { volume: if least < 0.0 { least } else { volume }, most });
+        }
         let towards = apart.try_normalize(0.0).unwrap_or_default();
         out.extend(sums.iter().filter(|s| s.volume > 0.0).map(|s| s.overlap(to_world, towards)));
+        Ok(())
     }
+}
+
+/// Surfaces that share a negative volume, or more than the boxes around them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Impossible {
+    pub(crate) volume: f64,
+    pub(crate) most: f64,
 }
 
 /// The two bodies, in the frame of the second.
@@ -92,11 +110,11 @@ impl<'a> Bodies<'a> {
     }
 }
 
-/// The middle of what the boxes of the two share, in the frame of the second; `None` if they are apart.
-fn meeting(a: &Facets, turn: &Matrix3<f64>, shift: Vector, b: &Facets) -> Option<Vector> {
+/// What the boxes of the two share, as its corners, in the frame of the second; `None` if they are apart.
+fn meeting(a: &Facets, turn: &Matrix3<f64>, shift: Vector, b: &Facets) -> Option<[Vector; 2]> {
     let ([low, high], [low_b, high_b]) = (a.bounds, b.bounds);
     let (centre, half) = (turn * (0.5 * (low + high)) + shift, turn.abs() * (0.5 * (high - low)));
     let slack = Vector::repeat(1e-14 * (a.radius + b.radius + shift.norm()));
     let (low, high) = (low_b.sup(&(centre - half)) - slack, high_b.inf(&(centre + half)) + slack);
-    (low <= high).then(|| 0.5 * (low + high))
+    (low <= high).then_some([low, high])
 }

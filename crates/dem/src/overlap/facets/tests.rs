@@ -20,7 +20,7 @@ fn brick(size: [f64; 3]) -> Facets {
 
 fn solve(a: &Facets, at_a: &Pose, b: &Facets, at_b: &Pose) -> Vec<Overlap> {
     let mut out = Vec::new();
-    FacetOverlap::default().overlap(a, at_a, b, at_b, &mut out);
+    FacetOverlap::default().overlap(a, at_a, b, at_b, &mut out).unwrap();
     out
 }
 
@@ -174,7 +174,7 @@ fn times() {
                 let start = cpu_time::ProcessTime::now();
                 for _ in 0..n {
                     out.clear();
-                    solver.overlap(&ball, &origin, &ball, &at, &mut out);
+                    solver.overlap(&ball, &origin, &ball, &at, &mut out).unwrap();
                 }
                 best = best.min(start.elapsed().as_secs_f64() / n as f64);
             }

@@ -1,4 +1,6 @@
 //! The volume that two bodies share; one file per route to it.
+#[cfg(test)]
+pub(crate) mod ball_faces;
 pub(crate) mod closed;
 mod solver;
 

@@ -1,6 +1,7 @@
 //! A face of a body against the unit ball around the origin.
-use super::edge::{Edge, Integrals, solid_angle};
+use super::edge::{Edge, Integrals, edge_angle, solid_angle};
 use interfaces::Vector;
+use std::cmp::Ordering;
 use std::f64::consts::TAU;
 
 /// Where the centre is as near as this to an edge, the solid angles of the faces there are no longer known to rounding errors, one
@@ -35,21 +36,73 @@ pub(super) struct Face<'a> {
     along: Vector,
     across: Vector,
     height: f64,
-    /// Its corners in the plane, from the foot of the centre.
-    corners: &'a [[f64; 2]],
+    corners: &'a [Vector],
+    /// The corners in the plane, from the foot of the centre.
+    plane: &'a [[f64; 2]],
 }
 
-/// An edge's line in the plane: distance, unit vector, and where on it its ends are.
-struct Line {
+/// An edge: its ends, their places in the plane, its distance there from the foot of the centre, its length and direction, and where
+/// on its line the ends are.
+struct Side {
+    ends: [Vector; 2],
     distance: f64,
+    length: f64,
     direction: [f64; 2],
     from: f64,
     to: f64,
 }
 
+impl Side {
+    /// What the ball cuts out of it, on a plane at `height`.
+    ///
+    /// A shallow contact hangs on the small differences between the radius and the distances of corners and edges. These are
+    /// the same for all faces around: |x|² of a corner, and the chord's distance taken from one end, however the edge is run along.
+    fn within(&self, height: f64) -> Option<Edge> {
+        let [p, q] = self.ends;
+        let along = (q - p) / self.length;
+        let (s, t) = (p.dot(&along), q.dot(&along));
+        let (rest_p, rest_q) = (1.0 - p.norm_squared(), 1.0 - q.norm_squared());
+        let half2 = |end: &Vector| 1.0 - end.cross(&along).norm_squared();
+        let half2 = match s.abs().total_cmp(&t.abs()) {
+            Ordering::Less => half2(&p),
+            Ordering::Greater => half2(&q),
+            Ordering::Equal => half2(&p).max(half2(&q)),
+        };
+        if half2 <= 0.0 {
+            return None;
+        }
+        let half = half2.sqrt();
+        // The way from an end to where the line leaves the ball beyond it, and to where it leaves it behind.
+        let ways = |s: f64, rest: f64| {
+            let far = half + s.abs();
+            if s > 0.0 { (rest / far, far) } else { (far, rest / far) }
+        };
+        let (after_p, before) = ways(s, rest_p);
+        let (after, before_q) = ways(t, rest_q);
+        let edge = |from, to, length, before, after| Edge {
+            height,
+            distance: self.distance,
+            from,
+            to,
+            length,
+            before,
+            after,
+        };
+        let edge = match (rest_p > 0.0, rest_q > 0.0) {
+            (true, true) => edge(self.from, self.to, self.length, before, after),
+            (true, false) => edge(self.from, half, after_p, before, 0.0),
+            (false, true) => edge(-half, self.to, before_q, 0.0, after),
+            // Both ends may be on the same side of the chord.
+            (false, false) if s < 0.0 && t > 0.0 => edge(-half, half, 2.0 * half, 0.0, 0.0),
+            (false, false) => return None,
+        };
+        (edge.length > 0.0 && edge.from < edge.to).then_some(edge)
+    }
+}
+
 impl<'a> Face<'a> {
     /// `None` when the ball does not reach the plane of the `corners` (counter-clockwise seen from outside), or when they have none.
-    pub(super) fn new(corners: &[Vector], plane: &'a mut Vec<[f64; 2]>) -> Option<Self> {
+    pub(super) fn new(corners: &'a [Vector], plane: &'a mut Vec<[f64; 2]>) -> Option<Self> {
         let first = corners[0];
         let mut normal = Vector::zeros();
         for pair in corners[1..].windows(2) {
@@ -69,35 +122,35 @@ impl<'a> Face<'a> {
             let p = [along.dot(c), across.dot(c)];
             if p[0] * p[0] + p[1] * p[1] < THERE2 { [0.0; 2] } else { p }
         }));
-        Some(Self { normal, along, across, height: (height * scale).clamp(-1.0, 1.0), corners: plane })
+        Some(Self { normal, along, across, height: (height * scale).clamp(-1.0, 1.0), corners, plane })
     }
 
     /// Edge by edge with its number; edges without length are left out.
-    fn lines(&self) -> impl Iterator<Item = (usize, Line)> {
+    fn sides(&self) -> impl Iterator<Item = (usize, Side)> {
         let n = self.corners.len();
         (0..n).filter_map(move |i| {
-            let (p, q) = (self.corners[i], self.corners[if i + 1 < n { i + 1 } else { 0 }]);
-            let step = [q[0] - p[0], q[1] - p[1]];
-            let length = (step[0] * step[0] + step[1] * step[1]).sqrt();
+            let j = if i + 1 < n { i + 1 } else { 0 };
+            let ends = [self.corners[i], self.corners[j]];
+            let length = (ends[1] - ends[0]).norm();
             if length == 0.0 {
                 return None;
             }
-            let scale = length.recip();
-            let direction = [step[0] * scale, step[1] * scale];
+            let (p, q, scale) = (self.plane[i], self.plane[j], length.recip());
+            let direction = [(q[0] - p[0]) * scale, (q[1] - p[1]) * scale];
             let along = |c: [f64; 2]| c[0] * direction[0] + c[1] * direction[1];
             // Adding zero makes a positive zero of a negative one.
             let distance = (p[0] * q[1] - p[1] * q[0]) * scale + 0.0;
-            Some((i, Line { distance, direction, from: along(p), to: along(q) }))
+            Some((i, Side { ends, distance, length, direction, from: along(p), to: along(q) }))
         })
     }
 
     /// The angle under which the foot of the centre sees the face from within, a whole turn unless it is at a corner. `within` tells
     /// whether it is on the inner side of all edges.
     fn turn(&self, within: bool) -> f64 {
-        let n = self.corners.len();
-        match self.corners.iter().position(|c| *c == [0.0; 2]) {
+        let n = self.plane.len();
+        match self.plane.iter().position(|c| *c == [0.0; 2]) {
             Some(i) => {
-                let (q, r) = (self.corners[(i + 1) % n], self.corners[(i + n - 1) % n]);
+                let (q, r) = (self.plane[(i + 1) % n], self.plane[(i + n - 1) % n]);
                 (q[0] * r[1] - q[1] * r[0]).atan2(q[0] * r[0] + q[1] * r[1]).max(0.0)
             }
             None if within => TAU,
@@ -108,41 +161,30 @@ impl<'a> Face<'a> {
     /// What lies within the ball, if anything; `cut` is called with the number of every edge that does.
     pub(super) fn part(&self, mut cut: impl FnMut(usize)) -> Option<Part> {
         let height = self.height.abs();
-        let radius = ((1.0 - height) * (1.0 + height)).sqrt();
         let mut sum = Integrals::default();
         let (mut within, mut near_edge, mut amount, mut reached) = (true, false, 0.0, false);
         let mut shift = [0.0; 2];
-        for (i, line) in self.lines() {
-            within &= line.distance >= 0.0;
-            let d = line.distance.abs();
-            if d >= radius {
-                continue;
-            }
-            let half = ((radius - d) * (radius + d)).sqrt();
-            let (from, to) = (line.from.max(-half), line.to.min(half));
-            if from >= to {
-                continue;
-            }
+        for (i, side) in self.sides() {
+            within &= side.distance >= 0.0;
+            let Some(edge) = side.within(height) else { continue };
             reached = true;
             cut(i);
-            let edge = Edge { height, distance: line.distance, from, to, half };
             near_edge |= edge.centre2() < NEAR2;
             let beyond = edge.beyond();
             sum.area += beyond.area;
             sum.second += beyond.second;
             sum.beyond += beyond.beyond;
             amount += beyond.beyond.abs();
-            // ∫ x dA in the plane = −Σ outward normals of the edges times ∫ (half² − t²)/2 dt.
-            let (length, middle) = (to - from, 0.5 * (from + to));
-            let push = 0.5 * length * ((half - middle) * (half + middle) - length * length / 12.0);
-            shift[0] -= push * line.direction[1];
-            shift[1] += push * line.direction[0];
+            // ∫ x dA in the plane = −Σ outward normals of the edges times ∫ p/2 dt.
+            let push = edge.push();
+            shift[0] -= push * side.direction[1];
+            shift[1] += push * side.direction[0];
         }
         let turn = self.turn(within);
         if !reached && turn == 0.0 {
             return None;
         }
-        let disc = Integrals::sector(height, turn);
+        let disc = Integrals::sector(height, (1.0 - height) * (1.0 + height), turn);
         let Integrals { area, second, beyond } = disc.minus(sum);
         let moment = self.normal * (self.height * area) + self.along * shift[0] + self.across * shift[1];
         let sign = if self.height < 0.0 { -1.0 } else { 1.0 };
@@ -161,9 +203,9 @@ impl<'a> Face<'a> {
     pub(super) fn solid_angle(&self) -> f64 {
         let height = self.height.abs();
         let (mut within, mut sum) = (true, 0.0);
-        for (_, Line { distance, from, to, .. }) in self.lines() {
+        for (_, Side { distance, from, to, .. }) in self.sides() {
             within &= distance >= 0.0;
-            sum += Edge { height, distance, from, to, half: 1.0 }.solid_angle(from, to);
+            sum += edge_angle(height, distance, from, to);
         }
         let angle = self.turn(within) - sum;
         if self.height < 0.0 { -angle } else { angle }

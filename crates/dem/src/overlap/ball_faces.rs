@@ -45,9 +45,13 @@ pub(crate) trait Faces {
         let vertices = self.vertices();
         let (low, high) = (centre.coords.add_scalar(-reach), centre.coords.add_scalar(reach));
         self.each(|face| {
-            let corner = |i: &u32| vertices[*i as usize];
             let apart = |a: usize| {
-                face.iter().all(|i| corner(i)[a] > high[a]) || face.iter().all(|i| corner(i)[a] < low[a])
+                let first = vertices[face[0] as usize][a];
+                let ends = face[1..].iter().fold((first, first), |(least, most), i| {
+                    let x = vertices[*i as usize][a];
+                    (if x < least { x } else { least }, if x > most { x } else { most })
+                });
+                ends.0 > high[a] || ends.1 < low[a]
             };
             if !(apart(0) || apart(1) || apart(2)) {
                 visit(face);
@@ -166,10 +170,20 @@ impl BallFaces {
         let (mut near_edge, mut sums) = (false, Sums::default());
         patches.clear();
         b.near(centre, a.axes.max(), |face| {
-            corners.clear();
-            corners.extend(face.iter().map(|i| map(vertices[*i as usize])));
-            let Some(f) = Face::new(corners, plane) else { return };
-            let part = f.part(|i| {
+            let corner = |i: &u32| map(vertices[*i as usize]);
+            // Most faces are triangles; they need no memory.
+            let (mut three, mut flat);
+            let (corners, plane) = if let [p, q, r] = face {
+                (three, flat) = ([corner(p), corner(q), corner(r)], [[0.0; 2]; 3]);
+                (&mut three[..], &mut flat[..])
+            } else {
+                corners.clear();
+                corners.extend(face.iter().map(corner));
+                plane.resize(face.len(), [0.0; 2]);
+                (&mut corners[..], &mut plane[..])
+            };
+            let Some(f) = Face::new(corners) else { return };
+            let part = f.part(plane, |i| {
                 if !convex {
                     patches.cut(face[i], face[if i + 1 < face.len() { i + 1 } else { 0 }]);
                 }
@@ -209,8 +223,9 @@ impl BallFaces {
         b.each(|face| {
             corners.clear();
             corners.extend(face.iter().map(|i| map(vertices[*i as usize])));
-            angle += match Face::new(corners, plane) {
-                Some(f) => f.solid_angle(),
+            plane.resize(face.len(), [0.0; 2]);
+            angle += match Face::new(corners) {
+                Some(f) => f.solid_angle(plane),
                 None => polygon_angle(corners),
             };
         });

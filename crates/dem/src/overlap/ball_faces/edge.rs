@@ -47,7 +47,7 @@ const TWELVE: [(f64, f64); 6] = [
 ];
 /// How long an interval may be for a rule to be exact to rounding errors, squared and as a share of the squared distance of the
 /// integrand's poles. Measured: errors below 2e-15 of the integral.
-const FOR_EIGHT: f64 = 0.2 * 0.2;
+const FOR_EIGHT: f64 = 0.25 * 0.25;
 const FOR_TWELVE: f64 = 0.8 * 0.8;
 
 impl Integrals {

@@ -9,6 +9,12 @@ use std::f64::consts::TAU;
 const NEAR2: f64 = 1e-4;
 /// A corner as near as this to the foot of the centre is there; in radii, squared.
 const THERE2: f64 = 1e-60;
+/// By how much, in radii squared, an edge that one face takes to be out of reach may be within for the other.
+const SLACK: f64 = 1e-12;
+/// A triangle whose plane is as far from the centre as this, and whose corners, squared, are nearer than that, may be summed by
+/// differences of numbers of order one: its volume then is known to 1e-13 of itself.
+const FAR: f64 = 0.1;
+const WELL2: f64 = 0.995;
 
 /// What a face contributes, in units of the ball's radius.
 #[derive(Clone, Copy, Debug)]
@@ -29,27 +35,34 @@ pub(super) struct Part {
     pub(super) near_edge: bool,
 }
 
-/// A convex face whose plane the ball reaches.
+/// A convex face that the ball may reach.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face<'a> {
-    normal: Vector,
-    along: Vector,
-    across: Vector,
-    height: f64,
     corners: &'a [Vector],
-    /// The corners in the plane, from the foot of the centre.
-    plane: &'a [[f64; 2]],
+    normal: Vector,
+    /// Distance of its plane from the centre, along the normal.
+    height: f64,
+    /// Area of a triangle.
+    area: f64,
 }
 
-/// An edge: its ends, their places in the plane, its distance there from the foot of the centre, its length and direction, and where
-/// on its line the ends are.
+/// A face in the coordinates of its plane.
+struct Plane<'a> {
+    along: Vector,
+    across: Vector,
+    /// The corners, from the foot of the centre.
+    places: &'a [[f64; 2]],
+}
+
+/// An edge within reach: its ends, where on its line they are, its distance from the foot of the centre, its length and its
+/// direction in the plane.
 struct Side {
     ends: [Vector; 2],
+    from: f64,
+    to: f64,
     distance: f64,
     length: f64,
     direction: [f64; 2],
-    from: f64,
-    to: f64,
 }
 
 impl Side {
@@ -59,9 +72,8 @@ impl Side {
     /// the same for all faces around: |x|² of a corner, and the chord's distance taken from one end, however the edge is run along.
     fn within(&self, height: f64) -> Option<Edge> {
         let [p, q] = self.ends;
-        let along = (q - p) / self.length;
+        let along = (q - p) * self.length.recip();
         let (s, t) = (p.dot(&along), q.dot(&along));
-        let (rest_p, rest_q) = (1.0 - p.norm_squared(), 1.0 - q.norm_squared());
         let half2 = |end: &Vector| 1.0 - end.cross(&along).norm_squared();
         let half2 = match s.abs().total_cmp(&t.abs()) {
             Ordering::Less => half2(&p),
@@ -71,101 +83,149 @@ impl Side {
         if half2 <= 0.0 {
             return None;
         }
-        let half = half2.sqrt();
+        let (half, rest_p, rest_q) = (half2.sqrt(), 1.0 - p.norm_squared(), 1.0 - q.norm_squared());
         // The way from an end to where the line leaves the ball beyond it, and to where it leaves it behind.
         let ways = |s: f64, rest: f64| {
             let far = half + s.abs();
             if s > 0.0 { (rest / far, far) } else { (far, rest / far) }
         };
-        let (after_p, before) = ways(s, rest_p);
-        let (after, before_q) = ways(t, rest_q);
-        let edge = |from, to, length, before, after| Edge {
-            height,
-            distance: self.distance,
-            from,
-            to,
-            length,
-            before,
-            after,
-        };
-        let edge = match (rest_p > 0.0, rest_q > 0.0) {
-            (true, true) => edge(self.from, self.to, self.length, before, after),
-            (true, false) => edge(self.from, half, after_p, before, 0.0),
-            (false, true) => edge(-half, self.to, before_q, 0.0, after),
+        let (from, to, length, before, after) = match (rest_p > 0.0, rest_q > 0.0) {
             // Both ends may be on the same side of the chord.
-            (false, false) if s < 0.0 && t > 0.0 => edge(-half, half, 2.0 * half, 0.0, 0.0),
+            (false, false) if s < 0.0 && t > 0.0 => (-half, half, 2.0 * half, 0.0, 0.0),
             (false, false) => return None,
+            (true, true) => (self.from, self.to, self.length, ways(s, rest_p).1, ways(t, rest_q).0),
+            (true, false) => {
+                let (after, before) = ways(s, rest_p);
+                (self.from, half, after, before, 0.0)
+            }
+            (false, true) => {
+                let (after, before) = ways(t, rest_q);
+                (-half, self.to, before, 0.0, after)
+            }
         };
-        (edge.length > 0.0 && edge.from < edge.to).then_some(edge)
+        let edge = Edge { height, distance: self.distance, from, to, length, before, after };
+        (length > 0.0 && from < to).then_some(edge)
     }
 }
 
 impl<'a> Face<'a> {
-    /// `None` when the ball does not reach the plane of the `corners` (counter-clockwise seen from outside), or when they have none.
-    pub(super) fn new(corners: &'a [Vector], plane: &'a mut Vec<[f64; 2]>) -> Option<Self> {
+    /// The face with these `corners`, counter-clockwise seen from outside; `None` when it has no area, or when the ball is seen not to
+    /// reach it: its plane, or the inner side of one of its edges.
+    pub(super) fn new(corners: &'a [Vector]) -> Option<Self> {
+        let n = corners.len();
         let first = corners[0];
         let mut normal = Vector::zeros();
         for pair in corners[1..].windows(2) {
             normal += (pair[0] - first).cross(&(pair[1] - first));
         }
         let (size2, height) = (normal.norm_squared(), normal.dot(&first));
-        if height * height >= size2 {
+        let disc2 = size2 - height * height;
+        if disc2 <= 0.0 {
             return None;
         }
-        let scale = size2.sqrt().recip();
-        normal *= scale;
-        let edge = corners[1..].iter().map(|c| c - first).find(|e| *e != Vector::zeros())?;
-        let along = (edge - normal * normal.dot(&edge)).try_normalize(0.0)?;
-        let across = normal.cross(&along);
-        plane.clear();
-        plane.extend(corners.iter().map(|c| {
-            let p = [along.dot(c), across.dot(c)];
-            if p[0] * p[0] + p[1] * p[1] < THERE2 { [0.0; 2] } else { p }
-        }));
-        Some(Self { normal, along, across, height: (height * scale).clamp(-1.0, 1.0), corners, plane })
-    }
-
-    /// Edge by edge with its number; edges without length are left out.
-    fn sides(&self) -> impl Iterator<Item = (usize, Side)> {
-        let n = self.corners.len();
-        (0..n).filter_map(move |i| {
-            let j = if i + 1 < n { i + 1 } else { 0 };
-            let ends = [self.corners[i], self.corners[j]];
-            let length = (ends[1] - ends[0]).norm();
-            if length == 0.0 {
+        for i in 0..n {
+            let (p, q) = (&corners[i], &corners[if i + 1 < n { i + 1 } else { 0 }]);
+            let edge = q - p;
+            let side = normal.dot(&p.cross(&edge));
+            if side < 0.0 && side * side >= disc2 * edge.norm_squared() {
                 return None;
             }
-            let (p, q, scale) = (self.plane[i], self.plane[j], length.recip());
-            let direction = [(q[0] - p[0]) * scale, (q[1] - p[1]) * scale];
-            let along = |c: [f64; 2]| c[0] * direction[0] + c[1] * direction[1];
-            // Adding zero makes a positive zero of a negative one.
-            let distance = (p[0] * q[1] - p[1] * q[0]) * scale + 0.0;
-            Some((i, Side { ends, distance, length, direction, from: along(p), to: along(q) }))
+        }
+        let size = size2.sqrt();
+        let scale = size.recip();
+        let height = (height * scale).clamp(-1.0, 1.0);
+        Some(Self { corners, normal: normal * scale, height, area: 0.5 * size })
+    }
+
+    /// The face in its plane; `None` when its corners are all the same. `places` is memory for as many corners.
+    fn plane<'b>(&self, places: &'b mut [[f64; 2]]) -> Option<Plane<'b>> {
+        let first = self.corners[0];
+        let edge = self.corners[1..].iter().map(|c| c - first).find(|e| *e != Vector::zeros())?;
+        let along = edge - self.normal * self.normal.dot(&edge);
+        let along = along * along.norm_squared().sqrt().recip();
+        let across = self.normal.cross(&along);
+        for (place, c) in places.iter_mut().zip(self.corners) {
+            let p = [along.dot(c), across.dot(c)];
+            *place = if p[0] * p[0] + p[1] * p[1] < THERE2 { [0.0; 2] } else { p };
+        }
+        Some(Plane { along, across, places })
+    }
+
+    /// A triangle well inside the ball and far from the centre, by formulas that take differences of large numbers.
+    fn inside(&self, mut cut: impl FnMut(usize)) -> Option<Part> {
+        let &[p, q, r] = self.corners else { return None };
+        let (p2, q2, r2) = (p.norm_squared(), q.norm_squared(), r.norm_squared());
+        if self.height.abs() < FAR || p2.max(q2).max(r2) > WELL2 {
+            return None;
+        }
+        (0..3).for_each(&mut cut);
+        let (sum, area) = (p + q + r, self.area);
+        let second = 0.5 * area * (1.0 - (p2 + q2 + r2 + sum.norm_squared()) / 12.0);
+        let beyond = (solid_angle([p, q, r]) - self.height * area) / 3.0;
+        let moment = sum * (area / 3.0);
+        Some(Part {
+            beyond,
+            amount: beyond.abs(),
+            normal: self.normal,
+            area,
+            second,
+            moment,
+            near_edge: false,
         })
+    }
+}
+
+impl Plane<'_> {
+    /// The ends of edge `i`, with their numbers.
+    fn ends(&self, i: usize) -> ([usize; 2], [[f64; 2]; 2]) {
+        let j = if i + 1 < self.places.len() { i + 1 } else { 0 };
+        ([i, j], [self.places[i], self.places[j]])
     }
 
     /// The angle under which the foot of the centre sees the face from within, a whole turn unless it is at a corner. `within` tells
     /// whether it is on the inner side of all edges.
     fn turn(&self, within: bool) -> f64 {
-        let n = self.plane.len();
-        match self.plane.iter().position(|c| *c == [0.0; 2]) {
+        let n = self.places.len();
+        match self.places.iter().position(|c| *c == [0.0; 2]) {
             Some(i) => {
-                let (q, r) = (self.plane[(i + 1) % n], self.plane[(i + n - 1) % n]);
+                let (q, r) = (self.places[(i + 1) % n], self.places[(i + n - 1) % n]);
                 (q[0] * r[1] - q[1] * r[0]).atan2(q[0] * r[0] + q[1] * r[1]).max(0.0)
             }
             None if within => TAU,
             None => 0.0,
         }
     }
+}
 
-    /// What lies within the ball, if anything; `cut` is called with the number of every edge that does.
-    pub(super) fn part(&self, mut cut: impl FnMut(usize)) -> Option<Part> {
+impl Face<'_> {
+    /// What lies within the ball, if anything; `cut` is called with the number of every edge that does. `places` is memory for as many
+    /// corners.
+    pub(super) fn part(&self, places: &mut [[f64; 2]], mut cut: impl FnMut(usize)) -> Option<Part> {
+        if let Some(part) = self.inside(&mut cut) {
+            return Some(part);
+        }
+        let plane = self.plane(places)?;
         let height = self.height.abs();
+        let radius2 = (1.0 - height) * (1.0 + height);
         let mut sum = Integrals::default();
         let (mut within, mut near_edge, mut amount, mut reached) = (true, false, 0.0, false);
         let mut shift = [0.0; 2];
-        for (i, side) in self.sides() {
-            within &= side.distance >= 0.0;
+        for i in 0..self.corners.len() {
+            let ([from, to], [p, q]) = plane.ends(i);
+            let step = [q[0] - p[0], q[1] - p[1]];
+            let length2 = step[0] * step[0] + step[1] * step[1];
+            // Distance times length; adding zero makes a positive zero of a negative one.
+            let area = p[0] * q[1] - p[1] * q[0] + 0.0;
+            within &= area >= 0.0;
+            if area * area >= (radius2 + SLACK) * length2 {
+                continue;
+            }
+            let length = length2.sqrt();
+            let scale = length.recip();
+            let direction = [step[0] * scale, step[1] * scale];
+            let along = |c: [f64; 2]| c[0] * direction[0] + c[1] * direction[1];
+            let ends = [self.corners[from], self.corners[to]];
+            let side = Side { ends, from: along(p), to: along(q), distance: area * scale, length, direction };
             let Some(edge) = side.within(height) else { continue };
             reached = true;
             cut(i);
@@ -180,13 +240,13 @@ impl<'a> Face<'a> {
             shift[0] -= push * side.direction[1];
             shift[1] += push * side.direction[0];
         }
-        let turn = self.turn(within);
+        let turn = plane.turn(within);
         if !reached && turn == 0.0 {
             return None;
         }
-        let disc = Integrals::sector(height, (1.0 - height) * (1.0 + height), turn);
+        let disc = Integrals::sector(height, radius2, turn);
         let Integrals { area, second, beyond } = disc.minus(sum);
-        let moment = self.normal * (self.height * area) + self.along * shift[0] + self.across * shift[1];
+        let moment = self.normal * (self.height * area) + plane.along * shift[0] + plane.across * shift[1];
         let sign = if self.height < 0.0 { -1.0 } else { 1.0 };
         Some(Part {
             beyond: sign * beyond,
@@ -200,14 +260,22 @@ impl<'a> Face<'a> {
     }
 
     /// Solid angle of the face seen from the centre, from the very numbers that [`part`](Self::part) uses.
-    pub(super) fn solid_angle(&self) -> f64 {
+    pub(super) fn solid_angle(&self, places: &mut [[f64; 2]]) -> f64 {
+        let Some(plane) = self.plane(places) else { return 0.0 };
         let height = self.height.abs();
         let (mut within, mut sum) = (true, 0.0);
-        for (_, Side { distance, from, to, .. }) in self.sides() {
-            within &= distance >= 0.0;
-            sum += edge_angle(height, distance, from, to);
+        for i in 0..self.corners.len() {
+            let (_, [p, q]) = plane.ends(i);
+            let area = p[0] * q[1] - p[1] * q[0] + 0.0;
+            within &= area >= 0.0;
+            let step = [q[0] - p[0], q[1] - p[1]];
+            let length = (step[0] * step[0] + step[1] * step[1]).sqrt();
+            if length > 0.0 {
+                let along = |c: [f64; 2]| (c[0] * step[0] + c[1] * step[1]) / length;
+                sum += edge_angle(height, area / length, along(p), along(q));
+            }
         }
-        let angle = self.turn(within) - sum;
+        let angle = plane.turn(within) - sum;
         if self.height < 0.0 { -angle } else { angle }
     }
 }

@@ -2,6 +2,7 @@
 mod bodies;
 mod exact;
 mod properties;
+mod scan;
 mod speed;
 
 use super::{BallFaces, Faces, Round};

@@ -6,6 +6,8 @@ use std::f64::consts::PI;
 pub(super) struct Edge {
     /// Distance of the plane from the centre, from 0 to 1.
     pub(super) height: f64,
+    /// Square of the disc's radius, 1 − height².
+    pub(super) disc2: f64,
     /// Distance of the edge's line from w, positive where the face lies on the side of w.
     pub(super) distance: f64,
     /// Where the piece begins and ends, along the line from its point nearest to w.
@@ -80,11 +82,6 @@ impl Edge {
         self.height * self.height + self.nearest2()
     }
 
-    /// Square of the disc's radius, as the ends of the edge have it.
-    fn radius2(&self) -> f64 {
-        self.distance * self.distance + self.from * self.from + self.before * (self.length + self.after)
-    }
-
     /// The part of the disc beyond the piece. With t along the edge, u² = height² + distance² + t² and p = 1 − u² the integrals
     /// are, over distance dt/(distance² + t²): p/2, p²/8 and height (1 − u)²(2 + u)/(6u).
     ///
@@ -133,7 +130,7 @@ impl Edge {
         let Self { height: h, distance: d, from, to, length, .. } = *self;
         let d2 = d * d;
         let angle = (d * length).atan2(d2 + from * to);
-        let a2 = self.radius2();
+        let a2 = self.disc2;
         let sector = Integrals::sector(h, a2, angle);
         let flat = d * length;
         let triangle = Integrals {
@@ -155,7 +152,7 @@ impl Edge {
     /// distance/6 ∫ [2/(u(u + height)) − height] dt: what the sector's volume has more than that of the part beyond.
     fn rest<const N: usize>(&self, rule: &[(f64, f64); N]) -> f64 {
         let h = self.height;
-        let (h2, l2, a2) = (h * h, h * h + self.distance * self.distance, self.radius2());
+        let (h2, l2, a2) = (h * h, h * h + self.distance * self.distance, self.disc2);
         let eta = a2 / (1.0 + h);
         let half = 0.5 * self.length;
         let (before, after) = (self.before, self.after);

@@ -66,11 +66,12 @@ struct Side {
 }
 
 impl Side {
-    /// What the ball cuts out of it, on a plane at `height`.
+    /// What the ball cuts out of it, on a plane at `height`. `disc2` is the squared radius of the disc there, if the face has its centre
+    /// and so takes sectors from the whole disc; else it is what the edge makes of it.
     ///
     /// A shallow contact hangs on the small differences between the radius and the distances of corners and edges. These are
     /// the same for all faces around: |x|² of a corner, and the chord's distance taken from one end, however the edge is run along.
-    fn within(&self, height: f64) -> Option<Edge> {
+    fn within(&self, height: f64, disc2: Option<f64>) -> Option<Edge> {
         let [p, q] = self.ends;
         let along = (q - p) * self.length.recip();
         let (s, t) = (p.dot(&along), q.dot(&along));
@@ -103,7 +104,9 @@ impl Side {
                 (-half, self.to, before, 0.0, after)
             }
         };
-        let edge = Edge { height, distance: self.distance, from, to, length, before, after };
+        let disc2 =
+            disc2.unwrap_or_else(|| self.distance * self.distance + from * from + before * (length + after));
+        let edge = Edge { height, disc2, distance: self.distance, from, to, length, before, after };
         (length > 0.0 && from < to).then_some(edge)
     }
 }
@@ -182,19 +185,24 @@ impl Plane<'_> {
         ([i, j], [self.places[i], self.places[j]])
     }
 
-    /// The angle under which the foot of the centre sees the face from within, a whole turn unless it is at a corner. `within` tells
-    /// whether it is on the inner side of all edges.
-    fn turn(&self, within: bool) -> f64 {
+    /// The angle under which the foot of the centre sees the face from within: a whole turn, less at a corner, zero outside.
+    fn turn(&self) -> f64 {
         let n = self.places.len();
-        match self.places.iter().position(|c| *c == [0.0; 2]) {
-            Some(i) => {
-                let (q, r) = (self.places[(i + 1) % n], self.places[(i + n - 1) % n]);
-                (q[0] * r[1] - q[1] * r[0]).atan2(q[0] * r[0] + q[1] * r[1]).max(0.0)
-            }
-            None if within => TAU,
-            None => 0.0,
+        if let Some(i) = self.places.iter().position(|c| *c == [0.0; 2]) {
+            let (q, r) = (self.places[(i + 1) % n], self.places[(i + n - 1) % n]);
+            return cross(q, r).atan2(q[0] * r[0] + q[1] * r[1]).max(0.0);
         }
+        let within = (0..n).all(|i| {
+            let (_, [p, q]) = self.ends(i);
+            cross(p, q) >= 0.0
+        });
+        if within { TAU } else { 0.0 }
     }
+}
+
+/// p × q, with no negative zero.
+fn cross(p: [f64; 2], q: [f64; 2]) -> f64 {
+    p[0] * q[1] - p[1] * q[0] + 0.0
 }
 
 impl Face<'_> {
@@ -208,25 +216,27 @@ impl Face<'_> {
         let height = self.height.abs();
         let radius2 = (1.0 - height) * (1.0 + height);
         let mut sum = Integrals::default();
-        let (mut within, mut near_edge, mut amount, mut reached) = (true, false, 0.0, false);
+        let (mut near_edge, mut amount, mut reached) = (false, 0.0, false);
+        let turn = plane.turn();
+        let disc2 = (turn > 0.0).then_some(radius2);
         let mut shift = [0.0; 2];
         for i in 0..self.corners.len() {
             let ([from, to], [p, q]) = plane.ends(i);
             let step = [q[0] - p[0], q[1] - p[1]];
             let length2 = step[0] * step[0] + step[1] * step[1];
-            // Distance times length; adding zero makes a positive zero of a negative one.
-            let area = p[0] * q[1] - p[1] * q[0] + 0.0;
-            within &= area >= 0.0;
+            // Distance times length.
+            let area = cross(p, q);
             if area * area >= (radius2 + SLACK) * length2 {
                 continue;
             }
-            let length = length2.sqrt();
+            let ends = [self.corners[from], self.corners[to]];
+            // In the plane it is the same but for what far corners lose there.
+            let length = (ends[1] - ends[0]).norm();
             let scale = length.recip();
             let direction = [step[0] * scale, step[1] * scale];
             let along = |c: [f64; 2]| c[0] * direction[0] + c[1] * direction[1];
-            let ends = [self.corners[from], self.corners[to]];
             let side = Side { ends, from: along(p), to: along(q), distance: area * scale, length, direction };
-            let Some(edge) = side.within(height) else { continue };
+            let Some(edge) = side.within(height, disc2) else { continue };
             reached = true;
             cut(i);
             near_edge |= edge.centre2() < NEAR2;
@@ -240,7 +250,6 @@ impl Face<'_> {
             shift[0] -= push * side.direction[1];
             shift[1] += push * side.direction[0];
         }
-        let turn = plane.turn(within);
         if !reached && turn == 0.0 {
             return None;
         }
@@ -263,19 +272,17 @@ impl Face<'_> {
     pub(super) fn solid_angle(&self, places: &mut [[f64; 2]]) -> f64 {
         let Some(plane) = self.plane(places) else { return 0.0 };
         let height = self.height.abs();
-        let (mut within, mut sum) = (true, 0.0);
+        let mut sum = 0.0;
         for i in 0..self.corners.len() {
             let (_, [p, q]) = plane.ends(i);
-            let area = p[0] * q[1] - p[1] * q[0] + 0.0;
-            within &= area >= 0.0;
             let step = [q[0] - p[0], q[1] - p[1]];
             let length = (step[0] * step[0] + step[1] * step[1]).sqrt();
             if length > 0.0 {
                 let along = |c: [f64; 2]| (c[0] * step[0] + c[1] * step[1]) / length;
-                sum += edge_angle(height, area / length, along(p), along(q));
+                sum += edge_angle(height, cross(p, q) / length, along(p), along(q));
             }
         }
-        let angle = plane.turn(within) - sum;
+        let angle = plane.turn() - sum;
         if self.height < 0.0 { -angle } else { angle }
     }
 }

@@ -70,3 +70,183 @@ fn centre_on_the_surface() {
         }
     }
 }
+
+/// One within the other: all of the smaller one, and nothing changes when they move.
+#[test]
+fn containment() {
+    for pose in [origin(), somewhere()] {
+        let inner = Round::ball(0.4, pose.to_world(Point::new(0.3, -0.5, 0.2)));
+        let outer = Round::ball(1e3, pose.to_world(Point::new(500.0, 3.0, -7.0)));
+        let egg = Pose { position: inner.centre, ..somewhere() };
+        for (a, v, x) in [
+            (inner, WHOLE * 0.064, inner.centre),
+            (Round::ellipsoid(Vector::new(0.3, 0.2, 0.1), &egg), WHOLE * 0.006, inner.centre),
+            (outer, 8.0, pose.position),
+            (Round::ellipsoid(Vector::new(3.0, 4.0, 2.5), &pose), 8.0, pose.position),
+        ] {
+            let hollow =
+                cuboid([-9.0; 3], [9.0; 3]).with(&cuboid([-8.0; 3], [8.0; 3]), true).with(&cube(), false);
+            for o in [one(&a, &cube(), &pose), one(&a, &quads([-1.0; 3], [1.0; 3]), &pose)] {
+                assert_relative_eq!(o.volume, v, max_relative = 1e-13);
+                assert_relative_eq!(o.centroid, x, epsilon = 1e-12);
+                assert_eq!((o.gradient, o.moment), (Vector::zeros(), Vector::zeros()));
+            }
+            if v < 5.0 {
+                assert_relative_eq!(volume(&a, &hollow, &pose), v, max_relative = 1e-13);
+            }
+        }
+        // Sharp ends poke out of the ball.
+        let a = Round::ball(1.5, pose.position);
+        assert!(volume(&a, &cube(), &pose) < 8.0);
+        assert_relative_eq!(
+            volume(&Round::ball(1.74, pose.position), &cube(), &pose),
+            8.0,
+            max_relative = 1e-14
+        );
+    }
+}
+
+#[test]
+fn apart_and_touching() {
+    let small = cuboid([-9.0; 3], [9.0; 3]).with(&cuboid([-2.0; 3], [2.0; 3]), true);
+    for (a, b) in [
+        (ball(1.0, [2.0, 0.0, 0.0]), cube()),    // On a face,
+        (ball(1.0, [1.6, 1.8, 0.0]), cube()),    // an edge,
+        (ball(0.75, [1.5, 1.5, 1.25]), cube()),  // a corner,
+        (ball(2.0, [0.0; 3]), small.clone()),    // from within a hole;
+        (ball(1.0, [0.0, 0.0, 0.5]), small),     // in it,
+        (ball(1.0, [1.5, 1.9, 1.7]), cube()),    // near a corner,
+        (ball(0.1, [1.5, 1.5, 0.5]), l_block()), // in the corner of an L,
+        (ball(0.5, [1.5, 1.5, 0.5]), l_block()), // and on both its sides.
+    ] {
+        assert_eq!(regions(&a, &b, &origin()), []);
+        let b = Body { convex: false, ..b };
+        assert_eq!(regions(&a, &b, &origin()), []);
+    }
+    // A ball that fills the cube just so.
+    assert_relative_eq!(volume(&ball(1.0, [0.0; 3]), &cube(), &origin()), WHOLE, max_relative = 1e-14);
+}
+
+/// Sizes from 1e-9 to 1e6: volumes go with the cube of it, without NaN.
+#[test]
+fn scales() {
+    let at = |s: f64| Pose { position: Point::from(somewhere().position.coords * s), ..somewhere() };
+    let place = [1.1, 0.9, 0.3]; // In the frame of the body.
+    for shape in [cube(), l_block(), icosphere(1.1, 2)] {
+        let a = |s: f64| Round::ball(0.6 * s, at(s).to_world(Point::from(place) * s));
+        let plain = one(&a(1.0), &shape, &at(1.0));
+        for s in [1e-9, 3e-5, 7e2, 1e6] {
+            let o = one(&a(s), &shape.clone().mapped(|x| x * s), &at(s));
+            assert_relative_eq!(o.volume, s.powi(3) * plain.volume, max_relative = 1e-12);
+            assert_relative_eq!(o.gradient, s * s * plain.gradient, max_relative = 1e-12);
+            assert_relative_eq!(o.moment, s.powi(3) * plain.moment, max_relative = 1e-10);
+            assert_relative_eq!(o.centroid.coords, s * plain.centroid.coords, max_relative = 1e-12);
+        }
+    }
+    // A ball far bigger than the body cuts it like a plane: here the cube in half, but for its own bulge; and the
+    // other way around.
+    for (r, tolerance) in [(1e3, 1e-9), (1e6, 1e-3)] {
+        let half = one(&ball(r, [r, 0.0, 0.0]), &cube(), &origin());
+        assert_relative_eq!(half.volume, 4.0 - 4.0 / 3.0 / r, max_relative = 1e-9);
+        // The slice that the bulge takes, (y² + z²)/2r thick, is at x ≈ 0.
+        assert_relative_eq!(
+            half.centroid,
+            Point::new(2.0 / half.volume, 0.0, 0.0),
+            epsilon = tolerance + 0.2 / (r * r)
+        );
+    }
+    let speck = one(&ball(1e-6, [1.0 + 0.5e-6, 0.3, 0.2]), &cube(), &origin());
+    assert_relative_eq!(speck.volume, cap(1e-6, 0.5e-6), max_relative = 1e-9);
+}
+
+/// A body wholly in the ball but for one corner, and holes: what the faces beyond cut off is taken from the whole.
+#[test]
+fn holes_and_regions() {
+    // A plate that the ball sticks through on both sides: one region, two caps short of the ball.
+    let plate = cuboid([-9.0, -9.0, -0.3], [9.0, 9.0, 0.2]);
+    for z in [0.0, 0.5, -0.25, 0.9] {
+        let cut = |at: f64| cap(1.0, (1.0 + at - z).clamp(0.0, 2.0));
+        let o = one(&ball(1.0, [0.5, 0.2, z]), &Body { convex: false, ..plate.clone() }, &origin());
+        assert_relative_eq!(o.volume, cut(0.2) - cut(-0.3), max_relative = 1e-13);
+    }
+    // A hollow box, a cube in it: seven eighths of the ball are the wall, and the cube a region of its own.
+    let shell = cuboid([-9.0; 3], [9.0; 3]).with(&cuboid([-1.0; 3], [1.0; 3]), true);
+    let a = ball(0.5, [1.1, 0.0, 0.0]);
+    assert_relative_eq!(one(&a, &shell, &origin()).volume, WHOLE / 8.0 - cap(0.5, 0.4), max_relative = 1e-13);
+    let a = ball(0.5, [0.9, 0.0, 0.0]);
+    assert_relative_eq!(one(&a, &shell, &origin()).volume, cap(0.5, 0.4), max_relative = 1e-13);
+    for x in [0.85, 0.95, 1.05] {
+        // Wall from 1 on, a block up to 0.8.
+        let both = shell.clone().with(&cuboid([-0.8; 3], [0.8; 3]), false);
+        let all = regions(&ball(0.5, [x, 0.0, 0.0]), &both, &origin());
+        assert_eq!(all.len(), 2);
+        for o in &all {
+            let depth = if o.centroid.x < 0.9 { 1.3 - x } else { x - 0.5 };
+            assert_relative_eq!(o.volume, cap(0.5, depth), max_relative = 1e-13);
+        }
+    }
+    // Across the slot of a U it touches both legs; three regions with a bar in the slot.
+    let o = regions(&ball(0.6, [1.5, 1.7, 0.5]), &u_block(), &origin());
+    assert_eq!(o.len(), 2);
+    for o in &o {
+        let side = (o.centroid.x - 1.5).signum();
+        assert_relative_eq!(o.normal.x, -side, epsilon = 0.1);
+        assert_relative_eq!(
+            o.volume,
+            volume(&ball(0.6, [1.5, 1.7, 0.5]), &leg(side), &origin()),
+            max_relative = 1e-12
+        );
+    }
+    // Where it rests on the ground as well it is one region.
+    assert_eq!(regions(&ball(0.72, [1.5, 1.5, 0.5]), &u_block(), &origin()).len(), 1);
+    let bar = u_block().with(&cuboid([1.4, 1.2, -3.0], [1.6, 1.9, 3.0]), false);
+    assert_eq!(regions(&ball(0.55, [1.5, 1.65, 0.5]), &bar, &origin()).len(), 3);
+}
+
+fn leg(side: f64) -> Body {
+    let x = if side < 0.0 { 0.0 } else { 2.0 };
+    cuboid([x, 0.0, 0.0], [x + 1.0, 2.0, 1.0])
+}
+
+/// Depth as a power of 1/2, volume, gradient, centroid.
+type Known = [(i32, f64, [f64; 3], [f64; 3]); 4];
+
+/// Balls of radius 1, depth 1/8 to 1e-10 in a corner or edge at the origin. The numbers of the bodies are exact; what is known
+/// is the sum over cones from the centre in 120 digits. A volume can be known to ε/depth, the centroid to ε.
+#[test]
+#[rustfmt::skip]
+fn shallow_corners_and_edges() {
+    let corner: Known = [
+        (3, 0.00087007086155968601, [2.3019675274595829e-6, -6.7277430576346141e-5, -0.020560163682168238], [7.0786218064426084e-5, -0.0024689490278963727, -0.092275429365054534]),
+        (10, 4.3530614253711345e-10, [1.1780329988819805e-14, -3.6252167475616862e-11, -1.3370830270823417e-6], [5.2888894596387696e-9, -2.0336192632014139e-5, -0.00073232466834034093]),
+        (20, 4.0557176597940605e-19, [1.0743957658598215e-26, -3.3797625900841644e-20, -1.2758182947833597e-12], [5.0527396658156156e-15, -1.9868206470992469e-8, -7.1525564453944631e-7]),
+        (33, 7.3773103169942559e-31, [2.3856443181273479e-42, -6.1477585970230545e-32, -1.9011183926059249e-20], [7.529181751793152e-23, -2.4253192046018321e-12, -8.73114913688188e-11]),
+    ];
+    let edge: Known = [
+        (3, 0.0086729999670169139, [0.0, -0.0014615756153920337, -0.16975268718386319], [0.0, -0.0061940876964519978, -0.070068188121959419]),
+        (10, 4.9430031771974369e-8, [0.0, -9.8706471553876429e-9, -0.00012651809007871205], [0.0, -5.5735627052000924e-5, -0.00055794153161025136]),
+        (20, 1.4737928060049436e-15, [0.0, -2.9475811304235119e-16, -3.8634587333239914e-9], [0.0, -5.4495610333642329e-8, -5.4495666231394234e-7]),
+        (33, 2.4263964633585416e-25, [0.0, -4.8527929258164083e-26, -5.2106467285155383e-15], [0.0, -6.6523041034293438e-12, -6.6523041042622864e-11]),
+    ];
+    let flat: Known = [
+        (3, 0.038847928556623857, [0.0, 0.011433680285573099, -0.63912342491472918], [0.0, 0.015789104061496668, -0.049216943208177738]),
+        (10, 7.3447669106415903e-7, [0.0, 6.1185942505952926e-6, -0.0018201002691286486], [0.0, 0.002544045565665181, -0.0005312694081088242]),
+        (20, 2.4113779870341648e-14, [0.0, 2.8922923394072965e-13, -6.320984983629343e-8], [0.0, 3.2686292268380207e-6, -5.4492114263253912e-7]),
+        (33, 3.9704668831534637e-24, [0.0, 4.7645599860159901e-23, -8.5265126574481469e-14], [0.0, 3.9913822969650447e-10, -6.6523040513109368e-11]),
+    ];
+    let ridge = [[-2.0, 0.0, 0.0], [2.0, 0.0, 0.0]];
+    for (body, known) in [
+        (tetrahedron([[0.0; 3], [3.0, 0.25, -3.0], [-2.0, 2.5, -3.0], [-1.0, -3.0, -3.0]]), corner),
+        (tetrahedron([ridge[0], ridge[1], [0.25, 3.0, -3.0], [0.5, -3.0, -2.5]]), edge),
+        (tetrahedron([ridge[0], ridge[1], [0.25, 3.0, -0.125], [0.5, -3.0, -0.25]]), flat),
+    ] {
+        for (power, volume, gradient, centroid) in known {
+            let depth = 0.5f64.powi(power);
+            let o = one(&ball(1.0, [0.0, 0.0, 1.0 - depth]), &body, &origin());
+            let tolerance = 1e-14 + 3.0 * f64::EPSILON / depth;
+            assert_relative_eq!(o.volume, volume, max_relative = tolerance);
+            assert_relative_eq!(o.gradient, Vector::from(gradient), epsilon = tolerance * o.area());
+            assert_relative_eq!(o.centroid, Point::from(centroid), epsilon = 1e-14);
+        }
+    }
+}

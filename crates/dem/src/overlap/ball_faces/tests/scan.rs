@@ -40,3 +40,23 @@ fn fineonly() {
     super::speed::measure("sphere, 1280 triangles", &icosphere(1.0, 3), 0.5, 0.05);
     super::speed::picked();
 }
+#[test]
+#[ignore]
+fn debug_edge() {
+    use super::super::face::Face;
+    let b = tetrahedron([[-2.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.25, 3.0, -3.0], [0.5, -3.0, -2.5]]);
+    let c = Point::new(0.0, 0.0, 1.0 - 0.5f64.powi(10));
+    for f in &b.faces {
+        let x = f.map(|i| b.vertices[i as usize] - c);
+        if let Some(face) = Face::new(&x) {
+            println!("{f:?} {:?}", face.part(&mut [[0.0; 2]; 3], |i| println!("cut {i}")));
+        }
+    }
+    let b = cube();
+    for f in &b.faces {
+        let x = f.map(|i| (b.vertices[i as usize] - Point::new(1e6, 0.0, 0.0)) * 1e-6);
+        if let Some(face) = Face::new(&x) {
+            println!("{f:?} {:?}", face.part(&mut [[0.0; 2]; 3], |i| println!("cut {i}")));
+        }
+    }
+}

@@ -183,9 +183,9 @@ impl BallFaces {
                 (&mut corners[..], &mut plane[..])
             };
             let Some(f) = Face::new(corners) else { return };
-            let part = f.part(plane, |i| {
+            let part = f.part(plane, |i, length| {
                 if !convex {
-                    patches.cut(face[i], face[if i + 1 < face.len() { i + 1 } else { 0 }]);
+                    patches.cut(face[i], face[if i + 1 < face.len() { i + 1 } else { 0 }], length);
                 }
             });
             if let Some(part) = part {

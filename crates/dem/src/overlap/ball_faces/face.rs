@@ -126,13 +126,14 @@ impl<'a> Face<'a> {
         if disc2 <= 0.0 {
             return None;
         }
-        for i in 0..n {
+        let outside = |i: usize| {
             let (p, q) = (&corners[i], &corners[if i + 1 < n { i + 1 } else { 0 }]);
             let edge = q - p;
             let side = normal.dot(&p.cross(&edge));
-            if side < 0.0 && side * side >= disc2 * edge.norm_squared() {
-                return None;
-            }
+            side < 0.0 && side * side >= disc2 * edge.norm_squared()
+        };
+        if corners.iter().all(|c| c.norm_squared() >= 1.0) && (0..n).any(outside) {
+            return None;
         }
         let size = size2.sqrt();
         let scale = size.recip();
@@ -155,13 +156,13 @@ impl<'a> Face<'a> {
     }
 
     /// A triangle well inside the ball and far from the centre, by formulas that take differences of large numbers.
-    fn inside(&self, mut cut: impl FnMut(usize)) -> Option<Part> {
+    fn inside(&self, cut: &mut impl FnMut(usize, f64)) -> Option<Part> {
         let &[p, q, r] = self.corners else { return None };
         let (p2, q2, r2) = (p.norm_squared(), q.norm_squared(), r.norm_squared());
         if self.height.abs() < FAR || p2.max(q2).max(r2) > WELL2 {
             return None;
         }
-        (0..3).for_each(&mut cut);
+        (0..3).for_each(|i| cut(i, 1.0));
         let (sum, area) = (p + q + r, self.area);
         let second = 0.5 * area * (1.0 - (p2 + q2 + r2 + sum.norm_squared()) / 12.0);
         let beyond = (solid_angle([p, q, r]) - self.height * area) / 3.0;
@@ -206,9 +207,9 @@ fn cross(p: [f64; 2], q: [f64; 2]) -> f64 {
 }
 
 impl Face<'_> {
-    /// What lies within the ball, if anything; `cut` is called with the number of every edge that does. `places` is memory for as many
+    /// What lies within the ball, if anything; `cut` is called with the number of every edge that does and how much of it. `places` is memory for as many
     /// corners.
-    pub(super) fn part(&self, places: &mut [[f64; 2]], mut cut: impl FnMut(usize)) -> Option<Part> {
+    pub(super) fn part(&self, places: &mut [[f64; 2]], mut cut: impl FnMut(usize, f64)) -> Option<Part> {
         if let Some(part) = self.inside(&mut cut) {
             return Some(part);
         }
@@ -238,7 +239,7 @@ impl Face<'_> {
             let side = Side { ends, from: along(p), to: along(q), distance: area * scale, length, direction };
             let Some(edge) = side.within(height, disc2) else { continue };
             reached = true;
-            cut(i);
+            cut(i, edge.length);
             near_edge |= edge.centre2() < NEAR2;
             let beyond = edge.beyond();
             sum.area += beyond.area;

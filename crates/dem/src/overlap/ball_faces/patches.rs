@@ -2,6 +2,9 @@
 use super::face::Part;
 use interfaces::Vector;
 
+/// Rounding errors may hide a shorter edge, in radii, from one of its faces.
+const SHORT: f64 = 1e-5;
+
 /// The faces that a ball reaches: what they contribute, their corners, and the edges that the ball cuts.
 ///
 /// Faces that share an edge within the ball form a sheet, which parts the ball in two: the side of the centre and the one beyond.
@@ -14,7 +17,8 @@ pub(super) struct Patches {
     corners: Vec<Vector>,
     /// Where the corners of each part end.
     ends: Vec<usize>,
-    edges: Vec<(u64, u32)>,
+    /// The numbers of an edge's vertices in one, the part, and whether the edge is long enough for the face beyond to know of it.
+    edges: Vec<(u64, u32, bool)>,
     /// A part of the same sheet; the first of a sheet has itself.
     root: Vec<u32>,
     sheets: Vec<Sheet>,
@@ -39,9 +43,10 @@ impl Patches {
         self.ends.clear();
         self.edges.clear();
     }
-    /// The next part's edge from vertex `p` to `q` is within the ball.
-    pub(super) fn cut(&mut self, p: u32, q: u32) {
-        self.edges.push((u64::from(p.min(q)) << 32 | u64::from(p.max(q)), self.parts.len() as u32));
+    /// `length` of the next part's edge from vertex `p` to `q` is within the ball.
+    pub(super) fn cut(&mut self, p: u32, q: u32, length: f64) {
+        let edge = u64::from(p.min(q)) << 32 | u64::from(p.max(q));
+        self.edges.push((edge, self.parts.len() as u32, length > SHORT));
     }
     /// The next part.
     pub(super) fn push(&mut self, part: Part, corners: &[Vector]) {
@@ -50,22 +55,29 @@ impl Patches {
         self.ends.push(self.corners.len());
     }
 
-    /// Joins the parts along their edges; whether they form more than one sheet.
+    /// Joins the parts along their edges; whether they form more than one sheet. They are taken for one where the mesh does
+    /// not tell what hangs together, since an edge has a face on one side only (corners that are stored once per face).
     pub(super) fn several(&mut self) -> bool {
         let n = self.parts.len();
         self.root.clear();
         self.root.extend(0..n as u32);
         self.edges.sort_unstable();
-        let mut sheets = n;
-        for i in 1..self.edges.len() {
-            let (one, two) = (self.edges[i - 1], self.edges[i]);
-            if one.0 == two.0 {
-                let (a, b) = (self.set(one.1), self.set(two.1));
+        let (mut sheets, mut i) = (n, 0);
+        while i < self.edges.len() {
+            let (edge, first, long) = self.edges[i];
+            let mut faces = 1;
+            while let Some(&(_, part, _)) = self.edges.get(i + faces).filter(|e| e.0 == edge) {
+                let (a, b) = (self.set(first), self.set(part));
                 if a != b {
                     self.root[a.max(b) as usize] = a.min(b);
                     sheets -= 1;
                 }
+                faces += 1;
             }
+            if faces == 1 && long {
+                return false;
+            }
+            i += faces;
         }
         sheets > 1
     }

@@ -197,6 +197,14 @@ fn holes_and_regions() {
             max_relative = 1e-12
         );
     }
+    // Without knowing which corners are the same it is all one.
+    let loose = |b: &Body| Body {
+        vertices: b.faces.iter().flatten().map(|i| b.vertices[*i as usize]).collect(),
+        faces: (0..b.faces.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
+        convex: false,
+    };
+    let all = one(&ball(0.6, [1.5, 1.7, 0.5]), &loose(&u_block()), &origin());
+    assert_relative_eq!(all.volume, o[0].volume + o[1].volume, max_relative = 1e-13);
     // Where it rests on the ground as well it is one region.
     assert_eq!(regions(&ball(0.72, [1.5, 1.5, 0.5]), &u_block(), &origin()).len(), 1);
     let bar = u_block().with(&cuboid([1.4, 1.2, -3.0], [1.6, 1.9, 3.0]), false);
@@ -248,5 +256,36 @@ fn shallow_corners_and_edges() {
             assert_relative_eq!(o.gradient, Vector::from(gradient), epsilon = tolerance * o.area());
             assert_relative_eq!(o.centroid, Point::from(centroid), epsilon = 1e-14);
         }
+    }
+}
+
+/// Volume and centroid by points on a lattice that fills the ball evenly.
+#[test]
+fn by_counting() {
+    let (l, egg) = (l_block(), Round::ellipsoid(Vector::new(0.9, 0.7, 0.5), &somewhere()));
+    for a in [
+        ball(0.7, [1.1, 1.2, 0.8]),
+        ball(0.9, [0.2, -0.3, 0.4]),
+        Round { centre: Point::new(1.0, 0.9, 0.9), ..egg },
+    ] {
+        let o = one(&a, &l, &origin());
+        let (n, mut count, mut sum) = (400_000, 0, Vector::zeros());
+        // Roberts' sequence of low discrepancy; radius and height make equal volumes.
+        let g: f64 = 1.220_744_084_605_759_5;
+        for i in 1..=n {
+            let [u, v, w] = [1, 2, 3].map(|k| (f64::from(i) / g.powi(k)).fract());
+            let (z, phi) = (2.0 * v - 1.0, 2.0 * PI * w);
+            let flat = (1.0 - z * z).sqrt();
+            let y = Vector::new(flat * phi.cos(), flat * phi.sin(), z) * u.cbrt();
+            let x = a.centre + a.orientation * y.component_mul(&a.axes);
+            let inside = |low: [f64; 3], high: [f64; 3]| (0..3).all(|k| low[k] < x[k] && x[k] < high[k]);
+            if inside([0.0; 3], [2.0, 1.0, 1.0]) || inside([0.0; 3], [1.0, 2.0, 1.0]) {
+                count += 1;
+                sum += x.coords;
+            }
+        }
+        let volume = WHOLE * a.axes.product() * f64::from(count) / f64::from(n);
+        assert_relative_eq!(o.volume, volume, max_relative = 1e-3);
+        assert_relative_eq!(o.centroid.coords, sum / f64::from(count), epsilon = 1e-3);
     }
 }

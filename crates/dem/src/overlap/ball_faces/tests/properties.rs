@@ -134,8 +134,8 @@ proptest! {
         };
         let push = slope(&|x| shaken(&a, way * x, Vector::zeros(), o.centroid));
         let turn = slope(&|x| shaken(&a, Vector::zeros(), way * x, o.centroid));
-        prop_assert!((push - o.rate(way, Vector::zeros())).abs() < 1e-5, "{} {}", push, o.gradient.dot(&way));
-        prop_assert!((turn - o.rate(Vector::zeros(), way)).abs() < 1e-5, "{} {}", turn, o.moment.dot(&way));
+        prop_assert!((push - o.rate(way, Vector::zeros())).abs() < 1e-6, "{} {}", push, o.gradient.dot(&way));
+        prop_assert!((turn - o.rate(Vector::zeros(), way)).abs() < 1e-6, "{} {}", turn, o.moment.dot(&way));
     }
 
     /// V^⅓ is concave along any way (Brunn and Minkowski).

@@ -49,14 +49,19 @@ fn debug_edge() {
     for f in &b.faces {
         let x = f.map(|i| b.vertices[i as usize] - c);
         if let Some(face) = Face::new(&x) {
-            println!("{f:?} {:?}", face.part(&mut [[0.0; 2]; 3], |i| println!("cut {i}")));
+            println!("{f:?} {:?}", face.part(&mut [[0.0; 2]; 3], |i, _| println!("cut {i}")));
         }
     }
     let b = cube();
     for f in &b.faces {
         let x = f.map(|i| (b.vertices[i as usize] - Point::new(1e6, 0.0, 0.0)) * 1e-6);
         if let Some(face) = Face::new(&x) {
-            println!("{f:?} {:?}", face.part(&mut [[0.0; 2]; 3], |i| println!("cut {i}")));
+            println!("{f:?} {:?}", face.part(&mut [[0.0; 2]; 3], |i, _| println!("cut {i}")));
         }
     }
+}
+#[test]
+#[ignore]
+fn pickedonly() {
+    super::speed::picked();
 }

@@ -31,6 +31,8 @@ use std::f64::consts::PI;
 
 /// Volume of the unit ball.
 const WHOLE: f64 = 4.0 / 3.0 * PI;
+/// The most, in radii cubed, that rounding errors make of a mere touch, where not all faces around an edge or corner agree on it.
+const TOUCH: f64 = 1e-28;
 /// As a share of the amounts that make it, a sum of which not even the sign is known.
 const NOTHING: f64 = 1e-13;
 
@@ -196,7 +198,7 @@ impl BallFaces {
                 }
             }
         });
-        if sums.amount == 0.0 {
+        if sums.amount < TOUCH {
             if b.holds(centre) {
                 out.push(contained(WHOLE * a.axes.product(), a.centre, apart));
             }

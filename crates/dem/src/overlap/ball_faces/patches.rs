@@ -1,5 +1,5 @@
 //! Which faces within the ball hang together, and which of these sheets bound the same region.
-use super::face::Part;
+use super::{TOUCH, face::Part};
 use interfaces::Vector;
 
 /// Rounding errors may hide a shorter edge, in radii, from one of its faces.
@@ -27,10 +27,11 @@ pub(super) struct Patches {
 #[derive(Clone, Copy, Debug)]
 struct Sheet {
     root: u32,
-    /// The largest part, its area and Σ of what lies beyond.
+    /// The largest part, its area, Σ of what lies beyond and of the amounts that it is made of.
     largest: u32,
     area: f64,
     beyond: f64,
+    amount: f64,
     /// Behind how many others it lies, and the first part of the entry whose region it bounds; `None`: the one around the centre.
     depth: usize,
     region: Option<u32>,
@@ -119,11 +120,20 @@ impl Patches {
             let root = self.set(i);
             let part = &self.parts[i as usize];
             let at = self.sheets.iter().position(|s| s.root == root).unwrap_or_else(|| {
-                self.sheets.push(Sheet { root, largest: i, area: 0.0, beyond: 0.0, depth: 0, region: None });
+                self.sheets.push(Sheet {
+                    root,
+                    largest: i,
+                    area: 0.0,
+                    beyond: 0.0,
+                    amount: 0.0,
+                    depth: 0,
+                    region: None,
+                });
                 self.sheets.len() - 1
             });
             let sheet = &mut self.sheets[at];
             sheet.beyond += part.beyond;
+            sheet.amount += part.amount;
             if part.area > sheet.area {
                 (sheet.area, sheet.largest) = (part.area, i);
             }
@@ -140,7 +150,8 @@ impl Patches {
         }
         for j in 0..n {
             let sheet = self.sheets[j];
-            self.sheets[j].region = if sheet.beyond < 0.0 {
+            // What looks like an exit may be a mere touch, which has no region.
+            self.sheets[j].region = if sheet.beyond < 0.0 || sheet.amount < TOUCH {
                 Some(sheet.root)
             } else {
                 let around = (0..n).filter(|&k| self.sheets[k].beyond < 0.0 && behind(self, j, k));

@@ -7,10 +7,6 @@ use std::f64::consts::TAU;
 /// Where the centre is as near as this to an edge, the solid angles of the faces there are no longer known to rounding errors, one
 /// by one; in radii, squared.
 const NEAR2: f64 = 1e-4;
-/// A corner as near as this to the foot of the centre is there; in radii, squared.
-const THERE2: f64 = 1e-60;
-/// By how much, in radii squared, an edge that one face takes to be out of reach may be within for the other.
-const SLACK: f64 = 1e-12;
 /// A triangle whose plane is as far from the centre as this, and whose corners, squared, are nearer than that, may be summed by
 /// differences of numbers of order one: its volume then is known to 1e-13 of itself.
 const FAR: f64 = 0.1;
@@ -149,8 +145,7 @@ impl<'a> Face<'a> {
         let along = along * along.norm_squared().sqrt().recip();
         let across = self.normal.cross(&along);
         for (place, c) in places.iter_mut().zip(self.corners) {
-            let p = [along.dot(c), across.dot(c)];
-            *place = if p[0] * p[0] + p[1] * p[1] < THERE2 { [0.0; 2] } else { p };
+            *place = [along.dot(c), across.dot(c)];
         }
         Some(Plane { along, across, places })
     }
@@ -227,7 +222,7 @@ impl Face<'_> {
             let length2 = step[0] * step[0] + step[1] * step[1];
             // Distance times length.
             let area = cross(p, q);
-            if area * area >= (radius2 + SLACK) * length2 {
+            if area * area >= radius2 * length2 {
                 continue;
             }
             let ends = [self.corners[from], self.corners[to]];

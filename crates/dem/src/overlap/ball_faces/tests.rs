@@ -2,7 +2,6 @@
 mod bodies;
 mod exact;
 mod properties;
-mod scan;
 mod speed;
 
 use super::{BallFaces, Faces, Round};

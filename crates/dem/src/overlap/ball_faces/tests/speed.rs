@@ -59,7 +59,7 @@ fn places(b: &impl Faces, r: f64, depth: f64) -> Vec<(Round, Pose)> {
         .collect()
 }
 
-pub(super) fn measure(name: &str, b: &impl Faces, r: f64, depth: f64) {
+fn measure(name: &str, b: &impl Faces, r: f64, depth: f64) {
     let places = places(b, r, depth);
     let (mut route, mut out) = (BallFaces::default(), Vec::new());
     let all = cost(|i| {
@@ -88,7 +88,7 @@ fn cpu_time_per_pair() {
 /// The faces there, as from a tree.
 #[test]
 #[ignore = "prints CPU times"]
-pub(super) fn picked() {
+fn cpu_time_with_the_faces_at_hand() {
     let fine = icosphere(1.0, 3);
     for depth in [0.005, 0.05, 0.4] {
         let places = places(&fine, 0.5, depth);

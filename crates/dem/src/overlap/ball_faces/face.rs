@@ -100,8 +100,7 @@ impl Side {
                 (-half, self.to, before, 0.0, after)
             }
         };
-        let disc2 =
-            disc2.unwrap_or_else(|| self.distance * self.distance + from * from + before * (length + after));
+        let disc2 = disc2.unwrap_or(self.distance * self.distance + from * from + before * (length + after));
         let edge = Edge { height, disc2, distance: self.distance, from, to, length, before, after };
         (length > 0.0 && from < to).then_some(edge)
     }

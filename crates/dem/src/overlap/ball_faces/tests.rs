@@ -6,7 +6,6 @@ mod speed;
 
 use super::{BallFaces, Faces, Round};
 use crate::Overlap;
-use bodies::Body;
 use interfaces::{Point, Pose, Rotation, Vector};
 
 /// All regions, and that every number in them is finite.

@@ -1,4 +1,5 @@
 //! The volume that two bodies share; one file per route to it.
+mod ball_faces;
 mod clip;
 pub(crate) mod closed;
 mod facets;

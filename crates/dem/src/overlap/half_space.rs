@@ -1,6 +1,6 @@
 //! Flat-faced bodies and plane walls.
 use super::Overlap;
-use super::facets::{Groups, Sums};
+use super::facets::Groups;
 use crate::HalfSpace;
 use crate::shapes::{Facets, WIDTH};
 use interfaces::{Point, Pose, Vector};

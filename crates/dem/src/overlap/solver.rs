@@ -1,4 +1,5 @@
 //! Which route leads to the overlap of a pair.
+use super::ball_faces::{BallFaces, Round};
 use super::clip::Clipper;
 use super::facets::{FacetOverlap, Impossible};
 use super::half_space::HalfSpaceOverlap;
@@ -45,6 +46,7 @@ impl fmt::Display for Route {
 pub struct OverlapSolver {
     route: Option<Route>,
     patches: Vec<Overlap>,
+    ball_faces: BallFaces,
     clipper: Clipper,
     facets: FacetOverlap,
     half_space: HalfSpaceOverlap,
@@ -52,6 +54,9 @@ pub struct OverlapSolver {
 
 /// Polyhedra are clipped while one of them has no more vertices than this; beyond, crossings are found faster.
 const CLIPPED: usize = 30;
+
+/// Of hulls with so many faces all are looked at; of larger ones those that a tree finds near.
+const FEW_FACES: usize = 20;
 
 impl OverlapSolver {
     /// One that takes the best route for every pair.
@@ -119,6 +124,17 @@ impl OverlapSolver {
                 let distance = w.signed_distance(at_a.position);
                 out.extend(closed::sphere_wall(p.radius(), at_a.position, distance, w.normal()));
             }
+            (Form::Sphere(p), Form::Hull(q)) => {
+                let ball = Round::ball(p.radius(), at_a.position);
+                match q.n_faces() {
+                    ..=FEW_FACES => self.ball_faces.overlap(&ball, q, at_b, out),
+                    _ => self.ball_faces.overlap(&ball, q.facets(), at_b, out),
+                }
+            }
+            (Form::Sphere(p), Form::Facets(q)) => {
+                let ball = Round::ball(p.radius(), at_a.position);
+                self.ball_faces.overlap(&ball, q, at_b, out);
+            }
             (Form::Hull(p), Form::Hull(q)) if p.vertices().len().min(q.vertices().len()) <= CLIPPED => {
                 self.clipper.overlap(p, at_a, q, at_b, out);
             }
@@ -133,6 +149,7 @@ impl OverlapSolver {
             }
             (Form::Facets(p), Form::HalfSpace(w)) => self.half_space.overlap(p, at_a, &w.posed(at_b), out),
             (_, Form::Union(_))
+            | (Form::Hull(_) | Form::Facets(_), Form::Sphere(_))
             | (Form::HalfSpace(_), Form::Disc(_) | Form::Sphere(_) | Form::Hull(_) | Form::Facets(_)) => {
                 let first = out.len();
                 self.pair(b, at_b, a, at_a)?;

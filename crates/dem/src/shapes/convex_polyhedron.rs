@@ -9,6 +9,9 @@ use nalgebra::Matrix3;
 pub struct ConvexPolyhedron {
     points: Vec<Point>,
     triangles: Vec<[u32; 3]>,
+    /// The borders of the faces, one after the other, and where each begins.
+    loops: Vec<u32>,
+    starts: Vec<usize>,
     pub(crate) edges: Vec<HullEdge>,
     pub(crate) planes: Vec<Plane>,
     facets: Facets,
@@ -90,12 +93,19 @@ impl ConvexPolyhedron {
                 return Err(wrong(f, "has part of the body in front of it, which therefore is not convex"));
             }
         }
+        let starts = std::iter::once(0).chain(faces.iter().scan(0, |end, f| {
+            *end += f.len();
+            Some(*end)
+        }));
+        let starts = starts.collect();
         let edges = edges(faces);
         let facets = Facets::new(points.clone(), triangles.clone()).map_err(open)?;
         let moments = facets.moments();
         Ok(Self {
             points: points.into_iter().map(Point::from).collect(),
             triangles,
+            loops: faces.concat(),
+            starts,
             edges,
             planes,
             second: moments.inertia(),
@@ -108,6 +118,10 @@ impl ConvexPolyhedron {
     /// The vertices, from the centre of mass \[m\].
     pub fn vertices(&self) -> &[Point] {
         &self.points
+    }
+    /// The vertices of every face, counter-clockwise seen from outside.
+    pub fn loops(&self) -> impl Iterator<Item = &[u32]> {
+        self.starts.windows(2).map(|ends| &self.loops[ends[0]..ends[1]])
     }
     /// How many faces there are.
     pub fn n_faces(&self) -> usize {

@@ -155,6 +155,29 @@ impl Facets {
         &self.fans[self.first_fans[v as usize] as usize..self.first_fans[v as usize + 1] as usize]
     }
 
+    /// Calls `visit` with the faces whose boxes come within `reach` of a point, and perhaps others.
+    pub(crate) fn visit_near(&self, x: Vector, reach: f64, mut visit: impl FnMut(u32)) {
+        let sides = [x.add_scalar(-reach), x.add_scalar(reach)].map(|v| [v.x, v.y, v.z].map(|c| c as f32));
+        // For rounding to single precision.
+        let slack = 1e-6 * (self.radius + reach) as f32;
+        if !self.tree.is_empty() {
+            self.visit_below(0, sides[0].map(|s| s - slack), sides[1].map(|s| s + slack), &mut visit);
+        }
+    }
+    fn visit_below(&self, n: u32, low: [f32; 3], high: [f32; 3], visit: &mut impl FnMut(u32)) {
+        let node = &self.tree[n as usize];
+        for slot in 0..WIDTH {
+            if (0..3).all(|a| node.low[a][slot] <= high[a] && node.high[a][slot] >= low[a]) {
+                let child = node.children[slot];
+                if node.is_leaf {
+                    visit(child + slot as u32);
+                } else {
+                    self.visit_below(child, low, high, visit);
+                }
+            }
+        }
+    }
+
     /// By the divergence theorem. Of a tetrahedron with the corners 0, a, b, c and the volume V = a·(b × c)/6:
     /// ∫ x dV = V s/4 and ∫ x xᵀ dV = V (a aᵀ + b bᵀ + c cᵀ + s sᵀ)/20 with s = a + b + c.
     pub(crate) fn moments(&self) -> Moments {

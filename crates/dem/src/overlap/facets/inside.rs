@@ -4,18 +4,13 @@ use super::crossings::Crossings;
 use super::groups::Groups;
 use super::signs::{Side, ray_crosses};
 use super::{Bodies, Sums};
-use crate::shapes::WIDTH;
+use crate::shapes::{Facets, WIDTH};
 use interfaces::Vector;
 use nalgebra::Matrix3;
 
 impl Bodies<'_> {
     /// Marks the vertices of either body that lie in the other, with the groups they belong to.
-    pub(super) fn find_inside(
-        &mut self,
-        crossings: &Crossings,
-        groups: &mut Groups,
-        stack: &mut Vec<[u32; 2]>,
-    ) {
+    pub(super) fn find_inside(&mut self, crossings: &Crossings, groups: &mut Groups) {
         for (number, c) in (0..).zip(&crossings.all) {
             let body = if c.of_first { &mut self.first } else { &mut self.second };
             let crossed = body.crossed(c.edge);
@@ -39,7 +34,7 @@ impl Bodies<'_> {
             for shell in 0..self.on(side).facets.shells.len() {
                 let body = self.on(side);
                 let start = body.facets.shells[shell];
-                if !body.marks.known[shell] && self.contains(side, start, stack) {
+                if !body.marks.known[shell] && self.contains(side, start) {
                     let (group, body) = (groups.add(), self.on(side));
                     let before = body.marks.found.len();
                     body.find(start, group, groups);
@@ -50,49 +45,17 @@ impl Bodies<'_> {
     }
 
     /// Does the other body contain a vertex of the body on this `side`?
-    fn contains(&mut self, side: Side, v: u32, stack: &mut Vec<[u32; 2]>) -> bool {
+    fn contains(&mut self, side: Side, v: u32) -> bool {
         let p = self.on(side).place(v);
         let other = self.on(side.other());
         let (facets, moved) = (other.facets, other.moved);
         // The ray in the other body's own frame, for its boxes.
         let (start, along) = match &moved {
-            None => (p, nalgebra::Vector3::x()),
+            None => (p, Vector::x()),
             Some((turn, shift)) => (turn.tr_mul(&(p - shift)), turn.row(0).transpose()),
         };
-        let [low, high] = facets.bounds;
-        if !(low <= start && start <= high) {
-            return false;
-        }
-        // What the ray may drift off by rounding.
-        let slack = 1e-13 * (facets.radius + start.norm());
-        let mut winding = 0;
-        stack.clear();
-        stack.push([0, 0]);
-        while let Some([n, _]) = stack.pop() {
-            let node = &facets.tree[n as usize];
-            for slot in (0..WIDTH).filter(|&i| node.low[0][i] <= node.high[0][i]) {
-                let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
-                for i in 0..3 {
-                    let low = f64::from(node.low[i][slot]) - slack - start[i];
-                    let high = f64::from(node.high[i][slot]) + slack - start[i];
-                    if along[i].abs() > 1e-12 {
-                        let (s, t) = (low / along[i], high / along[i]);
-                        (enter, leave) = (enter.max(s.min(t)), leave.min(s.max(t)));
-                    } else if low > 0.0 || high < 0.0 {
-                        leave = -1.0;
-                    }
-                }
-                if !(enter <= leave + slack) {
-                    continue;
-                }
-                if node.is_leaf {
-                    winding += ray_crosses(side, p, other.corners(node.children[slot] + slot as u32));
-                } else {
-                    stack.push([node.children[slot], 0]);
-                }
-            }
-        }
-        winding > 0
+        let ray = Ray { start, along, slack: 1e-13 * (facets.radius + start.norm()) };
+        ray.winding(facets, &|f| ray_crosses(side, p, other.corners(f))) > 0
     }
 
     /// Sums over all edges of the shared region, one for every connected part.
@@ -226,6 +189,56 @@ impl Body<'_> {
             }
         }
         groups.add_turned(last, &own, &turn);
+    }
+}
+
+/// Does a body contain the point `x` of its own frame? On the surface, either.
+pub(crate) fn holds(facets: &Facets, x: Vector) -> bool {
+    let ray = Ray { start: x, along: Vector::x(), slack: 1e-13 * (facets.radius + x.norm()) };
+    let corners = |f: u32| facets.faces[f as usize].corners.map(|v| facets.vertices[v as usize]);
+    ray.winding(facets, &|f| ray_crosses(Side::First, x, corners(f))) > 0
+}
+
+/// A ray in the frame of a body.
+struct Ray {
+    start: Vector,
+    along: Vector,
+    /// What it may drift off by rounding.
+    slack: f64,
+}
+
+impl Ray {
+    /// The sum of what `crosses` says of all faces that the ray may meet.
+    fn winding(&self, facets: &Facets, crosses: &impl Fn(u32) -> i32) -> i32 {
+        let [low, high] = facets.bounds;
+        let within = low <= self.start && self.start <= high;
+        if within { self.winding_below(0, facets, crosses) } else { 0 }
+    }
+    fn winding_below(&self, n: u32, facets: &Facets, crosses: &impl Fn(u32) -> i32) -> i32 {
+        let node = &facets.tree[n as usize];
+        let mut winding = 0;
+        for slot in (0..WIDTH).filter(|&i| node.low[0][i] <= node.high[0][i]) {
+            let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
+            for i in 0..3 {
+                let low = f64::from(node.low[i][slot]) - self.slack - self.start[i];
+                let high = f64::from(node.high[i][slot]) + self.slack - self.start[i];
+                if self.along[i].abs() > 1e-12 {
+                    let (s, t) = (low / self.along[i], high / self.along[i]);
+                    (enter, leave) = (enter.max(s.min(t)), leave.min(s.max(t)));
+                } else if low > 0.0 || high < 0.0 {
+                    leave = -1.0;
+                }
+            }
+            if enter <= leave + self.slack {
+                let child = node.children[slot];
+                winding += if node.is_leaf {
+                    crosses(child + slot as u32)
+                } else {
+                    self.winding_below(child, facets, crosses)
+                };
+            }
+        }
+        winding
     }
 }
 

@@ -14,6 +14,7 @@ mod sums;
 mod tests;
 
 pub(crate) use groups::Groups;
+pub(crate) use inside::holds;
 pub(crate) use sums::Sums;
 
 use super::Overlap;
@@ -73,7 +74,7 @@ impl FacetOverlap {
         self.crossings.clear();
         bodies.find_pairs(&mut self.stack, &mut self.crossings);
         self.groups.clear(&self.crossings);
-        bodies.find_inside(&self.crossings, &mut self.groups, &mut self.stack);
+        bodies.find_inside(&self.crossings, &mut self.groups);
         let sums = bodies.sum(&self.crossings, &mut self.groups);
         let to_world = |x: Vector| (at_b.to_world(Point::from(reference + x)), at_b.orientation * x);
         let round_off = 1e-12 * b.radius.powi(3);

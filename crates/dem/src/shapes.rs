@@ -2,10 +2,14 @@
 mod disc;
 mod half_space;
 mod sphere;
+#[cfg(feature = "mesh")]
+mod triangle_mesh;
 
 pub use disc::Disc;
 pub use half_space::HalfSpace;
 pub use sphere::Sphere;
+#[cfg(feature = "mesh")]
+pub use triangle_mesh::{AdmissionReport, MeshError, Shell, Thinnest, TriangleMesh, TriangleSoup};
 
 use interfaces::{Inertia, Solid};
 

@@ -38,6 +38,17 @@ impl Triangle {
             _ => bc.angle(&self.ac),
         }
     }
+    /// How far ahead of `x`, along a unit vector, it is hit, if at all.
+    pub(crate) fn ahead(&self, x: Vector, along: Vector) -> Option<f64> {
+        let (cross, from) = (self.cross(), x - self.a);
+        let slope = cross.dot(&along);
+        let distance = -cross.dot(&from) / slope;
+        let hit = from + along * distance;
+        // Its coordinates along both edges.
+        let (s, t) = (hit.cross(&self.ac).dot(&cross), self.ab.cross(&hit).dot(&cross));
+        let whole = cross.norm_squared();
+        (distance > 0.0 && distance.is_finite() && s >= 0.0 && t >= 0.0 && s + t <= whole).then_some(distance)
+    }
     /// Its point nearest to `x`, as the difference x − point, and where that point lies
     /// (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
     #[inline]

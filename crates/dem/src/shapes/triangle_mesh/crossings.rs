@@ -1,0 +1,51 @@
+//! Faces that cross one another.
+use super::error::{MeshError, named};
+use super::meeting::{Place, meet};
+use interfaces::Point;
+use parry3d::bounding_volume::Aabb;
+use parry3d::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
+
+/// The search ends when so many pairs are found: a heap of triangles has too many to count.
+const MOST: usize = 100_000;
+
+/// A tree of the boxes around faces, with the boxes themselves.
+pub(crate) struct FaceTree {
+    pub(crate) tree: Bvh,
+    boxes: Vec<Aabb>,
+}
+
+impl FaceTree {
+    /// Of faces with vertices `at` these places.
+    pub(crate) fn new(faces: &[[u32; 3]], at: impl Fn(u32) -> Point) -> Self {
+        let around = |f: &[u32; 3]| {
+            let [a, b, c] = f.map(&at);
+            let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
+            Aabb::new(<[f64; 3]>::from(low).into(), <[f64; 3]>::from(high).into())
+        };
+        let boxes: Vec<Aabb> = faces.iter().map(around).collect();
+        Self { tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), boxes }
+    }
+
+    /// The pairs of faces that have points in common besides corners and edges that they share. No face is degenerate.
+    pub(crate) fn crossings(&self, faces: &[[u32; 3]], number: &[usize], at: impl Fn(u32) -> Point) -> Option<MeshError> {
+        // By a power of two, which commits no rounding, so that products neither overflow nor underflow.
+        let largest = faces.as_flattened().iter().map(|v| at(*v).coords.amax()).fold(0.0, f64::max);
+        let scale = 2.0_f64.powi(-largest.max(f64::MIN_POSITIVE).log2().ceil() as i32);
+        let place = |v: u32| -> Place { (at(v) * scale).into() };
+        let mut pairs: Vec<[usize; 2]> = Vec::new();
+        for (f, around) in self.boxes.iter().enumerate() {
+            let leaf = BvhNode::leaf(*around, f as u32);
+            for g in self.tree.leaves(|node| node.intersects(&leaf)) {
+                if g as usize > f && meet(faces[f], faces[g as usize], place) {
+                    pairs.push([number[f], number[g as usize]]);
+                }
+            }
+            if pairs.len() >= MOST {
+                break;
+            }
+        }
+        pairs.sort_unstable();
+        let (count, all) = (pairs.len(), pairs.len() < MOST);
+        (count > 0).then(|| MeshError::SelfIntersecting { count, all, faces: named(pairs) })
+    }
+}

@@ -53,8 +53,8 @@ pub struct AdmissionReport {
     pub slivers: usize,
     /// The first eight of them.
     pub sliver_faces: Vec<usize>,
-    /// The thinnest wall: an estimate from every vertex and every face's centroid, which look along their normals for faces that
-    /// look back. `None` if they find none.
+    /// The thinnest wall: an estimate from rays, from every vertex and every face's centroid along their normals to the next face
+    /// that looks back (within 60°) and is no neighbour. `None` if there is none.
     pub thinnest_wall: Option<Thinnest>,
     /// The thinnest gap, found in the same way.
     pub thinnest_gap: Option<Thinnest>,

@@ -4,10 +4,10 @@ use super::triangle::Triangle;
 use interfaces::{Point, Vector};
 use parry3d::partitioning::BvhNode;
 
-/// Cosine of the angle within which one face has another one before it, 26°.
-const NARROW: f64 = 0.9;
 /// Least cosine between the way across and the other face's normal: 60°.
 const FACING: f64 = 0.5;
+/// Cosine of the angle by which the nearest point of a face may be beside the way straight ahead, 26°.
+const BESIDE: f64 = 0.9;
 
 /// A wall or gap between two faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,8 +61,9 @@ impl<'a> Thickness<'a> {
         Self { faces, number, tree, triangles, normals }
     }
 
-    /// The thinnest wall and the thinnest gap. Every vertex and every centroid looks along its normal, inward and outward, for
-    /// the nearest face within 26° that looks back (within 60°) and is no neighbour; a centroid also straight ahead.
+    /// The thinnest wall and the thinnest gap. From every vertex and every centroid rays go inward and outward along the normal
+    /// to the next face that looks back (within 60°) and is no neighbour; its nearest point counts, if that is not far
+    /// beside the ray (26°).
     pub(crate) fn thinnest(&self, n_vertices: usize) -> [Option<Thinnest>; 2] {
         let mut sums = vec![Vector::zeros(); n_vertices];
         for ((face, triangle), normal) in self.faces.iter().zip(&self.triangles).zip(&self.normals) {
@@ -104,27 +105,28 @@ impl<'a> Thickness<'a> {
 }
 
 impl Look<'_> {
-    /// No less than the distance of what is in a box; infinite if nothing in it is ahead.
+    /// How far ahead a box is; infinite if it is not.
     fn least(&self, node: &BvhNode) -> f64 {
-        let (low, high): (Vector, Vector) = (<[f64; 3]>::from(node.mins()).into(), <[f64; 3]>::from(node.maxs()).into());
-        let (low, high) = (low - self.from.coords, high - self.from.coords);
-        let distance = low.sup(&-high).map(|g| g.max(0.0)).norm();
-        let ahead: f64 = (0..3).map(|a| (low[a] * self.along[a]).max(high[a] * self.along[a])).sum();
-        if ahead < (NARROW - 1e-9) * distance { f64::MAX } else { distance }
+        let (low, high) = (node.mins(), node.maxs());
+        let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
+        for a in 0..3 {
+            // Infinities of the right sign where the ray runs along the box; beside it there is nothing.
+            let [t, u] = [low[a], high[a]].map(|side| (side - self.from[a]) / self.along[a]);
+            if t.is_nan() || u.is_nan() {
+                continue;
+            }
+            (enter, leave) = (enter.max(t.min(u)), leave.min(t.max(u)));
+        }
+        // A little wider, for round-off.
+        if enter <= leave * (1.0 + 1e-12) { enter * (1.0 - 1e-12) } else { f64::MAX }
     }
 
-    /// How far the triangle is, if it is opposite.
+    /// How far the triangle is, if the ray meets it and it is opposite.
     fn facing(&self, triangle: &Triangle, normal: Vector, vertices: [u32; 3]) -> Option<f64> {
-        if vertices.iter().any(|v| self.own.contains(v)) {
-            return None;
-        }
-        let facing = |way: Vector| self.through * normal.dot(&way) >= FACING;
+        let opposite = self.through * normal.dot(&self.along) >= FACING && !vertices.iter().any(|v| self.own.contains(v));
+        let ahead = opposite.then(|| triangle.ahead(self.from.coords, self.along)).flatten()?;
         let (away, _) = triangle.nearest(self.from.coords);
         let distance = away.norm();
-        let ahead = -away.dot(&self.along);
-        if ahead >= NARROW * distance && distance > 0.0 && facing(-away / distance) {
-            return Some(distance);
-        }
-        facing(self.along).then(|| triangle.ahead(self.from.coords, self.along)).flatten()
+        Some(if -away.dot(&self.along) >= BESIDE * distance { distance } else { ahead })
     }
 }

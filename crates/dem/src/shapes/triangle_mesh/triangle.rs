@@ -38,7 +38,7 @@ impl Triangle {
             _ => bc.angle(&self.ac),
         }
     }
-    /// How far ahead of `x`, along a unit vector, it is hit, if at all.
+    /// How far ahead of `x`, along a unit vector, it is hit, if at all; at its edges in any case.
     pub(crate) fn ahead(&self, x: Vector, along: Vector) -> Option<f64> {
         let (cross, from) = (self.cross(), x - self.a);
         let slope = cross.dot(&along);
@@ -47,7 +47,9 @@ impl Triangle {
         // Its coordinates along both edges.
         let (s, t) = (hit.cross(&self.ac).dot(&cross), self.ab.cross(&hit).dot(&cross));
         let whole = cross.norm_squared();
-        (distance > 0.0 && distance.is_finite() && s >= 0.0 && t >= 0.0 && s + t <= whole).then_some(distance)
+        let slack = 1e-9 * whole;
+        let within = s >= -slack && t >= -slack && s + t <= whole + slack;
+        (within && distance > 0.0 && distance.is_finite()).then_some(distance)
     }
     /// Its point nearest to `x`, as the difference x − point, and where that point lies
     /// (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).

@@ -1,6 +1,8 @@
 //! Shapes.
 mod disc;
 mod half_space;
+#[cfg_attr(not(test), expect(dead_code, reason = "until convex polyhedra take it"))]
+mod hull;
 mod sphere;
 #[cfg(feature = "mesh")]
 mod triangle_mesh;

@@ -1,6 +1,7 @@
 //! Faces that cross one another.
 use super::error::{MeshError, named};
 use super::meeting::{Place, meet};
+use crate::shapes::hull::predicate;
 use interfaces::Point;
 use parry3d::bounding_volume::Aabb;
 use parry3d::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
@@ -28,10 +29,10 @@ impl FaceTree {
 
     /// The pairs of faces that have points in common besides corners and edges that they share. No face is degenerate.
     pub(crate) fn crossings(&self, faces: &[[u32; 3]], number: &[usize], at: impl Fn(u32) -> Point) -> Option<MeshError> {
-        // By a power of two, which commits no rounding, so that products neither overflow nor underflow.
+        // By a power of two, which commits no rounding.
         let largest = faces.as_flattened().iter().map(|v| at(*v).coords.amax()).fold(0.0, f64::max);
-        let scale = 2.0_f64.powi(-largest.max(f64::MIN_POSITIVE).log2().ceil() as i32);
-        let place = |v: u32| -> Place { (at(v) * scale).into() };
+        let scale = 2.0_f64.powi(-largest.max(1e-300).log2().ceil() as i32);
+        let place = |v: u32| -> Place { (at(v) * scale).map(predicate).into() };
         let mut pairs: Vec<[usize; 2]> = Vec::new();
         for (f, around) in self.boxes.iter().enumerate() {
             let leaf = BvhNode::leaf(*around, f as u32);

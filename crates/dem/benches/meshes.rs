@@ -44,7 +44,8 @@ fn main() {
         let at = |i: i32| Point::new(0.011 * f64::from(i) - 0.5, 0.1, 0.2);
         let winding = best(|| (0..10).map(|i| mesh.winding_number(at(9 * i))).sum::<f64>()) / 10.0;
         println!("  winding number of a point {:.1} µs", 1e6 * winding);
-        let distance = best(|| (0..100).map(|i| mesh.signed_distance(at(i), f64::INFINITY)).sum::<f64>()) / 100.0;
+        let distance =
+            best(|| (0..100).map(|i| mesh.signed_distance(at(i), f64::INFINITY)).sum::<f64>()) / 100.0;
         println!("  distance of a point       {:.2} µs", 1e6 * distance);
     }
 }

@@ -121,7 +121,12 @@ impl Hull<'_> {
         let first = self.facets.len();
         for (p, q, g) in horizon {
             let f = self.facets.len() as u32;
-            self.facets.push(Facet { corners: [p, q, apex], across: [g, 0, 0], beyond: Vec::new(), alive: true });
+            self.facets.push(Facet {
+                corners: [p, q, apex],
+                across: [g, 0, 0],
+                beyond: Vec::new(),
+                alive: true,
+            });
             let g = &mut self.facets[g as usize];
             for j in 0..3 {
                 if (g.corners[j], g.corners[(j + 1) % 3]) == (q, p) {

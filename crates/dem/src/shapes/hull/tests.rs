@@ -10,7 +10,9 @@ type Hull = (Vec<Point>, Vec<Vec<u32>>);
 
 fn volume((vertices, faces): &Hull) -> f64 {
     let fans = faces.iter().flat_map(|f| f.windows(2).skip(1).map(|p| [f[0], p[0], p[1]]));
-    fans.map(|t| t.map(|v| vertices[v as usize] - vertices[0])).map(|[a, b, c]| a.dot(&b.cross(&c)) / 6.0).sum()
+    fans.map(|t| t.map(|v| vertices[v as usize] - vertices[0]))
+        .map(|[a, b, c]| a.dot(&b.cross(&c)) / 6.0)
+        .sum()
 }
 
 /// What makes it the convex hull: closed, faces plane, strictly convex and all points behind them, corners among the points, all
@@ -30,12 +32,15 @@ fn check(points: &[[f64; 3]], found: &Hull, flat: f64) {
     }
     assert!(edges.iter().all(|((p, q), n)| *n == 1 && edges.contains_key(&(*q, *p))), "not closed");
     assert_eq!(vertices.len() + faces.len(), edges.len() / 2 + 2);
-    let size = points.iter().flat_map(|p| points.iter().take(50).map(|q| (Point::from(*p) - Point::from(*q)).norm()));
+    let size = points
+        .iter()
+        .flat_map(|p| points.iter().take(50).map(|q| (Point::from(*p) - Point::from(*q)).norm()));
     let flat = flat * size.fold(0.0, f64::max);
     for face in faces {
         let corners: Vec<Vector> = face.iter().map(|v| vertices[*v as usize].coords).collect();
         let n = corners.len();
-        let cross: Vector = (1..n - 1).map(|i| (corners[i] - corners[0]).cross(&(corners[i + 1] - corners[0]))).sum();
+        let cross: Vector =
+            (1..n - 1).map(|i| (corners[i] - corners[0]).cross(&(corners[i + 1] - corners[0]))).sum();
         let normal = cross.normalize();
         for p in points {
             let height = normal.dot(&(Vector::from(*p) - corners[0]));

@@ -1,5 +1,5 @@
 //! May triangles be a body?
-use super::crossings::FaceTree;
+use super::crossings::{FaceTree, coincident};
 use super::error::{MeshError, named};
 use super::thickness::{Thickness, Thinnest};
 use super::topology::Topology;
@@ -84,7 +84,10 @@ impl AdmissionReport {
     /// Walls or gaps that are thinner than the resolution.
     pub fn unresolved(&self) -> impl Iterator<Item = Thinnest> {
         let resolution = self.resolution.unwrap_or(0.0);
-        [self.thinnest_wall, self.thinnest_gap].into_iter().flatten().filter(move |t| t.thickness < resolution)
+        [self.thinnest_wall, self.thinnest_gap]
+            .into_iter()
+            .flatten()
+            .filter(move |t| t.thickness < resolution)
     }
 }
 
@@ -131,7 +134,11 @@ impl Checked {
         if !everything && !checked.report.is_admissible() {
             return checked;
         }
-        checked.report.faults.extend(coincident(vertices, &checked.faces));
+        let mut same = coincident(&checked.faces, at);
+        if !same.is_empty() {
+            same.sort_unstable();
+            checked.report.faults.push(MeshError::Coincident { count: same.len(), vertices: named(same) });
+        }
         let tree = FaceTree::new(&checked.faces, at);
         checked.report.faults.extend(tree.crossings(&checked.faces, &checked.number, at));
         checked.tree = Some(tree);
@@ -240,27 +247,21 @@ impl Checked {
     }
 }
 
-/// Vertices of faces at the same place.
-fn coincident(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Option<MeshError> {
-    let mut used: Vec<u32> = faces.as_flattened().to_vec();
-    used.sort_unstable();
-    used.dedup();
-    // 0 and −0 are one place.
-    let place = |v: u32| vertices[v as usize].map(|x| x + 0.0);
-    let order = |a: [f64; 3], b: [f64; 3]| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2]));
-    used.sort_by(|v, w| order(place(*v), place(*w)));
-    let mut pairs: Vec<[u32; 2]> =
-        used.windows(2).filter(|v| place(v[0]) == place(v[1])).map(|v| [v[0], v[1]]).collect();
-    pairs.sort_unstable();
-    (!pairs.is_empty()).then(|| MeshError::Coincident { count: pairs.len(), vertices: named(pairs) })
-}
-
 impl fmt::Display for AdmissionReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (e, low) = (self.bounds.extent(), self.bounds.min);
         writeln!(f, "{} faces, {} vertices", self.faces, self.vertices)?;
-        writeln!(f, "box: {:.4e} × {:.4e} × {:.4e} m from ({:.4e}, {:.4e}, {:.4e}) m", e.x, e.y, e.z, low.x, low.y, low.z)?;
-        writeln!(f, "volume: {:.6e} m³{}", self.volume.abs(), if self.volume < 0.0 { ", faces inward" } else { "" })?;
+        writeln!(
+            f,
+            "box: {:.4e} × {:.4e} × {:.4e} m from ({:.4e}, {:.4e}, {:.4e}) m",
+            e.x, e.y, e.z, low.x, low.y, low.z
+        )?;
+        writeln!(
+            f,
+            "volume: {:.6e} m³{}",
+            self.volume.abs(),
+            if self.volume < 0.0 { ", faces inward" } else { "" }
+        )?;
         let cavities = self.shells.iter().filter(|s| s.depth % 2 == 1).count();
         writeln!(f, "closed parts: {}, of which {cavities} cavities", self.shells.len())?;
         for shell in self.shells.iter().take(8) {
@@ -272,9 +273,15 @@ impl fmt::Display for AdmissionReport {
                 writeln!(f, "thinnest {what}: none found")?;
                 continue;
             };
-            write!(f, "thinnest {what}: about {thickness:.4e} m, between faces {a} and {b} at ({:.4e}, {:.4e}, {:.4e}) m", at.x, at.y, at.z)?;
+            write!(
+                f,
+                "thinnest {what}: about {thickness:.4e} m, between faces {a} and {b} at ({:.4e}, {:.4e}, {:.4e}) m",
+                at.x, at.y, at.z
+            )?;
             match self.resolution {
-                Some(h) if thickness < h => writeln!(f, ": thinner than the resolution of {h:.4e} m; refine, or thicken it")?,
+                Some(h) if thickness < h => {
+                    writeln!(f, ": thinner than the resolution of {h:.4e} m; refine, or thicken it")?
+                }
                 Some(h) => writeln!(f, ": {:.1} times the resolution", thickness / h)?,
                 None => writeln!(f)?,
             }

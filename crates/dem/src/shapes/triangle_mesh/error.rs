@@ -120,7 +120,7 @@ pub enum MeshError {
     },
     /// Closed parts of the surface whose outside is in.
     #[error(
-        "{count} closed parts of the surface look the wrong way, among them those of the faces {faces:?}: a part is to look outward, a cavity in it inward,          and so on; turn all faces of these parts"
+        "{count} closed parts of the surface look the wrong way, among them those of the faces {faces:?}: a part is to look outward, a cavity in it inward, and so on; turn all faces of these parts"
     )]
     InsideOut {
         /// How many.

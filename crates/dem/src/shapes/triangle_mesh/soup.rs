@@ -111,7 +111,11 @@ impl TriangleSoup {
         }
         // Boxes wider than the tolerance, and wide enough that they can be numbered: a vertex's like is in its own box or in one
         // beside it.
-        let largest = self.vertices.as_flattened().iter().fold(0.0, |m: f64, x| if x.is_finite() { m.max(x.abs()) } else { m });
+        let largest = self
+            .vertices
+            .as_flattened()
+            .iter()
+            .fold(0.0, |m: f64, x| if x.is_finite() { m.max(x.abs()) } else { m });
         let width = (1.001 * tolerance).max(largest * 1e-15).max(f64::MIN_POSITIVE);
         let mut boxes: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
         let mut kept: Vec<[f64; 3]> = Vec::new();
@@ -133,7 +137,10 @@ impl TriangleSoup {
         }
         // Out of range is left so, to be named later.
         let last = number.len() as u32;
-        self.faces.iter_mut().flatten().for_each(|v| *v = number.get(*v as usize).copied().unwrap_or((*v).max(last)));
+        self.faces
+            .iter_mut()
+            .flatten()
+            .for_each(|v| *v = number.get(*v as usize).copied().unwrap_or((*v).max(last)));
         self.faces.retain(|[a, b, c]| a != b && b != c && c != a);
         Ok(Self { vertices: kept, faces: self.faces })
     }

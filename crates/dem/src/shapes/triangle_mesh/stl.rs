@@ -9,7 +9,9 @@ const TRIANGLE: usize = 50;
 /// Three corners per triangle, in the file's unit. A file is text if it begins with `solid` and is not just as long as a binary
 /// one would be (some programs begin binary files with `solid`, too).
 pub(crate) fn read(bytes: &[u8]) -> Result<Vec<[f64; 3]>, MeshError> {
-    let text = bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+    // Other text is no binary file either.
+    let text = bytes.iter().take(HEADER).all(|b| b.is_ascii_graphic() || b.is_ascii_whitespace())
+        || bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     let triangles = bytes.get(80..HEADER).and_then(|n| n.first_chunk()).map(|n| u32::from_le_bytes(*n));
     let exact = |n: u32| (bytes.len() - HEADER) as u64 == TRIANGLE as u64 * u64::from(n);
     match triangles {

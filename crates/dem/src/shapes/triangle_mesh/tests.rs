@@ -1,3 +1,9 @@
+//! Mass, distances and signs of meshes; what is refused.
+mod admission;
+mod crossings;
+mod reading;
+mod signs;
+
 use super::sphere::icosphere;
 use super::*;
 use proptest::prelude::*;
@@ -157,31 +163,6 @@ fn bad_meshes_are_named() {
         }
     });
     assert!(matches!(fails((vertices, faces)), MeshError::NotManifold { count: 1, .. }));
-}
-
-#[test]
-fn stl_files_are_read() {
-    let path = std::env::temp_dir().join(format!("dem-mesh-{}.stl", std::process::id()));
-    let (vertices, faces) = brick([0.0; 3], [2.0, 1.0, 1.0]);
-    let facet = |f: &[u32; 3]| {
-        let corners: String = f
-            .map(|v| vertices[v as usize])
-            .iter()
-            .map(|p| format!("vertex {} {} {}\n", p[0], p[1], p[2]))
-            .collect();
-        format!("facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet\n")
-    };
-    let text = |faces: &[[u32; 3]]| {
-        format!("solid box\n{}endsolid box\n", faces.iter().map(facet).collect::<String>())
-    };
-    std::fs::write(&path, text(&faces)).unwrap();
-    let mesh = TriangleMesh::from_stl(&path, 1e-3).unwrap();
-    assert!((mesh.volume() - 2e-9).abs() < 1e-15 && mesh.n_faces() == 12);
-    std::fs::write(&path, text(&faces[1..])).unwrap();
-    let error = TriangleMesh::from_stl(&path, 1e-3).unwrap_err();
-    assert!(matches!(error, MeshError::NotClosed { count: 3, .. }), "{error}");
-    std::fs::remove_file(&path).unwrap();
-    assert!(matches!(TriangleMesh::from_stl(&path, 1.0), Err(MeshError::File { .. })));
 }
 
 proptest! {

@@ -78,7 +78,9 @@ impl<'a> Thickness<'a> {
             self.look(f, (corners[0] + corners[1] + corners[2]) / 3.0, self.normals[f], face, &mut best);
             for i in 0..3 {
                 let v = face[i] as usize;
-                if !std::mem::replace(&mut seen[v], true) && let Some(n) = sums[v].try_normalize(0.0) {
+                if !std::mem::replace(&mut seen[v], true)
+                    && let Some(n) = sums[v].try_normalize(0.0)
+                {
                     self.look(f, corners[i], n, &face[i..=i], &mut best);
                 }
             }
@@ -94,7 +96,9 @@ impl<'a> Thickness<'a> {
             let found = self.tree.tree.find_best(
                 most,
                 |node, _| look.least(node),
-                |g, _| look.facing(&self.triangles[g as usize], self.normals[g as usize], self.faces[g as usize]),
+                |g, _| {
+                    look.facing(&self.triangles[g as usize], self.normals[g as usize], self.faces[g as usize])
+                },
             );
             if let Some((g, thickness)) = found {
                 let faces = [self.number[f], self.number[g as usize]];
@@ -123,7 +127,8 @@ impl Look<'_> {
 
     /// How far the triangle is, if the ray meets it and it is opposite.
     fn facing(&self, triangle: &Triangle, normal: Vector, vertices: [u32; 3]) -> Option<f64> {
-        let opposite = self.through * normal.dot(&self.along) >= FACING && !vertices.iter().any(|v| self.own.contains(v));
+        let opposite = self.through * normal.dot(&self.along) >= FACING
+            && !vertices.iter().any(|v| self.own.contains(v));
         let ahead = opposite.then(|| triangle.ahead(self.from.coords, self.along)).flatten()?;
         let (away, _) = triangle.nearest(self.from.coords);
         let distance = away.norm();

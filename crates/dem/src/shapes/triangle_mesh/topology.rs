@@ -80,7 +80,8 @@ impl Topology {
                 parts.join(pair[0].face, pair[1].face);
                 // Where the edge has its lower vertex, and its higher.
                 let ends = [pair[0], pair[1]].map(|s| {
-                    let (start, end) = (3 * s.face + u32::from(s.corner), 3 * s.face + u32::from((s.corner + 1) % 3));
+                    let (start, end) =
+                        (3 * s.face + u32::from(s.corner), 3 * s.face + u32::from((s.corner + 1) % 3));
                     if s.up { [start, end] } else { [end, start] }
                 });
                 fans.join(ends[0][0], ends[1][0]);

@@ -1,5 +1,5 @@
 //! Hulls against what they must be, with many points on planes and lines.
-use super::hull;
+use super::{hull, quickhull, start};
 use crate::DemError;
 use interfaces::{Point, Rotation, Vector};
 use proptest::prelude::*;
@@ -127,6 +127,28 @@ fn what_has_no_hull_is_named() {
     }
 }
 
+/// Plane means up to 1e-12 of the size, or the round-off of coordinates far from the origin.
+#[test]
+fn nearly_plane_faces_are_one() {
+    let noise = |i: usize, a: usize| ((7 * i + a) as f64 * 12.9898).sin();
+    for (error, shift) in [(4e-13, 0.0), (0.0, 1e6)] {
+        let points: Vec<[f64; 3]> = turned(&grid([5, 5, 5]), [0.3, 0.7, -0.4], [shift, -shift, 0.5 * shift])
+            .iter()
+            .enumerate()
+            .map(|(i, p)| [0, 1, 2].map(|a| p[a] + error * noise(i, a)))
+            .collect();
+        let found = hull(&points).unwrap();
+        assert_eq!((found.0.len(), found.1.len()), (8, 6), "{error} {shift}");
+    }
+    // A thousand times that is not plane.
+    let points: Vec<[f64; 3]> = grid([5, 5, 5])
+        .iter()
+        .enumerate()
+        .map(|(i, p)| [0, 1, 2].map(|a| p[a] + 4e-10 * noise(i, a)))
+        .collect();
+    assert!(hull(&points).unwrap().1.len() > 20);
+}
+
 /// Thousands of points on few planes and lines, many of them the same.
 fn small_integers() -> impl Strategy<Value = Vec<[f64; 3]>> {
     let point = |most: i32| prop::array::uniform3(0..=most);
@@ -155,6 +177,19 @@ proptest! {
                 let [p, q, r] = [i, i + 1, i + 2].map(|i| found.0[face[i % n] as usize].coords);
                 prop_assert!((q - p).cross(&(r - q)).dot(&normal) > 0.5 * 1e-9);
             }
+        }
+    }
+
+    /// Before faces are joined: no triangle without area, no point beyond one, by as little as it may be.
+    #[test]
+    fn triangles_are_exact(points in small_integers()) {
+        prop_assume!(points.len() > 3);
+        let Ok((first, _)) = start(&points, 1.0) else { return Ok(()) };
+        let at = |v: u32| Vector::from(points[v as usize]);
+        for [a, b, c] in quickhull::quickhull(&points, first) {
+            let normal = (at(b) - at(a)).cross(&(at(c) - at(a)));
+            prop_assert!(normal != Vector::zeros());
+            prop_assert!(points.iter().all(|p| normal.dot(&(Vector::from(*p) - at(a))) <= 0.0));
         }
     }
 

@@ -361,7 +361,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 8_000, failure_persistence: None, ..ProptestConfig::default() })]
     /// Triangles of wild numbers, alike and not, of all sizes, that all bytes of a binary file may be.
     #[test]
     fn wild_numbers_never_panic(which in prop::collection::vec(0..12_usize, 9..90), exponent in -60..60_i32) {

@@ -129,6 +129,16 @@ pub enum DemError {
         /// The other one.
         b: &'static str,
     },
+    /// Faces that make no convex body.
+    #[error(
+        "face {face} (from 0) of the polyhedron {what}; give flat faces, counter-clockwise seen from outside, of a closed convex body"
+    )]
+    Polyhedron {
+        /// The face.
+        face: usize,
+        /// What is wrong with it.
+        what: &'static str,
+    },
     /// A pose is not finite.
     #[error(
         "the {name} is at {position:?} m, and position or orientation is not finite; give finite numbers"

@@ -36,4 +36,4 @@ pub use overlap::{Overlap, OverlapSolver, Route, overlap};
 pub use rigid_bodies::{RigidBodies, Round};
 #[cfg(feature = "mesh")]
 pub use shapes::{AdmissionReport, MeshError, Shell, Thinnest, TriangleMesh, TriangleSoup};
-pub use shapes::{Disc, Form, HalfSpace, Shape, Sphere};
+pub use shapes::{ConvexPolyhedron, Cuboid, Disc, Facets, Form, HalfSpace, Shape, Sphere};

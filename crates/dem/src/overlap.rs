@@ -1,5 +1,8 @@
 //! The volume that two bodies share; one file per route to it.
+mod clip;
 pub(crate) mod closed;
+mod facets;
+mod half_space;
 mod solver;
 
 pub use solver::{OverlapSolver, Route, overlap};
@@ -44,3 +47,6 @@ impl Overlap {
 
 #[cfg(test)]
 mod tests;
+
+#[cfg(test)]
+mod polyhedra_tests;

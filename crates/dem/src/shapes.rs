@@ -1,5 +1,8 @@
 //! Shapes.
+mod convex_polyhedron;
+mod cuboid;
 mod disc;
+mod facets;
 mod half_space;
 #[cfg_attr(not(test), expect(dead_code, reason = "until convex polyhedra take it"))]
 mod hull;
@@ -7,13 +10,17 @@ mod sphere;
 #[cfg(feature = "mesh")]
 mod triangle_mesh;
 
+pub use convex_polyhedron::ConvexPolyhedron;
+pub use cuboid::Cuboid;
 pub use disc::Disc;
+pub use facets::Facets;
+pub(crate) use facets::{Leaf, Node, WIDTH, moved};
 pub use half_space::HalfSpace;
 pub use sphere::Sphere;
 #[cfg(feature = "mesh")]
 pub use triangle_mesh::{AdmissionReport, MeshError, Shell, Thinnest, TriangleMesh, TriangleSoup};
 
-use interfaces::{Inertia, Solid};
+use interfaces::{Inertia, Solid, Vector};
 
 /// A shape with mass, centre of mass at the origin of its frame.
 ///
@@ -41,6 +48,28 @@ pub enum Form<'a> {
     Sphere(&'a Sphere),
     /// All behind a plane.
     HalfSpace(&'a HalfSpace),
+    /// A convex body between flat faces.
+    Hull(&'a ConvexPolyhedron),
+    /// A closed surface of triangles.
+    Facets(&'a Facets),
     /// Its signed distance only.
     Distance,
+}
+
+/// The point of a triangle nearest to `x`.
+pub(crate) fn nearest_in_triangle(x: Vector, [a, b, c]: [Vector; 3]) -> Vector {
+    let (u, v) = (b - a, c - a);
+    let normal = u.cross(&v);
+    // Barycentric coordinates of the foot on the plane.
+    let (w, square) = (x - a, normal.norm_squared());
+    let (s, t) = (w.cross(&v).dot(&normal), u.cross(&w).dot(&normal));
+    if s >= 0.0 && t >= 0.0 && s + t <= square && square > 0.0 {
+        return a + u * (s / square) + v * (t / square);
+    }
+    let on_edge = |p: Vector, q: Vector| {
+        let along = (x - p).dot(&(q - p)) / (q - p).norm_squared();
+        p + (q - p) * if along.is_finite() { along.clamp(0.0, 1.0) } else { 0.0 }
+    };
+    let nearer = |p: Vector, q: Vector| if (x - p).norm_squared() <= (x - q).norm_squared() { p } else { q };
+    nearer(on_edge(a, b), nearer(on_edge(b, c), on_edge(c, a)))
 }

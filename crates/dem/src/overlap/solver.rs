@@ -1,4 +1,7 @@
 //! Which route leads to the overlap of a pair.
+use super::clip::Clipper;
+use super::facets::FacetOverlap;
+use super::half_space::HalfSpaceOverlap;
 use super::{Overlap, closed};
 use crate::{DemError, Form, Shape};
 use interfaces::Pose;
@@ -9,12 +12,18 @@ use std::fmt;
 pub enum Route {
     /// A formula.
     ClosedForm,
+    /// Cutting one body off at the planes of the other.
+    Clip,
+    /// Sums over the crossings of triangles.
+    Facets,
 }
 
 impl fmt::Display for Route {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::ClosedForm => "closed form",
+            Self::Clip => "clipping",
+            Self::Facets => "crossings of triangles",
         })
     }
 }
@@ -36,7 +45,13 @@ impl fmt::Display for Route {
 pub struct OverlapSolver {
     route: Option<Route>,
     patches: Vec<Overlap>,
+    clipper: Clipper,
+    facets: FacetOverlap,
+    half_space: HalfSpaceOverlap,
 }
+
+/// Polyhedra are clipped while one of them has no more vertices than this; beyond, crossings are found faster.
+const CLIPPED: usize = 30;
 
 impl OverlapSolver {
     /// One that takes the best route for every pair.
@@ -85,10 +100,21 @@ impl OverlapSolver {
                 let distance = w.signed_distance(at_a.position);
                 out.extend(closed::sphere_wall(p.radius(), at_a.position, distance, w.normal()));
             }
-            (Form::HalfSpace(_), Form::Disc(_) | Form::Sphere(_)) => {
+            (Form::Hull(p), Form::HalfSpace(w)) => {
+                self.half_space.overlap(p.facets(), at_a, &w.posed(at_b), out)
+            }
+            (Form::Facets(p), Form::HalfSpace(w)) => self.half_space.overlap(p, at_a, &w.posed(at_b), out),
+            (Form::HalfSpace(_), Form::Disc(_) | Form::Sphere(_) | Form::Hull(_) | Form::Facets(_)) => {
                 self.solve(b, at_b, a, at_a)?;
                 self.patches.iter_mut().for_each(|o| *o = o.swapped());
             }
+            (Form::Hull(p), Form::Hull(q)) if p.vertices().len().min(q.vertices().len()) <= CLIPPED => {
+                self.clipper.overlap(p, at_a, q, at_b, out);
+            }
+            (Form::Hull(p), Form::Hull(q)) => self.facets.overlap(p.facets(), at_a, q.facets(), at_b, out),
+            (Form::Hull(p), Form::Facets(q)) => self.facets.overlap(p.facets(), at_a, q, at_b, out),
+            (Form::Facets(p), Form::Hull(q)) => self.facets.overlap(p, at_a, q.facets(), at_b, out),
+            (Form::Facets(p), Form::Facets(q)) => self.facets.overlap(p, at_a, q, at_b, out),
             _ => return Err(DemError::Unsupported { a: a.name(), b: b.name() }),
         }
         Ok(&self.patches)

@@ -1,0 +1,197 @@
+//! One of the two bodies, and the marks that an overlap leaves on it.
+use crate::shapes::{Facets, Leaf, Node, WIDTH, moved};
+use interfaces::Vector;
+use nalgebra::Matrix3;
+
+/// Marks on vertices, faces and edges. They count for one overlap only, told by its number: nothing has to be cleared.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Marks {
+    run: u32,
+    nodes: Vec<Marked<Node>>,
+    leaves: Vec<Marked<Leaf>>,
+    edges: Vec<Marked<Crossed>>,
+    /// Of faces that the other body's surface crosses: where they are in `cut`.
+    faces: Vec<Marked<u32>>,
+    /// Of vertices at which crossed edges end.
+    crossed_at: Vec<u32>,
+    /// Of vertices in the other body: the group.
+    inside: Vec<Marked<u32>>,
+    /// The faces that the other body's surface crosses.
+    pub(super) cut: Vec<Cut>,
+    /// The vertices that lie in the other body.
+    pub(super) found: Vec<u32>,
+    /// Is it known of a shell's vertices which of them do?
+    pub(super) known: Vec<bool>,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Marked<T> {
+    run: u32,
+    value: T,
+}
+
+/// A face that the other body's surface crosses.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cut {
+    pub(super) face: u32,
+    /// The point of its plane nearest to the reference point, from there.
+    pub(super) foot: Vector,
+}
+
+/// What crosses an edge.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Crossed {
+    /// Is the end inside the other body (1), or the start (−1), or both or neither (0)?
+    pub(super) net: i32,
+    /// The first of its crossings; each knows the next.
+    pub(super) first: u32,
+}
+
+/// No crossing.
+pub(super) const NONE: u32 = u32::MAX;
+
+impl Default for Crossed {
+    fn default() -> Self {
+        Self { net: 0, first: NONE }
+    }
+}
+
+impl Marks {
+    /// Makes room for marks on a surface and forgets all earlier ones.
+    pub(super) fn start(&mut self, facets: &Facets) {
+        self.run = self.run.wrapping_add(1);
+        if self.run == 0 {
+            // The numbers begin anew: what is left of those before must not be taken for ours.
+            *self = Self { run: 1, ..Self::default() };
+        }
+        fn fit<T: Default + Clone>(list: &mut Vec<T>, len: usize) {
+            if list.len() < len {
+                list.resize(len, T::default());
+            }
+        }
+        fit(&mut self.inside, facets.vertices.len());
+        fit(&mut self.crossed_at, facets.vertices.len());
+        fit(&mut self.faces, facets.faces.len());
+        fit(&mut self.edges, facets.edges.len());
+        fit(&mut self.nodes, facets.tree.len());
+        fit(&mut self.leaves, facets.leaves.len());
+        self.cut.clear();
+        self.found.clear();
+        self.known.clear();
+        self.known.resize(facets.shells.len(), false);
+    }
+}
+
+/// A body in the frame in which both are worked on.
+pub(super) struct Body<'a> {
+    pub(super) facets: &'a Facets,
+    pub(super) marks: &'a mut Marks,
+    /// From the body's frame: the turn and the place of its origin; none if the frames are the same.
+    pub(super) moved: Option<(Matrix3<f64>, Vector)>,
+    /// Sums are taken about this point.
+    pub(super) reference: Vector,
+}
+
+impl Body<'_> {
+    /// Where a vertex is.
+    #[inline]
+    pub(super) fn place(&self, v: u32) -> Vector {
+        let x = self.facets.vertices[v as usize];
+        let Some((turn, shift)) = &self.moved else { return x };
+        let along = |a: usize| moved(&[turn[(a, 0)], turn[(a, 1)], turn[(a, 2)]], shift[a], [x.x, x.y, x.z]);
+        Vector::new(along(0), along(1), along(2))
+    }
+    /// Where a vertex is, from the reference point.
+    #[inline]
+    pub(super) fn arm(&self, v: u32) -> Vector {
+        self.place(v) - self.reference
+    }
+    #[inline]
+    pub(super) fn corners(&self, f: u32) -> [Vector; 3] {
+        self.facets.faces[f as usize].corners.map(|v| self.place(v))
+    }
+    /// Sees to it that [`node`](Self::node), and [`leaf`](Self::leaf) if it is one, can be asked for.
+    #[inline(always)]
+    pub(super) fn prepare(&mut self, n: u32) {
+        let Some((turn, shift)) = &self.moved else { return };
+        let (at, marks) = (n as usize, &mut *self.marks);
+        if marks.nodes[at].run == marks.run {
+            return;
+        }
+        let node = &self.facets.tree[at];
+        let value = if node.is_leaf {
+            let at = node.children[0] as usize / WIDTH;
+            let leaf = self.facets.leaves[at].moved(turn, shift);
+            let value = node.around(&leaf);
+            marks.leaves[at] = Marked { run: marks.run, value: leaf };
+            value
+        } else {
+            node.moved(turn, shift, self.facets.radius)
+        };
+        marks.nodes[at] = Marked { run: marks.run, value };
+    }
+    /// A node of the tree, its boxes in the common frame.
+    #[inline(always)]
+    pub(super) fn node(&self, n: u32) -> &Node {
+        if self.moved.is_some() { &self.marks.nodes[n as usize].value } else { &self.facets.tree[n as usize] }
+    }
+    /// The faces from number `first` on, in the common frame.
+    #[inline(always)]
+    pub(super) fn leaf(&self, first: u32) -> &Leaf {
+        let at = first as usize / WIDTH;
+        if self.moved.is_some() { &self.marks.leaves[at].value } else { &self.facets.leaves[at] }
+    }
+    /// The number among the cut faces of face `f`, with a corner and the normal.
+    #[inline]
+    pub(super) fn cut(&mut self, f: u32, corner: Vector, normal: Vector) -> u32 {
+        let mark = &mut self.marks.faces[f as usize];
+        if mark.run != self.marks.run {
+            *mark = Marked { run: self.marks.run, value: self.marks.cut.len() as u32 };
+            let square = normal.norm_squared();
+            let height = normal.dot(&(corner - self.reference));
+            let foot = if square > 0.0 { normal * (height / square) } else { Vector::zeros() };
+            self.marks.cut.push(Cut { face: f, foot });
+        }
+        mark.value
+    }
+    /// The foot of a face that is cut.
+    #[inline]
+    pub(super) fn foot(&self, f: u32) -> Vector {
+        let mark = &self.marks.faces[f as usize];
+        if mark.run == self.marks.run { self.marks.cut[mark.value as usize].foot } else { Vector::zeros() }
+    }
+    /// What crosses an edge.
+    #[inline]
+    pub(super) fn crossed(&self, e: u32) -> Crossed {
+        let mark = &self.marks.edges[e as usize];
+        if mark.run == self.marks.run { mark.value } else { Crossed::default() }
+    }
+    #[inline]
+    pub(super) fn cross(&mut self, e: u32, crossed: Crossed) {
+        self.marks.edges[e as usize] = Marked { run: self.marks.run, value: crossed };
+        let edge = &self.facets.edges[e as usize];
+        for v in [edge.from, edge.to] {
+            self.marks.crossed_at[v as usize] = self.marks.run;
+        }
+    }
+    /// The group of a vertex that is known to lie in the other body.
+    #[inline]
+    pub(super) fn group(&self, v: u32) -> Option<u32> {
+        let mark = self.marks.inside[v as usize];
+        (mark.run == self.marks.run).then_some(mark.value)
+    }
+    #[inline]
+    pub(super) fn set_group(&mut self, v: u32, group: u32) {
+        self.marks.inside[v as usize] = Marked { run: self.marks.run, value: group };
+        self.marks.found.push(v);
+    }
+    #[inline]
+    pub(super) fn is_cut(&self, f: u32) -> bool {
+        self.marks.faces[f as usize].run == self.marks.run
+    }
+    /// Do crossed edges end in a vertex?
+    #[inline]
+    pub(super) fn has_crossed(&self, v: u32) -> bool {
+        self.marks.crossed_at[v as usize] == self.marks.run
+    }
+}

@@ -1,0 +1,102 @@
+//! Closed surfaces of triangles, convex or not, exactly and without building what they share.
+//!
+//! Volume and moments are sums over the edges of the shared region: the segments in which two triangles cross, and the parts
+//! of either body's edges that lie in the other. Which triangles cross, and where along an edge, is decided by exact signs with
+//! consistent ties ([`signs`]), so coplanar and coincident faces need no care.
+mod body;
+mod crossings;
+mod groups;
+mod inside;
+mod pairs;
+mod signs;
+mod sums;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use groups::Groups;
+pub(crate) use sums::Sums;
+
+use super::Overlap;
+use crate::shapes::Facets;
+use body::{Body, Marks};
+use crossings::Crossings;
+use interfaces::{Point, Pose, Vector};
+use nalgebra::Matrix3;
+use signs::Side;
+
+/// Overlaps of closed surfaces of triangles; keeps the memory that they take.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FacetOverlap {
+    marks: [Marks; 2],
+    crossings: Crossings,
+    groups: Groups,
+    stack: Vec<[u32; 2]>,
+}
+
+impl FacetOverlap {
+    /// One patch per connected region.
+    pub(crate) fn overlap(
+        &mut self,
+        a: &Facets,
+        at_a: &Pose,
+        b: &Facets,
+        at_b: &Pose,
+        out: &mut Vec<Overlap>,
+    ) {
+        // In the frame of the smaller one, where the numbers are small.
+        if a.radius < b.radius {
+            let first = out.len();
+            self.overlap(b, at_b, a, at_a, out);
+            out[first..].iter_mut().for_each(|o| *o = o.swapped());
+            return;
+        }
+        let apart = at_a.position - at_b.position;
+        if apart.norm() > a.radius + b.radius {
+            return;
+        }
+        let turn = at_b.orientation.inverse() * at_a.orientation;
+        let shift = at_b.orientation.inverse_transform_vector(&apart);
+        let turn = *turn.to_rotation_matrix().matrix();
+        let Some(reference) = meeting(a, &turn, shift, b) else { return };
+        let [marks_a, marks_b] = &mut self.marks;
+        marks_a.start(a);
+        marks_b.start(b);
+        let moved = Some((turn, shift));
+        let mut bodies = Bodies {
+            first: Body { facets: a, marks: marks_a, moved, reference },
+            second: Body { facets: b, marks: marks_b, moved: None, reference },
+        };
+        self.crossings.clear();
+        bodies.find_pairs(&mut self.stack, &mut self.crossings);
+        self.groups.clear(&self.crossings);
+        bodies.find_inside(&self.crossings, &mut self.groups, &mut self.stack);
+        let sums = bodies.sum(&self.crossings, &mut self.groups);
+        let to_world = |x: Vector| (at_b.to_world(Point::from(reference + x)), at_b.orientation * x);
+        let towards = apart.try_normalize(0.0).unwrap_or_default();
+        out.extend(sums.iter().filter(|s| s.volume > 0.0).map(|s| s.overlap(to_world, towards)));
+    }
+}
+
+/// The two bodies, in the frame of the second.
+struct Bodies<'a> {
+    first: Body<'a>,
+    second: Body<'a>,
+}
+
+impl<'a> Bodies<'a> {
+    fn on(&mut self, side: Side) -> &mut Body<'a> {
+        match side {
+            Side::First => &mut self.first,
+            Side::Second => &mut self.second,
+        }
+    }
+}
+
+/// The middle of what the boxes of the two share, in the frame of the second; `None` if they are apart.
+fn meeting(a: &Facets, turn: &Matrix3<f64>, shift: Vector, b: &Facets) -> Option<Vector> {
+    let ([low, high], [low_b, high_b]) = (a.bounds, b.bounds);
+    let (centre, half) = (turn * (0.5 * (low + high)) + shift, turn.abs() * (0.5 * (high - low)));
+    let slack = Vector::repeat(1e-14 * (a.radius + b.radius + shift.norm()));
+    let (low, high) = (low_b.sup(&(centre - half)) - slack, high_b.inf(&(centre + half)) + slack);
+    (low <= high).then(|| 0.5 * (low + high))
+}

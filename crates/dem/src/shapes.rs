@@ -4,7 +4,6 @@ mod cuboid;
 mod disc;
 mod facets;
 mod half_space;
-#[cfg_attr(not(test), expect(dead_code, reason = "until convex polyhedra take it"))]
 mod hull;
 mod sphere;
 #[cfg(feature = "mesh")]

@@ -1,6 +1,6 @@
 //! Hulls against what they must be, with many points on planes and lines.
 use super::{hull, quickhull, start};
-use crate::DemError;
+use crate::{ConvexPolyhedron, DemError};
 use interfaces::{Point, Rotation, Vector};
 use proptest::prelude::*;
 use std::collections::{BTreeSet, HashMap};
@@ -203,6 +203,8 @@ proptest! {
                 check(&moved, &found, 1e-12);
                 prop_assert_eq!((plain.0.len(), plain.1.len()), (found.0.len(), found.1.len()));
                 prop_assert!((volume(&plain) / volume(&found) - 1.0).abs() < 1e-10);
+                let body = ConvexPolyhedron::from_points(&moved).unwrap();
+                prop_assert!((body.volume() / volume(&plain) - 1.0).abs() < 1e-10);
             }
             (Err(plain), Err(found)) => {
                 prop_assert_eq!(std::mem::discriminant(&plain), std::mem::discriminant(&found));

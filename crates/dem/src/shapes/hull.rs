@@ -67,13 +67,13 @@ fn start(points: &[[f64; 3]], scale: f64) -> Result<([u32; 4], f64), DemError> {
     let (b, length) = farthest(&|p| (p - at(a)).norm());
     let along = (at(b) - at(a)) / length;
     let (c, width) = farthest(&|p| along.cross(&(p - at(a))).norm());
-    // Also where the length is 0.
-    if !(width > flat) {
+    // −1 where the length is 0.
+    if width <= flat {
         return Err(DemError::PointsOnLine { width: width.max(0.0) / scale, size: size / scale });
     }
     let normal = along.cross(&(at(c) - at(a))) / width;
     let (d, height) = farthest(&|p| normal.dot(&(p - at(a))).abs());
-    if !(height > flat) {
+    if height <= flat {
         return Err(DemError::PointsOnPlane { height: height.max(0.0) / scale, size: size / scale });
     }
     Ok(([a, b, c, d].map(|i| i as u32), size))

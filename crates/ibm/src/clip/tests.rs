@@ -1,6 +1,6 @@
 use crate::testing::{Balls, Faceted, lattice};
 use crate::{SolidFraction, SolidNode, plane_fraction};
-use interfaces::{BodyId, Lattice, Nodes, Point, Pose, Rotation, Solid, Vector};
+use interfaces::{BodyId, Lattice, Nodes, Point, Pose, Rotation, Vector};
 use proptest::prelude::*;
 
 /// A brick between two corners.

@@ -124,7 +124,7 @@ fn bad_stl_is_named() {
     assert_eq!(line(text.replacen("vertex 0", "vertex 0,", 1).as_bytes()), (4, "\"0,\" is no number".into()));
     let missing = text.replacen("facet normal 0 0 0", "facet normal 0 0", 1);
     assert_eq!(line(missing.as_bytes()), (3, "\"outer\" is no number".into()));
-    let end = line(text[..text.len() - 13].as_bytes());
+    let end = line(&text.as_bytes()[..text.len() - 13]);
     assert!(end.1.contains("the file ends before"), "{end:?}");
     assert!(line(b"v 0 0 0").1.contains("instead of \"solid\""));
     assert_eq!(read(b""), Ok(TriangleSoup::default()));

@@ -5,6 +5,7 @@ mod files;
 mod frame;
 mod immersed_scalar;
 mod immersed_stress;
+mod meshes;
 mod moving;
 mod physics;
 mod restart;

@@ -19,6 +19,40 @@ pub enum DemError {
         /// The vector.
         normal: [f64; 3],
     },
+    /// Too few points for a convex hull.
+    #[error("{points} points have no convex hull with volume; give four or more")]
+    TooFewPoints {
+        /// How many there are.
+        points: usize,
+    },
+    /// A point is not finite, or absurd.
+    #[error("point {point} is at {position:?} m; give finite coordinates of no more than 1e50 m")]
+    PointNotFinite {
+        /// Its number, from 0.
+        point: usize,
+        /// Its place.
+        position: [f64; 3],
+    },
+    /// All points are on a line, or at one place.
+    #[error(
+        "the points are on a line: none is farther than {width:.3e} m from it, though they are {size:.3e} m apart; give points around a volume"
+    )]
+    PointsOnLine {
+        /// Largest distance from the line \[m\].
+        width: f64,
+        /// Largest extent \[m\].
+        size: f64,
+    },
+    /// All points are on a plane.
+    #[error(
+        "the points are on a plane: none is farther than {height:.3e} m from it, though they are {size:.3e} m apart; give points around a volume"
+    )]
+    PointsOnPlane {
+        /// Largest distance from the plane \[m\].
+        height: f64,
+        /// Largest extent \[m\].
+        size: f64,
+    },
     /// A material property is not physical.
     #[error("the {property} of the material is {value}; {remedy}")]
     Material {

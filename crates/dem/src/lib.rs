@@ -34,4 +34,6 @@ pub use error::DemError;
 pub use material::Material;
 pub use overlap::{Overlap, OverlapSolver, Route, overlap};
 pub use rigid_bodies::{RigidBodies, Round};
+#[cfg(feature = "mesh")]
+pub use shapes::{AdmissionReport, MeshError, Shell, Thinnest, TriangleMesh, TriangleSoup};
 pub use shapes::{ConvexPolyhedron, Cuboid, Disc, Facets, Form, HalfSpace, Part, Shape, Sphere, Union};

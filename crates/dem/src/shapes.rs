@@ -4,7 +4,11 @@ mod cuboid;
 mod disc;
 mod facets;
 mod half_space;
+mod hull;
+mod moments;
 mod sphere;
+#[cfg(feature = "mesh")]
+mod triangle_mesh;
 mod union;
 
 pub use convex_polyhedron::ConvexPolyhedron;
@@ -13,7 +17,10 @@ pub use disc::Disc;
 pub use facets::Facets;
 pub(crate) use facets::{Leaf, Node, WIDTH, moved};
 pub use half_space::HalfSpace;
+pub(crate) use moments::Moments;
 pub use sphere::Sphere;
+#[cfg(feature = "mesh")]
+pub use triangle_mesh::{AdmissionReport, MeshError, Shell, Thinnest, TriangleMesh, TriangleSoup};
 pub use union::{Part, Union};
 
 use interfaces::{Inertia, Solid, Vector};

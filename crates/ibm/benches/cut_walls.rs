@@ -1,4 +1,4 @@
-//! What the cuts of walls at rest cost, in ns of CPU time per cut or closed face: `cargo bench -p ibm --bench cut_walls`; `-- mesh` takes only
+//! What the cuts of walls at rest cost, in ns of CPU time per cut or closed face: `cargo bench -p ibm --bench cut_walls`; `-- cube` takes only
 //! the rows with this word. A body of 5 % of a periodic box, best of several places.
 #[path = "support/brick.rs"]
 mod brick;
@@ -8,7 +8,7 @@ mod support;
 
 use brick::Brick;
 use cpu_time::ProcessTime;
-use ibm::{TriangleMesh, cut_walls};
+use ibm::cut_walls;
 use interfaces::{Pose, Rotation, Solid, Vector};
 use staggered::Staggered;
 use std::f64::consts::PI;
@@ -48,6 +48,5 @@ fn main() {
     for cells in [32, 64, 128] {
         row::<3>("sphere", cells, Ball { radius, dim: 3 });
         row::<3>("cube", cells, Brick(Vector::repeat(0.5 * 0.05_f64.cbrt())));
-        row::<3>("mesh", cells, TriangleMesh::sphere(radius, 5).expect("a sphere"));
     }
 }

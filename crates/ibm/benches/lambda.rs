@@ -9,11 +9,14 @@
 //! 5. Bodies at rest.
 #[path = "support/brick.rs"]
 mod brick;
+#[path = "../src/testing/faceted.rs"]
+mod faceted;
 mod support;
 
 use brick::Brick;
 use cpu_time::ProcessTime;
-use ibm::{FractionRule, SolidFraction, TriangleMesh};
+use faceted::Faceted;
+use ibm::{FractionRule, SolidFraction};
 use interfaces::{BodyId, Lattice, Nodes, Pose, Rotation, Solid, Vector};
 use support::{Ball, Equal};
 
@@ -94,13 +97,13 @@ fn main() {
     let sphere = std::f64::consts::PI / 6.0;
     let one = |solid: Box<dyn Solid>| Equal { solid, poses: vec![Pose::at([1.0; 3])] };
     let mesh = |name: &str, times, cells| {
+        let triangles = 20 << (2 * times);
         // Not made for nothing.
-        if !table.wants(&format!("{} triangles{name}, {cells} cells per D", 20 << (2 * times))) {
+        if !table.wants(&format!("{triangles} triangles{name}, {cells} cells per D")) {
             return;
         }
-        let mesh = TriangleMesh::sphere(0.5, times).expect("a sphere");
-        let (volume, name) =
-            (mesh.volume(), format!("{} triangles{name}, {cells} cells per D", mesh.n_faces()));
+        let mesh = Faceted::sphere(0.5, times);
+        let (volume, name) = (mesh.volume(), format!("{triangles} triangles{name}, {cells} cells per D"));
         table.row(&name, one(Box::new(mesh)), [cells, 2], volume, FractionRule::CutVolume);
     };
     for cells in [10, 20, 40] {

@@ -1,8 +1,8 @@
 //! What wall distances and wall rows cost, in ns of CPU time. Sample run: `cargo bench -p ibm --bench walls` (a minute or so);
 //! `-- 50` repeats more often, `-- distances` or `-- rows` takes only those.
 //!
-//! 1. Distances of all cells from 1 to 512 spheres and a cube on 128³ cells, and from a mesh on 48³: from scratch, after all bodies
-//!    moved, after one moved, at rest.
+//! 1. Distances of all cells from 1 to 512 spheres and a cube on 128³ cells: from scratch, after all bodies moved, after one
+//!    moved, at rest.
 //! 2. Rows around a sphere and 512 of them: placed, filled, at rest.
 #[path = "support/brick.rs"]
 mod brick;
@@ -10,7 +10,7 @@ mod support;
 
 use brick::Brick;
 use cpu_time::ProcessTime;
-use ibm::{TriangleMesh, WallDistance, WallRows};
+use ibm::{WallDistance, WallRows};
 use interfaces::{Lattice, Nodes, Pose, Rotation, Solid, Vector};
 use support::{Ball, Equal};
 
@@ -120,8 +120,6 @@ fn main() {
             distances("spheres", crowd(Box::new(SPHERE), edge), 128, repeat);
         }
         distances("cube", crowd(Box::new(Brick(Vector::repeat(0.5))), 1), 128, repeat);
-        let mesh = TriangleMesh::sphere(0.5, 5).expect("a sphere");
-        distances(&format!("{} triangles", mesh.n_faces()), crowd(Box::new(mesh), 1), 48, repeat);
     }
     if wants("rows") {
         for (edge, cells) in [(1, 10), (1, 20), (1, 40), (8, 10)] {

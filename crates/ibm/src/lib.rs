@@ -12,7 +12,7 @@
 //!
 //! [`SurfaceStress`] tells pressure and friction on surfaces from the fields beside them. [`ImmersedScalar`] holds scalars to values or
 //! gradients given on bodies ([`Reconstruction`] is what both it and `Hfdib` use), [`Pockets`] finds fluid that bodies
-//! have closed in, and with the feature `mesh` closed triangle meshes are bodies (`TriangleMesh`).
+//! have closed in.
 //!
 //! Turbulence models get the distance from bodies and walls from [`WallDistance`], and what wall functions need beside bodies
 //! from [`WallRows`].
@@ -30,8 +30,6 @@ mod fraction;
 mod hfdib;
 mod immersed_scalar;
 mod kernel;
-#[cfg(feature = "mesh")]
-mod mesh;
 mod neighbour;
 mod pockets;
 mod polynomial;
@@ -57,8 +55,6 @@ pub use fraction::{cell_fraction, plane_fraction};
 pub use hfdib::Hfdib;
 pub use immersed_scalar::ImmersedScalar;
 pub use kernel::{Kernel, WIDEST};
-#[cfg(feature = "mesh")]
-pub use mesh::{MeshError, TriangleMesh};
 pub use pockets::{Pocket, Pockets};
 pub use profile::{Given, Profile, Weights};
 pub use reconstruction::{FluidPoint, Reconstruction, SurfaceCell};

@@ -1,4 +1,8 @@
 //! Bodies and lattices for the unit tests.
+mod faceted;
+
+pub(crate) use faceted::Faceted;
+
 use interfaces::{
     Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Lattice, Nodes, Point, Pose, Solid, SurfaceElement,
     Twist, Vector, VelocityField,

@@ -1,5 +1,6 @@
 //! The convex polyhedron.
 use super::Facets;
+use super::hull::hull;
 use crate::{DemError, Form, Shape};
 use interfaces::{Aabb, Inertia, Point, Polyhedron, Solid, Vector};
 use nalgebra::Matrix3;
@@ -113,6 +114,27 @@ impl ConvexPolyhedron {
             facets,
             origin: Point::from(centre),
         })
+    }
+
+    /// The convex hull of `points` \[m\]; what is plane up to 1e-12 of its size is one face.
+    ///
+    /// ```
+    /// use dem::{ConvexPolyhedron, DemError};
+    ///
+    /// let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.2, 0.2, 0.2]];
+    /// let body = ConvexPolyhedron::from_points(&corners)?;
+    /// assert_eq!((body.vertices().len(), body.n_faces()), (4, 4));
+    /// # Ok::<(), DemError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`DemError::TooFewPoints`], [`DemError::PointNotFinite`], [`DemError::PointsOnLine`] and [`DemError::PointsOnPlane`];
+    /// [`DemError::Polyhedron`] for a hull that is too thin, or has faces so narrow that their planes are not known to 1e-9 of its
+    /// size.
+    pub fn from_points(points: &[[f64; 3]]) -> Result<Self, DemError> {
+        let (vertices, faces) = hull(points)?;
+        let vertices: Vec<[f64; 3]> = vertices.into_iter().map(Into::into).collect();
+        Self::new(&vertices, &faces)
     }
 
     /// The vertices, from the centre of mass \[m\].

@@ -5,8 +5,8 @@ mod tree;
 pub(crate) use leaf::{Leaf, moved};
 pub(crate) use tree::{Node, WIDTH};
 
+use super::Moments;
 use interfaces::Vector;
-use nalgebra::Matrix3;
 use std::collections::HashMap;
 
 /// The triangles of a closed surface, how they hang together, and a tree of boxes around them.
@@ -51,23 +51,13 @@ pub(crate) struct Edge {
     pub(crate) right: u32,
 }
 
-/// Moments of a body of density one.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Moments {
-    /// ∫ dV.
-    pub(crate) volume: f64,
-    /// ∫ x dV.
-    pub(crate) first: Vector,
-    /// ∫ x xᵀ dV.
-    pub(crate) second: Matrix3<f64>,
-}
-
 impl Facets {
-    /// Of triangles, every edge of which belongs to two of them, once in each direction.
+    /// Of triangles, every edge of which belongs to two of them, once in each direction. Vertices of none are dropped.
     ///
     /// # Errors
     /// A face that breaks this rule.
-    pub(crate) fn new(vertices: Vec<Vector>, mut corners: Vec<[u32; 3]>) -> Result<Self, usize> {
+    pub(crate) fn new(mut vertices: Vec<Vector>, mut corners: Vec<[u32; 3]>) -> Result<Self, usize> {
+        drop_unused(&mut vertices, &mut corners);
         let tree = tree::build(&vertices, &mut corners);
         let mut edges = Vec::with_capacity(corners.len() * 3 / 2);
         let mut faces: Vec<Face> = corners.iter().map(|c| Face { corners: *c, edges: [0; 3] }).collect();
@@ -178,27 +168,23 @@ impl Facets {
         }
     }
 
-    /// By the divergence theorem. Of a tetrahedron with the corners 0, a, b, c and the volume V = a·(b × c)/6:
-    /// ∫ x dV = V s/4 and ∫ x xᵀ dV = V (a aᵀ + b bᵀ + c cᵀ + s sᵀ)/20 with s = a + b + c.
     pub(crate) fn moments(&self) -> Moments {
-        let mut sum = Moments::default();
-        for face in &self.faces {
-            let [a, b, c] = face.corners.map(|v| self.vertices[v as usize]);
-            let (v, s) = (a.dot(&b.cross(&c)) / 6.0, a + b + c);
-            sum.volume += v;
-            sum.first += s * (v / 4.0);
-            let squares = a * a.transpose() + b * b.transpose() + c * c.transpose() + s * s.transpose();
-            sum.second += squares * (v / 20.0);
-        }
-        sum
+        Moments::of(&self.vertices, self.faces.iter().map(|f| f.corners))
     }
 }
 
-impl Moments {
-    /// ∫ (|x|² 1 − x xᵀ) dV.
-    pub(crate) fn inertia(&self) -> Matrix3<f64> {
-        Matrix3::from_diagonal_element(self.second.trace()) - self.second
-    }
+/// Keeps the vertices that faces have.
+fn drop_unused(vertices: &mut Vec<Vector>, corners: &mut [[u32; 3]]) {
+    let mut numbers = vec![u32::MAX; vertices.len()];
+    corners.as_flattened().iter().for_each(|v| numbers[*v as usize] = 0);
+    let used = numbers.iter_mut().filter(|n| **n == 0);
+    used.zip(0..).for_each(|(n, number)| *n = number);
+    let mut at = 0;
+    vertices.retain(|_| {
+        at += 1;
+        numbers[at - 1] != u32::MAX
+    });
+    corners.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
 }
 
 /// Sorts items by vertex: those of vertex v are at `starts[v]..starts[v + 1]`.

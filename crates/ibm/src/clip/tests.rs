@@ -1,14 +1,12 @@
-use crate::mesh::TriangleMesh;
-use crate::testing::{Balls, lattice};
+use crate::testing::{Balls, Faceted, lattice};
 use crate::{SolidFraction, SolidNode, plane_fraction};
-use interfaces::{BodyId, Lattice, Nodes, Pose, Rotation, Vector};
+use interfaces::{BodyId, Lattice, Nodes, Point, Pose, Rotation, Vector};
 use proptest::prelude::*;
 
 /// A brick between two corners.
-fn brick(low: [f64; 3], high: [f64; 3]) -> TriangleMesh {
-    let corner = |i: usize| std::array::from_fn(|a| if i >> a & 1 == 0 { low[a] } else { high[a] });
-    let vertices: Vec<[f64; 3]> = (0..8).map(corner).collect();
-    let faces = [
+fn brick(low: [f64; 3], high: [f64; 3]) -> Faceted {
+    let corner = |i: usize| Point::from([0, 1, 2].map(|a| if i >> a & 1 == 0 { low[a] } else { high[a] }));
+    let faces = vec![
         [0, 2, 3],
         [0, 3, 1],
         [4, 5, 7],
@@ -22,10 +20,10 @@ fn brick(low: [f64; 3], high: [f64; 3]) -> TriangleMesh {
         [1, 3, 7],
         [1, 7, 5],
     ];
-    TriangleMesh::new(&vertices, &faces).unwrap()
+    Faceted::new((0..8).map(corner).collect(), faces)
 }
 
-fn nodes(lattice: &Lattice, mesh: TriangleMesh, pose: Pose) -> Vec<SolidNode> {
+fn nodes(lattice: &Lattice, mesh: Faceted, pose: Pose) -> Vec<SolidNode> {
     let (mut fraction, volume) = (SolidFraction::new(), mesh.volume());
     fraction.update(lattice, &Balls::of(mesh, volume, vec![pose])).unwrap();
     fraction.nodes(BodyId(0)).to_vec()
@@ -87,7 +85,7 @@ proptest! {
         let orientation = Rotation::from_euler_angles(turn[0], turn[1], turn[2]);
         let pose = Pose { position: at.into(), orientation };
         let lattice = lattice(3, [0.1; 3], 3.0);
-        let sphere = TriangleMesh::sphere(0.5, if fine { 4 } else { 0 }).unwrap();
+        let sphere = Faceted::sphere(0.5, if fine { 4 } else { 0 });
         let volume = sphere.volume();
         let sum = total(&nodes(&lattice, sphere, pose));
         prop_assert!((sum / volume - 1.0).abs() < 1e-8, "{sum} {volume}");
@@ -157,7 +155,7 @@ fn nothing_is_left_from_before() {
     let (coarse, fine) = (lattice(3, [0.1; 3], 3.0), lattice(3, [0.05; 3], 3.0));
     let mut fraction = SolidFraction::new();
     for (lattice, times, x) in [(&fine, 3, 0.3), (&coarse, 1, 0.3), (&coarse, 2, 0.7)] {
-        let mesh = TriangleMesh::sphere(0.4, times).unwrap();
+        let mesh = Faceted::sphere(0.4, times);
         let volume = mesh.volume();
         fraction.update(lattice, &Balls::of(mesh, volume, vec![Pose::at([x, 1.0, 2.9])])).unwrap();
         assert!((total(fraction.nodes(BodyId(0))) / volume - 1.0).abs() < 1e-8);

@@ -1,6 +1,5 @@
 use super::*;
-use crate::TriangleMesh;
-use crate::testing::{Ball, Balls, Brick};
+use crate::testing::{Ball, Balls, Brick, Faceted};
 use interfaces::{Nodes, Point, Rotation, Solid};
 use proptest::prelude::*;
 
@@ -143,8 +142,8 @@ proptest! {
 }
 
 #[test]
-fn meshes_are_asked_as_far_as_it_takes() {
-    let mesh = TriangleMesh::sphere(0.3, 2).unwrap();
+fn facets_are_asked_as_far_as_it_takes() {
+    let mesh = Faceted::sphere(0.3, 0);
     let bodies =
         Balls::of(mesh, 0.1, vec![Pose::at([-0.8, 0.3, 1.7]), pose([1.3, 1.5, 0.2], [0.3, 0.4, 0.5])]);
     let lattice = lattice(3, [true, false, true], true);

@@ -1,8 +1,11 @@
+//! Mass, distances and signs of meshes; what is refused.
+mod admission;
+mod crossings;
+mod reading;
+mod signs;
+
 use super::sphere::icosphere;
 use super::*;
-use crate::testing::{Balls, lattice};
-use crate::{SolidFraction, SolidNode};
-use interfaces::{BodyId, Pose, Rotation};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
@@ -162,31 +165,6 @@ fn bad_meshes_are_named() {
     assert!(matches!(fails((vertices, faces)), MeshError::NotManifold { count: 1, .. }));
 }
 
-#[test]
-fn stl_files_are_read() {
-    let path = std::env::temp_dir().join(format!("ibm-mesh-{}.stl", std::process::id()));
-    let (vertices, faces) = brick([0.0; 3], [2.0, 1.0, 1.0]);
-    let facet = |f: &[u32; 3]| {
-        let corners: String = f
-            .map(|v| vertices[v as usize])
-            .iter()
-            .map(|p| format!("vertex {} {} {}\n", p[0], p[1], p[2]))
-            .collect();
-        format!("facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet\n")
-    };
-    let text = |faces: &[[u32; 3]]| {
-        format!("solid box\n{}endsolid box\n", faces.iter().map(facet).collect::<String>())
-    };
-    std::fs::write(&path, text(&faces)).unwrap();
-    let mesh = TriangleMesh::from_stl(&path, 1e-3).unwrap();
-    assert!((mesh.volume() - 2e-9).abs() < 1e-15 && mesh.n_faces() == 12);
-    std::fs::write(&path, text(&faces[1..])).unwrap();
-    let error = TriangleMesh::from_stl(&path, 1e-3).unwrap_err();
-    assert!(matches!(error, MeshError::NotClosed { count: 3, .. }), "{error}");
-    std::fs::remove_file(&path).unwrap();
-    assert!(matches!(TriangleMesh::from_stl(&path, 1.0), Err(MeshError::File { .. })));
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
     /// The distance from a tessellated sphere is that of the sphere within its sagitta.
@@ -255,27 +233,5 @@ proptest! {
         prop_assert!((n.norm() - 1.0).abs() < 1e-12);
         let foot = p - n * d;
         prop_assert!(mesh.signed_distance(foot, 1.0).abs() < 1e-12);
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
-    /// Σ λ V of meshes is their volume within 0.1 % at ten cells per diameter, in any pose.
-    #[test]
-    fn meshes_sum_to_their_volume(
-        at in prop::array::uniform3(0.0..3.0_f64), turn in prop::array::uniform3(-4.0..4.0_f64), which in 0_usize..3,
-    ) {
-        let mesh = match which {
-            0 => TriangleMesh::sphere(0.5, 3).unwrap(),
-            1 => TriangleMesh::sphere(0.55, 1).unwrap(),
-            _ => made(&brick([0.0; 3], [1.0, 1.1, 1.2])),
-        };
-        let volume = mesh.volume();
-        let pose = Pose { position: at.into(), orientation: Rotation::from_euler_angles(turn[0], turn[1], turn[2]) };
-        let mut fraction = SolidFraction::new();
-        fraction.update(&lattice(3, [0.1; 3], 3.0), &Balls::of(mesh, volume, vec![pose])).unwrap();
-        let share = |n: &SolidNode| n.fraction * n.volume;
-        let sum: f64 = fraction.nodes(BodyId(0)).iter().map(share).sum();
-        prop_assert!((sum / volume - 1.0).abs() < 1e-3, "{which}: {}", sum / volume - 1.0);
     }
 }

@@ -1,17 +1,30 @@
 //! Bodies given as closed triangle meshes.
+mod admission;
 mod cluster;
+mod crossings;
 mod error;
-mod mass;
+mod meeting;
+mod obj;
+mod soup;
 mod sphere;
+mod stl;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod text;
+mod thickness;
+mod topology;
 mod triangle;
+mod winding;
 
+pub use admission::{AdmissionReport, Shell};
 pub use error::MeshError;
+pub use soup::TriangleSoup;
+pub use thickness::Thinnest;
 
+use crate::shapes::{Facets, Moments};
+use crate::{Form, Shape};
 use interfaces::{Aabb, Inertia, Point, Polyhedron, Solid, Vector};
-use mass::Moments;
 use std::path::Path;
 use surface::{Nearest, Surface};
 
@@ -20,14 +33,16 @@ use surface::{Nearest, Surface};
 /// Signed distances are exact: the nearest point is found with a tree of boxes, the sign from the
 /// angle-weighted pseudo-normal of the face, edge or vertex it lies on, which is right for every closed
 /// oriented 2-manifold (Bærentzen & Aanæs 2005, IEEE Trans. Vis. Comput. Graph. 11, 243), concave or
-/// with cavities. Meshes that intersect themselves, or touch themselves in a vertex, are not found out: signs may be
-/// wrong near there.
+/// with cavities. Meshes that cross or touch themselves, near which signs would be wrong, are refused.
 #[derive(Clone, Debug)]
 pub struct TriangleMesh {
     vertices: Vec<Point>,
     faces: Vec<[u32; 3]>,
     surface: Surface,
+    facets: Facets,
     bounds: Aabb,
+    /// Distance of the farthest vertex.
+    radius: f64,
     volume: f64,
     /// Second moments about the centre of mass per density.
     moments: Moments,
@@ -40,35 +55,36 @@ impl TriangleMesh {
     /// moved so that its centre of mass is at the origin.
     ///
     /// # Errors
-    /// [`MeshError`], naming the faces, if it is empty, not closed, not consistently oriented,
-    /// degenerate or not finite.
+    /// [`MeshError`], naming the faces: the first fault that an [`AdmissionReport`] would tell.
     pub fn new(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<Self, MeshError> {
-        error::check(vertices, faces)?;
-        let (low, high) = corners(vertices);
-        let size = (high - low).max();
+        admission::check(vertices, faces)?;
+        let used = || faces.as_flattened().iter().map(|v| *v as usize);
+        let (low, high) = corners(used().map(|v| Point::from(vertices[v])));
         // About the middle of the box, so that a mesh far from the origin loses no digits.
         let middle = nalgebra::center(&low, &high);
         let mut points: Vec<Vector> = vertices.iter().map(|v| Point::from(*v) - middle).collect();
         let mut faces = faces.to_vec();
-        let mut whole = Moments::of(&points, &faces);
+        let mut whole = Moments::of(&points, faces.iter().copied());
         if whole.volume < 0.0 {
             faces.iter_mut().for_each(|f| f.swap(1, 2));
-            whole = Moments::of(&points, &faces);
-        }
-        if whole.volume <= 1e-12 * size.powi(3) {
-            return Err(MeshError::Flat { volume: whole.volume, size });
+            whole = Moments::of(&points, faces.iter().copied());
         }
         let centre = whole.first / whole.volume;
         points.iter_mut().for_each(|p| *p -= centre);
-        let moments = Moments::of(&points, &faces);
+        let moments = Moments::of(&points, faces.iter().copied());
         let bounds = Aabb { min: low - middle.coords - centre, max: high - middle.coords - centre };
+        let farthest = faces.as_flattened().iter().map(|v| points[*v as usize].norm()).fold(0.0, f64::max);
         let vertices = points.iter().map(|p| Point::from(*p)).collect();
+        let open = |face| MeshError::NotClosed { count: 1, faces: vec![face] };
+        let facets = Facets::new(points.clone(), faces.clone()).map_err(open)?;
         let surface = Surface::new(points, faces.clone());
         Ok(Self {
             vertices,
             faces,
             surface,
+            facets,
             bounds,
+            radius: farthest,
             volume: moments.volume,
             moments,
             origin: middle + centre,
@@ -76,23 +92,19 @@ impl TriangleMesh {
     }
 
     /// The body in an STL file, text or binary, whose unit of length is `unit` \[m\] (1e-3 for
-    /// millimetres).
+    /// millimetres). If corners that should be one differ by round-off: [`TriangleSoup::welded`].
     ///
     /// # Errors
-    /// Those of [`new`](Self::new), and [`MeshError::File`] if the file cannot be read.
+    /// Those of [`new`](Self::new) and [`TriangleSoup::from_stl`].
     pub fn from_stl(path: impl AsRef<Path>, unit: f64) -> Result<Self, MeshError> {
-        let path = path.as_ref();
-        let failed = |e: std::io::Error| MeshError::File { path: path.into(), what: e.to_string() };
-        let mut file = std::io::BufReader::new(std::fs::File::open(path).map_err(failed)?);
-        let stl = stl_io::read_stl(&mut file).map_err(failed)?;
-        let vertices: Vec<_> = stl.vertices.iter().map(|v| v.0.map(|x| f64::from(x) * unit)).collect();
-        let too_many = |_| MeshError::File { path: path.into(), what: "more than 2³² vertices".into() };
-        let faces = stl.faces.iter().map(|f| {
-            let [a, b, c] = f.vertices.map(u32::try_from);
-            Ok([a?, b?, c?])
-        });
-        let faces = faces.collect::<Result<Vec<_>, std::num::TryFromIntError>>().map_err(too_many)?;
-        Self::new(&vertices, &faces)
+        TriangleSoup::from_stl(path, unit)?.try_into()
+    }
+    /// The body in a Wavefront OBJ file, whose unit of length is `unit` \[m\].
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new) and [`TriangleSoup::from_obj`].
+    pub fn from_obj(path: impl AsRef<Path>, unit: f64) -> Result<Self, MeshError> {
+        TriangleSoup::from_obj(path, unit)?.try_into()
     }
 
     /// Number of triangles.
@@ -107,19 +119,41 @@ impl TriangleMesh {
     pub fn origin(&self) -> Point {
         self.origin
     }
-    /// Mass properties at `density` \[kg/m³\], by the divergence theorem.
-    pub fn inertia(&self, density: f64) -> Inertia {
-        Inertia { mass: density * self.volume, volume: self.volume, tensor: self.moments.inertia() * density }
+    /// Places of the vertices, in the body's frame \[m\].
+    pub fn vertices(&self) -> &[Point] {
+        &self.vertices
+    }
+    /// Numbers of three vertices for every face, counter-clockwise seen from outside.
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+    /// How often the surface goes around `x`, in the body's frame: 1 inside, 0 outside, up to round-off. It takes a sum over
+    /// all faces; [`signed_distance`](Solid::signed_distance) is much faster and has the same sign.
+    pub fn winding_number(&self, x: Point) -> f64 {
+        winding::winding_number(self.faces.iter(), |v| self.vertices[v as usize], x)
     }
 }
 
-/// Lower and upper corner of the box around the vertices.
-fn corners(vertices: &[[f64; 3]]) -> (Point, Point) {
+impl Shape for TriangleMesh {
+    fn name(&self) -> &'static str {
+        "triangle mesh"
+    }
+    /// By the divergence theorem: exact, whatever the triangles.
+    fn inertia(&self, density: f64) -> Inertia {
+        Inertia { mass: density * self.volume, volume: self.volume, tensor: self.moments.inertia() * density }
+    }
+    fn bounding_radius(&self) -> f64 {
+        self.radius
+    }
+    fn form(&self) -> Form<'_> {
+        Form::Facets(&self.facets)
+    }
+}
+
+/// Lower and upper corner of the box around places.
+fn corners(places: impl Iterator<Item = Point>) -> (Point, Point) {
     let start = (Point::from([f64::INFINITY; 3]), Point::from([f64::NEG_INFINITY; 3]));
-    vertices.iter().fold(start, |(low, high), v| {
-        let v = Point::from(*v);
-        (low.inf(&v), high.sup(&v))
-    })
+    places.fold(start, |(low, high), p| (low.inf(&p), high.sup(&p)))
 }
 
 /// What is known from the point before: points in a batch are near one another.

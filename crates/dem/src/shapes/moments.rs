@@ -17,7 +17,7 @@ pub(crate) struct Moments {
 impl Moments {
     /// Of a tetrahedron with the corners 0, a, b, c and the volume V = a·(b × c)/6:
     /// ∫ x dV = V s/4 and ∫ x xᵀ dV = V (a aᵀ + b bᵀ + c cᵀ + s sᵀ)/20 with s = a + b + c.
-    pub(crate) fn of(points: &[Vector], faces: &[[u32; 3]]) -> Self {
+    pub(crate) fn of(points: &[Vector], faces: impl IntoIterator<Item = [u32; 3]>) -> Self {
         let mut sum = Self::default();
         for face in faces {
             let [a, b, c] = face.map(|v| points[v as usize]);

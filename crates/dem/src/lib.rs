@@ -34,4 +34,4 @@ pub use error::DemError;
 pub use material::Material;
 pub use overlap::{Overlap, OverlapSolver, Route, overlap};
 pub use rigid_bodies::{RigidBodies, Round};
-pub use shapes::{Disc, Form, HalfSpace, Shape, Sphere};
+pub use shapes::{Capsule, Cylinder, Disc, Ellipsoid, Form, HalfSpace, Shape, SmoothConvex, Sphere};

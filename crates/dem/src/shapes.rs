@@ -1,10 +1,21 @@
 //! Shapes.
+mod capsule;
+mod cylinder;
 mod disc;
+mod ellipsoid;
+mod ellipsoid_surface;
 mod half_space;
+mod lines;
+mod smooth_convex;
 mod sphere;
+mod spiral;
 
+pub use capsule::Capsule;
+pub use cylinder::Cylinder;
 pub use disc::Disc;
+pub use ellipsoid::Ellipsoid;
 pub use half_space::HalfSpace;
+pub use smooth_convex::SmoothConvex;
 pub use sphere::Sphere;
 
 use interfaces::{Inertia, Solid};
@@ -35,6 +46,14 @@ pub enum Form<'a> {
     Sphere(&'a Sphere),
     /// All behind a plane.
     HalfSpace(&'a HalfSpace),
+    /// An ellipsoid.
+    Ellipsoid(&'a Ellipsoid),
+    /// A cylinder.
+    Cylinder(&'a Cylinder),
+    /// A capsule.
+    Capsule(&'a Capsule),
+    /// A convex shape that answers for straight lines and planes.
+    Smooth(&'a dyn SmoothConvex),
     /// Its signed distance only.
     Distance,
 }

@@ -1,5 +1,8 @@
 //! The volume that two bodies share; one file per route to it.
 pub(crate) mod closed;
+mod columns;
+mod doubling;
+mod ellipsoids;
 mod solver;
 
 pub use solver::{OverlapSolver, Route, overlap};

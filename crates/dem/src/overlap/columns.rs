@@ -134,9 +134,12 @@ fn wall(a: Posed, wall: &HalfSpace, at_wall: &Pose, tolerance: f64) -> Option<Ov
 /// By columns where they do, else by rays.
 fn integrate(pair: &Pair, frame: &Frame, a: Posed, b: Option<Posed>, tolerance: f64) -> Option<Overlap> {
     let views = frame.views(pair);
-    let lens = if frame.lens { lens::lens(&views, frame.lengths(), tolerance) } else { None };
-    if let Some(sums) = lens {
-        return sums.overlap(frame, a.at.position);
+    if frame.lens {
+        let refined = lens::edge(&views).and_then(|edge| frame.refined(pair, &edge));
+        let frame = refined.as_ref().filter(|f| f.lens).unwrap_or(frame);
+        if let Some(sums) = lens::lens(&frame.views(pair), frame.lengths(), tolerance) {
+            return sums.overlap(frame, a.at.position);
+        }
     }
     match polar::polar(&views, frame.lengths(), tolerance) {
         polar::Found::Within(0) => Some(a.contained(-frame.axes[2].normalize())),

@@ -32,6 +32,18 @@ struct Crossing {
     slope: f64,
 }
 
+/// Five places of the edge, by Newton's method in as many half-planes.
+pub(super) fn edge(views: &[View; 2]) -> Option<[Vector; 5]> {
+    let mut places = [Vector::zeros(); 5];
+    let mut guess = Edge { s: 1.0, z: 0.0 };
+    for (k, place) in places.iter_mut().enumerate() {
+        let (sin, cos) = (TAU * k as f64 / 5.0).sin_cos();
+        guess = HalfPlane::new(views, cos, sin).crossing(guess)?.edge;
+        *place = Vector::new(guess.s * cos, guess.s * sin, guess.z);
+    }
+    Some(places)
+}
+
 /// The lens between the bodies seen by `views`, in coordinates in which its edge is about the unit circle, to a share of
 /// `tolerance` of its volume; `lengths` are those of the axes. `None` where it is no lens, or one too crooked for this.
 ///
@@ -43,51 +55,22 @@ pub(super) fn lens(views: &[View; 2], lengths: [f64; 3], tolerance: f64) -> Opti
     let columns = Columns::new(views, lengths)?;
     let mut edges = [Edge::default(); MOST];
     let mut rule = 0;
-    let (mut sums, mut doubling) = (Sums::default(), Doubling::new(tolerance));
-    let mut around = FIRST;
     loop {
-        let stride = MOST / around;
-        // What was there before the doubling stays.
-        let (start, step) = if around == FIRST { (0, stride) } else { (stride, 2 * stride) };
-        let mut k = start;
-        while k < MOST {
-            let guess = if around > FIRST {
-                let (low, high) = (edges[k - stride], edges[(k + stride) % MOST]);
-                Edge { s: 0.5 * (low.s + high.s), z: 0.5 * (low.z + high.z) }
-            } else if k > 0 {
-                edges[k - stride]
-            } else {
-                Edge { s: 1.0, z: 0.0 }
-            };
-            let (sin, cos) = (TAU * k as f64 / MOST as f64).sin_cos();
-            let plane = HalfPlane::new(views, cos, sin);
-            let crossing = plane.crossing(guess)?;
-            let (part, miss) = columns.meridian(&plane, &crossing, &RADIAL[rule])?;
-            if miss > SLOPE[rule] {
-                // Once more from the start with more points.
-                rule += 1;
-                if rule == RADIAL.len() {
-                    return None;
-                }
-                (sums, doubling, around) = (Sums::default(), Doubling::new(tolerance), 0);
-                break;
-            }
-            edges[k] = crossing.edge;
-            sums = sums + part;
-            k += step;
+        match columns.around(views, &mut edges, rule, tolerance)? {
+            Around::Done(sums) => return Some(sums),
+            Around::Crooked => rule += 1,
         }
-        if around == 0 {
-            around = FIRST;
-            continue;
-        }
-        if doubling.settled(sums.volume / around as f64) {
-            return Some(sums * (TAU / around as f64));
-        }
-        if around == MOST {
+        if rule == RADIAL.len() {
             return None;
         }
-        around *= 2;
     }
+}
+
+/// How the integral over the azimuth ended.
+enum Around {
+    Done(Sums),
+    /// More points are needed between the axis and the edge.
+    Crooked,
 }
 
 /// Both bodies in the half-plane at an azimuth.
@@ -156,6 +139,47 @@ struct Columns {
 impl Columns {
     fn new(views: &[View; 2], lengths: [f64; 3]) -> Option<Self> {
         Some(Self { axis: HalfPlane::new(views, 1.0, 0.0).column(0.0)?, lengths })
+    }
+    /// The integrals over all azimuths by the radial rule of this number; `None` where they do not settle.
+    fn around(
+        &self,
+        views: &[View; 2],
+        edges: &mut [Edge; MOST],
+        rule: usize,
+        tolerance: f64,
+    ) -> Option<Around> {
+        let (mut sums, mut doubling) = (Sums::default(), Doubling::new(tolerance));
+        let crooked = SLOPE[rule] * (tolerance / 1e-5).min(1.0).powf(0.4);
+        let mut around = FIRST;
+        while around <= MOST {
+            let stride = MOST / around;
+            // What was there before the doubling stays.
+            let (start, step) = if around == FIRST { (0, stride) } else { (stride, 2 * stride) };
+            for k in (start..MOST).step_by(step) {
+                let guess = if around > FIRST {
+                    let (low, high) = (edges[k - stride], edges[(k + stride) % MOST]);
+                    Edge { s: 0.5 * (low.s + high.s), z: 0.5 * (low.z + high.z) }
+                } else if k > 0 {
+                    edges[k - stride]
+                } else {
+                    Edge { s: 1.0, z: 0.0 }
+                };
+                let (sin, cos) = (TAU * k as f64 / MOST as f64).sin_cos();
+                let plane = HalfPlane::new(views, cos, sin);
+                let crossing = plane.crossing(guess)?;
+                let (part, miss) = self.meridian(&plane, &crossing, &RADIAL[rule])?;
+                if miss > crooked {
+                    return Some(Around::Crooked);
+                }
+                edges[k] = crossing.edge;
+                sums = sums + part;
+            }
+            if doubling.settled(sums.volume / around as f64) {
+                return Some(Around::Done(sums * (TAU / around as f64)));
+            }
+            around *= 2;
+        }
+        None
     }
     /// The integrals over a half-plane, and by how much the slope at the edge that they suggest is wrong.
     fn meridian(&self, plane: &HalfPlane, crossing: &Crossing, rule: &Radial) -> Option<(Sums, f64)> {

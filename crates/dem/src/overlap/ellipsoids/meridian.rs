@@ -7,7 +7,7 @@ pub(super) const MOST: usize = 128;
 /// Newton steps at most.
 const STEPS: usize = 30;
 /// Change that ends Newton's method, which squares it.
-const CLOSE: f64 = 1e-8;
+const CLOSE: f64 = 1e-6;
 /// Places on a meridian where the sign of D is asked for: τ at equal angles.
 #[rustfmt::skip]
 const PLACES: [f64; 24] = [

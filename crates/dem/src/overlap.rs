@@ -4,6 +4,7 @@ mod columns;
 mod doubling;
 mod ellipsoids;
 mod solver;
+mod walls;
 
 pub use solver::{OverlapSolver, Route, overlap};
 
@@ -47,3 +48,5 @@ impl Overlap {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod smooth_tests;

@@ -4,7 +4,7 @@ mod lens;
 mod meeting;
 mod pair;
 mod polar;
-mod rules;
+pub(super) mod rules;
 mod sums;
 
 use super::{Overlap, Route, ellipsoids};

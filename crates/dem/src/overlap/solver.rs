@@ -1,5 +1,5 @@
 //! Which route leads to the overlap of a pair.
-use super::{Overlap, closed, columns};
+use super::{Overlap, closed, columns, walls};
 use crate::{DemError, Form, Shape};
 use interfaces::Pose;
 use std::fmt;
@@ -103,7 +103,9 @@ impl OverlapSolver {
                 let distance = w.signed_distance(at_a.position);
                 out.extend(closed::sphere_wall(p.radius(), at_a.position, distance, w.normal()));
             }
-            (Form::HalfSpace(_), Form::Disc(_) | Form::Sphere(_)) => {
+            (Form::Ellipsoid(p), Form::HalfSpace(w)) => out.extend(walls::ellipsoid(p, at_a, &w.posed(at_b))),
+            (Form::Cylinder(p), Form::HalfSpace(w)) => out.extend(walls::cylinder(p, at_a, &w.posed(at_b))),
+            (Form::HalfSpace(_), Form::Disc(_) | Form::Sphere(_) | Form::Ellipsoid(_) | Form::Cylinder(_)) => {
                 self.solve(b, at_b, a, at_a)?;
                 self.patches.iter_mut().for_each(|o| *o = o.swapped());
             }

@@ -44,7 +44,7 @@ pub(super) const RADIAL: [Radial; 3] = [
 ];
 
 /// The Gauss-Kronrod rule of 7 and 15 points: place, weight among 15, weight among 7.
-pub(super) const KRONROD: [[f64; 3]; 15] = [
+pub(in crate::overlap) const KRONROD: [[f64; 3]; 15] = [
     [0.004_272_314_439_593_68, 0.011_467_661_005_264_613, 0.0],
     [0.025_446_043_828_620_738, 0.031_546_046_314_989_28, 0.064_742_483_084_434_85],
     [0.067_567_788_320_115_46, 0.052_395_005_161_125_09, 0.0],

@@ -169,7 +169,7 @@ impl Sweep {
             let weight = TAU / around as f64;
             let caps = &self.sums.caps;
             let volume = caps[0].volume(weight) + caps[1].volume(-weight);
-            if doubling.settled(volume) {
+            if doubling.settled(volume, self.sums.area.norm() * weight) {
                 let gradient = self.sums.area * weight;
                 let middle = (caps[0].first(weight) + caps[1].first(-weight)) / volume;
                 return Some((volume > 0.0).then(|| Overlap {

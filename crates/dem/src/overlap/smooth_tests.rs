@@ -21,7 +21,7 @@ fn pose(at: [f64; 3], turn: [f64; 3]) -> Pose {
 fn wall() -> HalfSpace {
     HalfSpace::new(Point::origin(), Vector::z()).unwrap()
 }
-/// Volume, centroid, gradient and moment alike; `share` of the volume, of the bodies' cross-section and so on.
+/// Volume, centroid, gradient and moment alike, to a `share` of V, of the area of the cut and V^⅔, and so on.
 fn assert_alike(one: &Overlap, two: &Overlap, share: f64) {
     let size = one.volume.cbrt();
     assert_relative_eq!(one.volume, two.volume, max_relative = share);
@@ -230,11 +230,19 @@ proptest! {
         let one = solve(Some(Route::Curve), 1e-5, &*a, at_a, &*b, at_b);
         let two = solve(Some(Route::Columns), 1e-5, &*a, at_a, &*b, at_b);
         if let (Some(one), Some(two)) = (one, two) {
-            assert_alike(&one, &two, 2e-4);
+            assert_alike(&one, &two, 2e-3);
             assert_relative_eq!(one.volume, two.volume, max_relative = 3e-5);
         } else {
             prop_assert!(one.is_none() && two.is_none());
         }
+    }
+
+    /// The error is what was asked for.
+    #[test]
+    fn tolerance_is_kept((a, at_a, b, at_b) in pairs(2)) {
+        let fine = solve(Some(Route::Curve), 1e-10, &*a, at_a, &*b, at_b).unwrap();
+        let plain = solve(Some(Route::Curve), 1e-5, &*a, at_a, &*b, at_b).unwrap();
+        assert_relative_eq!(plain.volume, fine.volume, max_relative = 1e-5);
     }
 
     /// S and the moment are derivatives of the volume.
@@ -260,7 +268,7 @@ proptest! {
     fn the_same_for_both_moved_and_scaled((a, at_a, b, at_b) in pairs(4), turn in prop::array::uniform3(-2.0..2.0f64)) {
         let one = solve(None, 1e-5, &*a, at_a, &*b, at_b).unwrap();
         let two = solve(None, 1e-5, &*b, at_b, &*a, at_a).unwrap();
-        assert_alike(&one, &two.swapped(), 1e-3);
+        assert_alike(&one, &two.swapped(), 3e-3);
         assert_relative_eq!(one.volume, two.volume, max_relative = 3e-5);
         let turn = Rotation::from_scaled_axis(turn.into());
         let moved = |at: Pose| Pose { position: turn * at.position + Vector::new(3.0, -20.0, 7.0), orientation: turn * at.orientation };
@@ -334,7 +342,7 @@ proptest! {
             prop_assert!((turned - o.moment.dot(&axis)).abs() < 1e-4, "{} {}", turned, o.moment.dot(&axis));
             if kind == 0 {
                 let columns = solve(Some(Route::Columns), 1e-5, &*a, at, &wall(), Pose::at([0.0; 3])).unwrap();
-                assert_alike(&columns, &o, 1e-4);
+                assert_alike(&columns, &o, 2e-3);
             }
         }
     }

@@ -19,7 +19,8 @@ pub(super) fn quadratic(a: f64, b: f64, c: f64) -> Option<[f64; 2]> {
     // The sum that does not cancel.
     let q = -(b + root.sqrt().copysign(b));
     let (one, two) = (q / a, if q == 0.0 { 0.0 } else { c / q });
-    Some(if b < 0.0 { [two, one] } else { [one, two] })
+    // Not the sign of b, which may be −0.
+    Some(if q > 0.0 { [two, one] } else { [one, two] })
 }
 
 /// The t with |o + ut| ≤ half.

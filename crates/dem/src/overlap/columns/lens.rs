@@ -15,7 +15,7 @@ const STEPS: usize = 12;
 const EDGE: f64 = 1e-6;
 /// The slope at the edge that the columns of a half-plane suggest may be wrong by this share of the thickness, for an error
 /// of 1e-5 with 2, 4, 6 points.
-const SLOPE: [f64; 3] = [0.03, 0.1, 0.2];
+const SLOPE: [f64; 3] = [0.004, 0.02, 0.05];
 
 /// A place on the edge of the lens.
 #[derive(Clone, Copy, Default)]
@@ -174,7 +174,8 @@ impl Columns {
                 edges[k] = crossing.edge;
                 sums = sums + part;
             }
-            if doubling.settled(sums.volume / around as f64) {
+            let mean = sums * (1.0 / around as f64);
+            if doubling.settled(mean.volume, mean.area.z) {
                 return Some(Around::Done(sums * (TAU / around as f64)));
             }
             around *= 2;

@@ -42,7 +42,8 @@ pub(super) fn polar(views: &[View; 2], lengths: [f64; 3], tolerance: f64) -> Fou
         if around == FIRST && let Some(body) = rays.within(&extremes) {
             return Found::Within(body);
         }
-        if doubling.settled(sums.volume / around as f64) {
+        let mean = sums * (1.0 / around as f64);
+        if doubling.settled(mean.volume, mean.area.norm()) {
             return Found::Crossing(sums * (TAU / around as f64));
         }
         if around == MOST {

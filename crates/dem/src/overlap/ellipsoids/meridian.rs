@@ -3,7 +3,7 @@ use interfaces::Vector;
 use nalgebra::Matrix3;
 
 /// Azimuths at most.
-pub(super) const MOST: usize = 128;
+pub(super) const MOST: usize = 512;
 /// Newton steps at most.
 const STEPS: usize = 30;
 /// Change that ends Newton's method, which squares it.

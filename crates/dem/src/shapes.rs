@@ -9,6 +9,8 @@ mod lines;
 mod smooth_convex;
 mod sphere;
 mod spiral;
+#[cfg(test)]
+mod tests;
 
 pub use capsule::Capsule;
 pub use cylinder::Cylinder;

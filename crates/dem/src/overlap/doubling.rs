@@ -14,17 +14,17 @@ impl Doubling {
     }
     /// Whether the next doubling could change the `volume`, or the `area` of the cut as a share of V^⅔, by no more than the
     /// tolerance. What is left is guessed from the last two changes d₁, d₂: smooth integrands converge exponentially, so that
-    /// the next change is below d₂²/d₁, and at an algebraic rate that is just the next change; a twentieth of the last change
-    /// is taken at least, and from the first change alone d₁^1.5.
+    /// the next change is below d₂²/d₁, and at an algebraic rate that is just the next change; a fifth of the last change
+    /// is taken at least, and from the first change alone 10 d₁^1.5.
     pub(super) fn settled(&mut self, volume: f64, area: f64) -> bool {
         let now = [volume, area];
         let scales = [volume.abs(), volume.abs().powf(2.0 / 3.0) + area.abs()];
         let change = (0..2).map(|i| (now[i] - self.last[i]).abs() / scales[i]).fold(0.0, f64::max);
         let first = self.last[0].is_nan();
         let left = if self.change.is_nan() {
-            change * change.sqrt()
+            10.0 * change * change.sqrt()
         } else {
-            change * (change / self.change).clamp(0.05, 1.0)
+            change * (change / self.change).clamp(0.2, 1.0)
         };
         self.last = now;
         if !first {

@@ -132,6 +132,8 @@ impl Sweep {
     /// meridian equally often.
     fn integrate(mut self, tolerance: f64) -> Option<Option<Overlap>> {
         let mut taus = [0.0; MOST];
+        // Where the curve is far from a great circle, few azimuths may miss what lies between them.
+        let enough = if self.quadric.form.norm() < 0.5 * self.quadric.lean.z { 2 * FIRST } else { 8 * FIRST };
         let mut doubling = Doubling::new(tolerance);
         let (mut around, mut crossings) = (FIRST, None);
         loop {
@@ -169,7 +171,7 @@ impl Sweep {
             let weight = TAU / around as f64;
             let caps = &self.sums.caps;
             let volume = caps[0].volume(weight) + caps[1].volume(-weight);
-            if doubling.settled(volume, self.sums.area.norm() * weight) {
+            if doubling.settled(volume, self.sums.area.norm() * weight) && around >= enough {
                 let gradient = self.sums.area * weight;
                 let middle = (caps[0].first(weight) + caps[1].first(-weight)) / volume;
                 return Some((volume > 0.0).then(|| Overlap {

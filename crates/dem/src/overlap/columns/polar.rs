@@ -16,7 +16,7 @@ pub(super) enum Found {
 
 /// Meridians to begin with; the doubling ends at the second.
 const FIRST: usize = 8;
-const MOST: usize = 32;
+const MOST: usize = 64;
 /// Places on a meridian where the nearer body is asked for.
 const PLACES: usize = 12;
 /// Halvings of a piece of a meridian, and of a range of meridians, at most.
@@ -43,7 +43,8 @@ pub(super) fn polar(views: &[View; 2], lengths: [f64; 3], tolerance: f64) -> Fou
             return Found::Within(body);
         }
         let mean = sums * (1.0 / around as f64);
-        if doubling.settled(mean.volume, mean.area.norm()) {
+        // Few meridians may miss what lies between them.
+        if doubling.settled(mean.volume, mean.area.norm()) && around > 2 * FIRST {
             return Found::Crossing(sums * (TAU / around as f64));
         }
         if around == MOST {
@@ -73,7 +74,7 @@ fn kronrod(from: f64, to: f64, error: f64, halvings: u32, f: &impl Fn(f64) -> Su
     let scale = fine.volume.abs();
     // Smooth pieces are far better by the better rule, kinks only by a factor.
     let share = (fine.volume - coarse).abs() / scale;
-    let guess = scale * share * (1e3 * share).sqrt().min(1.0);
+    let guess = scale * share * (1e4 * share).sqrt().min(1.0);
     if halvings == 0 || guess.is_nan() || guess <= error {
         return fine;
     }

@@ -47,6 +47,6 @@ impl Overlap {
 }
 
 #[cfg(test)]
-mod tests;
-#[cfg(test)]
 mod smooth_tests;
+#[cfg(test)]
+mod tests;

@@ -141,7 +141,8 @@ fn integrate(pair: &Pair, frame: &Frame, a: Posed, b: Option<Posed>, tolerance: 
             return sums.overlap(frame, a.at.position);
         }
     }
-    match polar::polar(&views, frame.lengths(), tolerance) {
+    // Rays are less even than columns: a margin.
+    match polar::polar(&views, frame.lengths(), 0.2 * tolerance) {
         polar::Found::Within(0) => Some(a.contained(-frame.axes[2].normalize())),
         polar::Found::Within(_) => b.map(|b| b.contained(-frame.axes[2].normalize())),
         polar::Found::Crossing(sums) => sums.overlap(frame, a.at.position),

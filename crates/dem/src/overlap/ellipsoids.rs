@@ -6,8 +6,8 @@ mod meridian;
 use super::{Overlap, doubling::Doubling};
 use cap::Cap;
 use common_point::{CommonPoint, Meeting, Nearer, nearer, towards};
-use meridian::{MOST, Quadric};
 use interfaces::{Point, Pose, Vector};
+use meridian::{MOST, Quadric};
 use nalgebra::Matrix3;
 use std::f64::consts::TAU;
 

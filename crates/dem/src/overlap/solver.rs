@@ -105,7 +105,10 @@ impl OverlapSolver {
             }
             (Form::Ellipsoid(p), Form::HalfSpace(w)) => out.extend(walls::ellipsoid(p, at_a, &w.posed(at_b))),
             (Form::Cylinder(p), Form::HalfSpace(w)) => out.extend(walls::cylinder(p, at_a, &w.posed(at_b))),
-            (Form::HalfSpace(_), Form::Disc(_) | Form::Sphere(_) | Form::Ellipsoid(_) | Form::Cylinder(_)) => {
+            (
+                Form::HalfSpace(_),
+                Form::Disc(_) | Form::Sphere(_) | Form::Ellipsoid(_) | Form::Cylinder(_),
+            ) => {
                 self.solve(b, at_b, a, at_a)?;
                 self.patches.iter_mut().for_each(|o| *o = o.swapped());
             }

@@ -1,7 +1,7 @@
 //! Ellipsoids and cylinders at plane walls, exactly.
+use super::Overlap;
 use super::closed::{segment, sphere_wall};
 use super::columns::rules::KRONROD;
-use super::Overlap;
 use crate::{Cylinder, Ellipsoid, HalfSpace, Shape};
 use interfaces::{Point, Pose, Vector};
 use std::f64::consts::PI;
@@ -87,13 +87,7 @@ pub(super) fn cylinder(shape: &Cylinder, at: &Pose, wall: &HalfSpace) -> Option<
     let middle = (axis * sums.z + out * sums.out) / volume;
     let gradient = n * -sums.cut;
     let to_cut = axis * sums.cut_z + out * sums.cut_out - middle * sums.cut;
-    Some(Overlap {
-        volume,
-        centroid: at.position + middle,
-        normal: n,
-        gradient,
-        moment: -to_cut.cross(&n),
-    })
+    Some(Overlap { volume, centroid: at.position + middle, normal: n, gradient, moment: -to_cut.cross(&n) })
 }
 
 /// Integrals over the part of a cylinder within a wall and over the plane that cuts it: of one, of the height and of the

@@ -101,11 +101,7 @@ impl SmoothConvex for Capsule {
     fn chord(&self, o: Point, u: Vector) -> Option<[f64; 2]> {
         let (r2, h) = (self.radius * self.radius, self.half);
         // The cylinder without ends first, then the ball at the end that the line leaves through.
-        let tube = lines::quadratic(
-            u.x * u.x + u.y * u.y,
-            o.x * u.x + o.y * u.y,
-            o.x * o.x + o.y * o.y - r2,
-        );
+        let tube = lines::quadratic(u.x * u.x + u.y * u.y, o.x * u.x + o.y * u.y, o.x * o.x + o.y * o.y - r2);
         let mut ends = tube?;
         for (t, first) in ends.iter_mut().zip([true, false]) {
             let z = if t.is_finite() { o.z + *t * u.z } else { *t * u.z };

@@ -119,7 +119,10 @@ impl Solid for Cylinder {
                 let (sin, cos) = alpha.sin_cos();
                 Profile { place: [r + round * sin, up * (h + round * cos)], normal: [sin, up * cos] }
             } else {
-                Profile { place: [r + round, up * (half - from_top) / (TAU * (r + round))], normal: [1.0, 0.0] }
+                Profile {
+                    place: [r + round, up * (half - from_top) / (TAU * (r + round))],
+                    normal: [1.0, 0.0],
+                }
             }
         })
     }

@@ -58,8 +58,7 @@ impl Ellipsoid {
         };
         if pole == 0.0 {
             // No pole at σ = 0: perhaps no root either, the nearest points are then a pair off the plane of symmetry.
-            let flat =
-                Vector::from_fn(|i, _| if rest[i] == 0.0 { 0.0 } else { x[i] * ratio[i] / rest[i] });
+            let flat = Vector::from_fn(|i, _| if rest[i] == 0.0 { 0.0 } else { x[i] * ratio[i] / rest[i] });
             let room = 1.0 - flat.component_div(e).norm_squared();
             if room >= 0.0 {
                 let axis = (0..3).find(|i| rest[*i] == 0.0).unwrap_or(0);
@@ -72,7 +71,11 @@ impl Ellipsoid {
         let mut sigma = if sum(1.0).0 > 1.0 { 1.0 } else { low.max(f64::MIN_POSITIVE) };
         for _ in 0..200 {
             let (q2, slope) = sum(sigma);
-            if q2 > 1.0 { low = sigma } else { high = sigma }
+            if q2 > 1.0 {
+                low = sigma
+            } else {
+                high = sigma
+            }
             // 1/√Σ − 1 over its derivative Σ^(−3/2) Σq²/(σ + …).
             let mut next = sigma + q2 * (q2.sqrt() - 1.0) / slope;
             if !(next >= low && next <= high) {

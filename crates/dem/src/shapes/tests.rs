@@ -54,9 +54,7 @@ fn inertia_by_summation() {
 #[test]
 fn surfaces() {
     for shape in shapes() {
-        let area = |offset: f64| -> f64 {
-            shape.surface(0.05, offset).unwrap().iter().map(|e| e.area).sum()
-        };
+        let area = |offset: f64| -> f64 { shape.surface(0.05, offset).unwrap().iter().map(|e| e.area).sum() };
         for offset in [-0.1, 0.0, 0.3] {
             let elements = shape.surface(0.05, offset).unwrap();
             let mut closed = Vector::zeros();
@@ -80,7 +78,8 @@ fn surfaces() {
     let (a, c) = (0.3, 3.0_f64);
     let e = (1.0 - a * a / (c * c)).sqrt();
     let exact = 2.0 * PI * a * a * (1.0 + c / (a * e) * e.asin());
-    let whole: f64 = Ellipsoid::new([a, a, c]).unwrap().surface(0.1, 0.0).unwrap().iter().map(|e| e.area).sum();
+    let whole: f64 =
+        Ellipsoid::new([a, a, c]).unwrap().surface(0.1, 0.0).unwrap().iter().map(|e| e.area).sum();
     assert_relative_eq!(whole, exact, max_relative = 1e-6);
 }
 

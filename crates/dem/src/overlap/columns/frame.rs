@@ -43,11 +43,8 @@ impl Frame {
         let [t1, t2] = across(e);
         // 1/w² = q₀ + q₁ cos 2φ + q₂ sin 2φ from three directions.
         let inverse = |t: Vector| pair.shared(point, t).map(|s| s.half().powi(-2));
-        let q = [
-            inverse(t1)?,
-            inverse(0.5 * t1 + 0.5 * SQRT_3 * t2)?,
-            inverse(0.5 * SQRT_3 * t2 - 0.5 * t1)?,
-        ];
+        let q =
+            [inverse(t1)?, inverse(0.5 * t1 + 0.5 * SQRT_3 * t2)?, inverse(0.5 * SQRT_3 * t2 - 0.5 * t1)?];
         let q0 = (q[0] + q[1] + q[2]) / 3.0;
         let (q1, q2) = ((2.0 * q[0] - q[1] - q[2]) / 3.0, (q[1] - q[2]) / SQRT_3);
         let varied = q1.hypot(q2);

@@ -39,7 +39,9 @@ pub(super) fn polar(views: &[View; 2], lengths: [f64; 3], tolerance: f64) -> Fou
             sums = sums + rays.meridian(TAU * k as f64 / around as f64, &mut extremes);
             k += step;
         }
-        if around == FIRST && let Some(body) = rays.within(&extremes) {
+        if around == FIRST
+            && let Some(body) = rays.within(&extremes)
+        {
             return Found::Within(body);
         }
         let mean = sums * (1.0 / around as f64);
@@ -79,8 +81,7 @@ fn kronrod(from: f64, to: f64, error: f64, halvings: u32, f: &impl Fn(f64) -> Su
         return fine;
     }
     let middle = from + 0.5 * width;
-    kronrod(from, middle, 0.75 * error, halvings - 1, f)
-        + kronrod(middle, to, 0.75 * error, halvings - 1, f)
+    kronrod(from, middle, 0.75 * error, halvings - 1, f) + kronrod(middle, to, 0.75 * error, halvings - 1, f)
 }
 
 /// The directions in which the first body reaches least and most beyond the second, and by how much.
@@ -108,7 +109,13 @@ impl Rays<'_> {
     /// −1 and 1.
     fn beyond(&self, u: Vector) -> f64 {
         let [a, b] = self.reach(u);
-        if a < b { a / b - 1.0 } else if a > b { 1.0 - b / a } else { 0.0 }
+        if a < b {
+            a / b - 1.0
+        } else if a > b {
+            1.0 - b / a
+        } else {
+            0.0
+        }
     }
     /// What a ray along `u` adds per solid angle.
     fn ray(&self, u: Vector) -> Sums {

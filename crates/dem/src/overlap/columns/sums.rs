@@ -52,11 +52,6 @@ impl Add for Sums {
 impl Mul<f64> for Sums {
     type Output = Self;
     fn mul(self, w: f64) -> Self {
-        Self {
-            volume: self.volume * w,
-            first: self.first * w,
-            area: self.area * w,
-            moment: self.moment * w,
-        }
+        Self { volume: self.volume * w, first: self.first * w, area: self.area * w, moment: self.moment * w }
     }
 }

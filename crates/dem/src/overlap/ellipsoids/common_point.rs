@@ -65,14 +65,13 @@ pub(super) fn find(a: &Posed, b: &Posed) -> Meeting {
             for i in 0..3 {
                 quadric[(i, i)] += difference;
             }
-            return Meeting::At(CommonPoint {
-                point: a.centre + from_a,
-                axes,
-                lean: slope.norm(),
-                quadric,
-            });
+            return Meeting::At(CommonPoint { point: a.centre + from_a, axes, lean: slope.norm(), quadric });
         }
-        if difference > 0.0 { low = lambda } else { high = lambda }
+        if difference > 0.0 {
+            low = lambda
+        } else {
+            high = lambda
+        }
         let slope = slope_a - slope_b;
         let next = lambda + 0.5 * difference / slope.dot(&(inverse * slope));
         lambda = if next > low && next < high { next } else { 0.5 * (low + high) };
@@ -97,7 +96,8 @@ pub(super) fn nearer(lean: f64, quadric: &Matrix3<f64>) -> Nearer {
     let (values, vectors) = (eigen.eigenvalues, eigen.eigenvectors);
     let least = |c: Vector| {
         // Parts that are zero do not count, however near the pole.
-        let over = |nu: f64| Vector::from_fn(|i, _| if parts[i] == 0.0 { 0.0 } else { -parts[i] / (c[i] - nu) });
+        let over =
+            |nu: f64| Vector::from_fn(|i, _| if parts[i] == 0.0 { 0.0 } else { -parts[i] / (c[i] - nu) });
         let (mut low, mut high) = (c.min() - lean, c.min());
         for _ in 0..80 {
             let middle = 0.5 * (low + high);

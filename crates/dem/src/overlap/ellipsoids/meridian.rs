@@ -85,7 +85,8 @@ impl Meridian {
         for now in places.chain([(f64::INFINITY, pole(1.0))]) {
             if (last.1 < 0.0) != (now.1 < 0.0) {
                 let inner = [last.0, now.0].map(|t| t.clamp(-1e3, 1e3));
-                let start = if guess > inner[0] && guess < inner[1] { guess } else { 0.5 * (inner[0] + inner[1]) };
+                let start =
+                    if guess > inner[0] && guess < inner[1] { guess } else { 0.5 * (inner[0] + inner[1]) };
                 tau = Some(self.crossing(start, [last.0, now.0], add)?);
             }
             last = now;
@@ -100,9 +101,15 @@ impl Meridian {
             let root = (1.0 + tau * tau).sqrt();
             let value = self.value(tau);
             let slope = 2.0
-                * (self.up * root + (self.up * tau + self.across[0]) * tau / root + self.upward * tau
+                * (self.up * root
+                    + (self.up * tau + self.across[0]) * tau / root
+                    + self.upward * tau
                     + self.kappa[0]);
-            if (value < 0.0) == (sign_low < 0.0) { ends[0] = tau } else { ends[1] = tau }
+            if (value < 0.0) == (sign_low < 0.0) {
+                ends[0] = tau
+            } else {
+                ends[1] = tau
+            }
             let mut next = tau - value / slope;
             if !(next >= ends[0] && next <= ends[1]) {
                 next = match ends.map(f64::is_finite) {

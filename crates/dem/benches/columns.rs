@@ -36,7 +36,9 @@ fn main() {
     println!(
         "pair | depth of the size | median error | 99 % | worst | gradient, median | moment, median | µs per pair"
     );
-    for (name, a, b) in &pairs {
+    // Only pairs whose name contains the argument, if there is one.
+    let only = std::env::args().skip(1).find(|a| !a.starts_with('-')).unwrap_or_default();
+    for (name, a, b) in pairs.iter().filter(|(name, ..)| name.contains(&only)) {
         for depth in [1e-6, 1e-4, 1e-2, 0.1, 0.3, 0.6, 1.0] {
             measure(name, &**a, &**b, depth);
         }

@@ -34,7 +34,7 @@ impl Posed {
     fn to_ball(self) -> Matrix3<f64> {
         Matrix3::from_diagonal(&self.semi_axes.map(|e| 1.0 / e)) * self.turn.transpose()
     }
-    fn from_ball(self) -> Matrix3<f64> {
+    fn ball_to_world(self) -> Matrix3<f64> {
         self.turn * Matrix3::from_diagonal(&self.semi_axes)
     }
     fn whole(&self, direction: Vector) -> Overlap {
@@ -133,7 +133,7 @@ impl Sweep {
     fn integrate(mut self, tolerance: f64) -> Option<Option<Overlap>> {
         let mut taus = [0.0; MOST];
         // Where the curve is far from a great circle, few azimuths may miss what lies between them.
-        let enough = if self.quadric.form.norm() < 0.5 * self.quadric.lean.z { 2 * FIRST } else { 4 * FIRST };
+        let enough = if self.quadric.form.norm() < 0.5 * self.quadric.lean.z { 2 * FIRST } else { 8 * FIRST };
         let mut doubling = Doubling::new(tolerance);
         let (mut around, mut crossings) = (FIRST, None);
         loop {

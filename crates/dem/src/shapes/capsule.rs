@@ -34,7 +34,7 @@ impl Capsule {
         2.0 * self.half
     }
     /// `x` as seen from the nearest point of the line within.
-    fn from_line(&self, x: Point) -> Vector {
+    fn off_line(&self, x: Point) -> Vector {
         Vector::new(x.x, x.y, x.z - x.z.clamp(-self.half, self.half))
     }
 }
@@ -64,18 +64,18 @@ impl Shape for Capsule {
 
 impl Solid for Capsule {
     fn signed_distance(&self, x: Point, _band: f64) -> f64 {
-        self.from_line(x).norm() - self.radius
+        self.off_line(x).norm() - self.radius
     }
     fn aabb(&self) -> Aabb {
         let r = self.radius;
         Aabb::around(Point::origin(), Vector::new(r, r, r + self.half))
     }
     fn normal(&self, x: Point, _band: f64) -> Vector {
-        self.from_line(x).try_normalize(0.0).unwrap_or_default()
+        self.off_line(x).try_normalize(0.0).unwrap_or_default()
     }
     fn curvature(&self, x: Point, _band: f64) -> f64 {
         let sides = if x.z.abs() > self.half { 2.0 } else { 1.0 };
-        sides / self.from_line(x).norm().max(f64::MIN_POSITIVE)
+        sides / self.off_line(x).norm().max(f64::MIN_POSITIVE)
     }
     /// Equal areas on a spiral; they sum to the area of the offset surface to round-off.
     fn surface(&self, spacing: f64, offset: f64) -> Option<Vec<SurfaceElement>> {
@@ -95,7 +95,7 @@ impl Solid for Capsule {
 
 impl SmoothConvex for Capsule {
     fn level(&self, x: Point) -> (f64, Vector) {
-        let from = self.from_line(x);
+        let from = self.off_line(x);
         (from.norm_squared() - self.radius * self.radius, 2.0 * from)
     }
     fn chord(&self, o: Point, u: Vector) -> Option<[f64; 2]> {

@@ -64,7 +64,7 @@ impl Cap {
         } else {
             (self.k, self.h, self.eta) = (-self.k, -radius, 1.0 + radius);
         }
-        let far = self.body.centre - self.body.from_ball() * self.k;
+        let far = self.body.centre - self.body.ball_to_world() * self.k;
         self.whole = (other.to_ball() * (far - other.centre)).norm_squared() < 1.0;
     }
     #[inline]
@@ -92,7 +92,8 @@ impl Cap {
     pub(super) fn first(&self, weight: f64) -> Vector {
         let volume = self.body.semi_axes.product();
         let ball = if self.whole { 2.0 / 3.0 * TAU * volume } else { 0.0 };
-        self.body.from_ball() * self.first * (0.25 * weight * volume) + (self.body.centre - self.point) * ball
+        self.body.ball_to_world() * self.first * (0.25 * weight * volume)
+            + (self.body.centre - self.point) * ball
     }
 }
 

@@ -32,4 +32,8 @@ impl Doubling {
         }
         !first && (change == 0.0 || left <= self.tolerance)
     }
+    /// Whether the last doubling changed less than a thousandth of the tolerance, which no accident explains.
+    pub(super) fn still(&self) -> bool {
+        self.change <= 1e-3 * self.tolerance
+    }
 }

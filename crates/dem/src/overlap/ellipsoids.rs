@@ -171,7 +171,9 @@ impl Sweep {
             let weight = TAU / around as f64;
             let caps = &self.sums.caps;
             let volume = caps[0].volume(weight) + caps[1].volume(-weight);
-            if doubling.settled(volume, self.sums.area.norm() * weight) && around >= enough {
+            if doubling.settled(volume, self.sums.area.norm() * weight)
+                && (around >= enough || doubling.still())
+            {
                 let gradient = self.sums.area * weight;
                 let middle = (caps[0].first(weight) + caps[1].first(-weight)) / volume;
                 return Some((volume > 0.0).then(|| Overlap {

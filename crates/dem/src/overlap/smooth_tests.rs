@@ -254,7 +254,7 @@ proptest! {
 
     /// Two routes that share nothing but the ellipsoid's level function.
     #[test]
-    fn curve_and_columns_agree((a, at_a, b, at_b) in pairs(2, 0.02)) {
+    fn curve_and_columns_agree((a, at_a, b, at_b) in pairs(2, 0.6)) {
         let one = solve(Some(Route::Curve), 1e-5, &*a, at_a, &*b, at_b);
         let two = solve(Some(Route::Columns), 1e-5, &*a, at_a, &*b, at_b);
         if let (Some(one), Some(two)) = (one, two) {
@@ -267,7 +267,7 @@ proptest! {
 
     /// The error is about what was asked for.
     #[test]
-    fn tolerance_is_kept((a, at_a, b, at_b) in pairs(2, 0.02)) {
+    fn tolerance_is_kept((a, at_a, b, at_b) in pairs(2, 0.3)) {
         let fine = solve(Some(Route::Curve), 1e-10, &*a, at_a, &*b, at_b).unwrap();
         let plain = solve(Some(Route::Curve), 1e-5, &*a, at_a, &*b, at_b).unwrap();
         // Deep tangles go by rays, where about one in a thousand misses 1e-5.
@@ -294,7 +294,7 @@ proptest! {
     }
 
     #[test]
-    fn the_same_for_both_moved_and_scaled((a, at_a, b, at_b) in pairs(4, 0.02), turn in prop::array::uniform3(-2.0..2.0f64)) {
+    fn the_same_for_both_moved_and_scaled((a, at_a, b, at_b) in pairs(4, 0.6), turn in prop::array::uniform3(-2.0..2.0f64)) {
         let one = solve(None, 1e-5, &*a, at_a, &*b, at_b).unwrap();
         let two = solve(None, 1e-5, &*b, at_b, &*a, at_a).unwrap();
         assert_alike(&one, &two.swapped(), 3e-3);

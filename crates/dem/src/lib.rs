@@ -36,4 +36,7 @@ pub use overlap::{Overlap, OverlapSolver, Route, overlap};
 pub use rigid_bodies::{RigidBodies, Round};
 #[cfg(feature = "mesh")]
 pub use shapes::{AdmissionReport, MeshError, Shell, Thinnest, TriangleMesh, TriangleSoup};
-pub use shapes::{ConvexPolyhedron, Cuboid, Disc, Facets, Form, HalfSpace, Part, Shape, Sphere, Union};
+pub use shapes::{
+    Capsule, ConvexPolyhedron, Cuboid, Cylinder, Disc, Ellipsoid, Facets, Form, HalfSpace, Part, Shape,
+    SmoothConvex, Sphere, Union,
+};

@@ -2,9 +2,13 @@
 mod ball_faces;
 mod clip;
 pub(crate) mod closed;
+mod columns;
+mod doubling;
+mod ellipsoids;
 mod facets;
 mod half_space;
 mod solver;
+mod walls;
 
 pub use solver::{OverlapSolver, Route, overlap};
 
@@ -46,6 +50,8 @@ impl Overlap {
     }
 }
 
+#[cfg(test)]
+mod smooth_tests;
 #[cfg(test)]
 mod tests;
 

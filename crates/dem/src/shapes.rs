@@ -1,23 +1,36 @@
 //! Shapes.
+mod capsule;
 mod convex_polyhedron;
 mod cuboid;
+mod cylinder;
 mod disc;
+mod ellipsoid;
+mod ellipsoid_surface;
 mod facets;
 mod half_space;
 mod hull;
+mod lines;
 mod moments;
+mod smooth_convex;
 mod sphere;
+mod spiral;
+#[cfg(test)]
+mod tests;
 #[cfg(feature = "mesh")]
 mod triangle_mesh;
 mod union;
 
+pub use capsule::Capsule;
 pub use convex_polyhedron::ConvexPolyhedron;
 pub use cuboid::Cuboid;
+pub use cylinder::Cylinder;
 pub use disc::Disc;
+pub use ellipsoid::Ellipsoid;
 pub use facets::Facets;
 pub(crate) use facets::{Leaf, Node, WIDTH, moved};
 pub use half_space::HalfSpace;
 pub(crate) use moments::Moments;
+pub use smooth_convex::SmoothConvex;
 pub use sphere::Sphere;
 #[cfg(feature = "mesh")]
 pub use triangle_mesh::{AdmissionReport, MeshError, Shell, Thinnest, TriangleMesh, TriangleSoup};
@@ -57,6 +70,14 @@ pub enum Form<'a> {
     Facets(&'a Facets),
     /// Parts that do not overlap.
     Union(&'a [Part]),
+    /// An ellipsoid.
+    Ellipsoid(&'a Ellipsoid),
+    /// A cylinder.
+    Cylinder(&'a Cylinder),
+    /// A capsule.
+    Capsule(&'a Capsule),
+    /// A convex shape that answers for straight lines and planes.
+    Smooth(&'a dyn SmoothConvex),
     /// Its signed distance only.
     Distance,
 }

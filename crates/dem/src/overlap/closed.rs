@@ -5,14 +5,14 @@ use std::f64::consts::PI;
 
 /// A part of a disc or sphere of radius `r` beyond a plane, `s` deep: its volume, the distance of
 /// its centroid from the centre, and the area of the cut.
-struct Part {
-    volume: f64,
-    centroid: f64,
-    cut: f64,
+pub(super) struct Part {
+    pub(super) volume: f64,
+    pub(super) centroid: f64,
+    pub(super) cut: f64,
 }
 
 /// Circular segment: area ½r²(2α − sin 2α) with cos α = 1 − s/r.
-fn segment(r: f64, s: f64) -> Part {
+pub(super) fn segment(r: f64, s: f64) -> Part {
     let s = s.clamp(0.0, 2.0 * r); // Round-off may lead beyond.
     let half = (s * (2.0 * r - s)).sqrt();
     let twice = 4.0 * (s / (2.0 * r)).sqrt().min(1.0).asin();

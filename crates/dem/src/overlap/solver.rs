@@ -3,7 +3,7 @@ use super::ball_faces::{BallFaces, Round};
 use super::clip::Clipper;
 use super::facets::{FacetOverlap, Impossible};
 use super::half_space::HalfSpaceOverlap;
-use super::{Overlap, closed};
+use super::{Overlap, closed, columns, walls};
 use crate::{DemError, Form, Shape};
 use interfaces::Pose;
 use std::fmt;
@@ -16,7 +16,11 @@ pub enum Route {
     /// Cutting one body off at the planes of the other.
     Clip,
     /// Sums over the crossings of triangles.
-    Facets,
+    Crossings,
+    /// Columns over the contact of smooth convex bodies; rays where the overlap is deep.
+    Columns,
+    /// Integrals along the curve where the surfaces of two ellipsoids or spheres cross.
+    Curve,
 }
 
 impl fmt::Display for Route {
@@ -24,7 +28,9 @@ impl fmt::Display for Route {
         f.write_str(match self {
             Self::ClosedForm => "closed form",
             Self::Clip => "clipping",
-            Self::Facets => "crossings of triangles",
+            Self::Crossings => "crossings of triangles",
+            Self::Columns => "columns",
+            Self::Curve => "curve",
         })
     }
 }
@@ -45,6 +51,7 @@ impl fmt::Display for Route {
 #[derive(Clone, Debug, Default)]
 pub struct OverlapSolver {
     route: Option<Route>,
+    tolerance: Option<f64>,
     patches: Vec<Overlap>,
     ball_faces: BallFaces,
     clipper: Clipper,
@@ -67,6 +74,12 @@ impl OverlapSolver {
     #[must_use]
     pub fn with_route(self, route: Option<Route>) -> Self {
         Self { route, ..self }
+    }
+    /// Aims at this `tolerance`, the largest relative error of a volume, where a route is not exact; 1e-5 unless given, down to
+    /// 1e-10.
+    #[must_use]
+    pub fn with_tolerance(self, tolerance: f64) -> Self {
+        Self { tolerance: Some(tolerance), ..self }
     }
 
     /// What two bodies share: one patch per connected region, none when they are apart.
@@ -98,67 +111,139 @@ impl OverlapSolver {
 
     /// Adds the patches of a pair.
     fn pair(&mut self, a: &dyn Shape, at_a: &Pose, b: &dyn Shape, at_b: &Pose) -> Result<(), DemError> {
-        let out = &mut self.patches;
-        match (a.form(), b.form()) {
-            (Form::Union(parts), _) => {
-                for part in parts {
-                    let at_part = at_a.of(&part.pose);
-                    if near(&*part.shape, &at_part, b, at_b) {
-                        self.pair(&*part.shape, &at_part, b, at_b)?;
-                    }
+        let (form_a, form_b) = (a.form(), b.form());
+        if let Form::Union(parts) = form_a {
+            for part in parts {
+                let at_part = at_a.of(&part.pose);
+                if near(&*part.shape, &at_part, b, at_b) {
+                    self.pair(&*part.shape, &at_part, b, at_b)?;
                 }
             }
+            return Ok(());
+        }
+        if rank(&form_a) > rank(&form_b) {
+            let first = self.patches.len();
+            self.pair(b, at_b, a, at_a)?;
+            self.patches[first..].iter_mut().for_each(|o| *o = o.swapped());
+            return Ok(());
+        }
+        let out = &mut self.patches;
+        let best = || best(&form_a, &form_b).ok_or(DemError::Unsupported { a: a.name(), b: b.name() });
+        let route = self.route.map_or_else(best, Ok)?;
+        let found = match route {
+            Route::ClosedForm => self.closed_form(&form_a, at_a, &form_b, at_b),
+            Route::Clip => match (&form_a, &form_b) {
+                (Form::Hull(p), Form::Hull(q)) => {
+                    self.clipper.overlap(p, at_a, q, at_b, out);
+                    true
+                }
+                _ => false,
+            },
+            Route::Crossings => match (form_a.facets(), form_b.facets()) {
+                (Some(p), Some(q)) => {
+                    let impossible = |Impossible { volume, most }| DemError::Impossible {
+                        a: a.name(),
+                        b: b.name(),
+                        volume,
+                        most,
+                    };
+                    self.facets.overlap(p, at_a, q, at_b, out).map_err(impossible)?;
+                    true
+                }
+                _ => false,
+            },
+            Route::Curve | Route::Columns => {
+                let found = columns::overlap(a, at_a, b, at_b, Some(route), self.tolerance);
+                found.map(|patch| out.extend(patch)).is_some()
+            }
+        };
+        if found { Ok(()) } else { Err(DemError::Route { a: a.name(), b: b.name(), route }) }
+    }
+
+    /// Adds what a formula gives; answers whether there is one.
+    fn closed_form(&mut self, a: &Form<'_>, at_a: &Pose, b: &Form<'_>, at_b: &Pose) -> bool {
+        let out = &mut self.patches;
+        let place = at_a.position;
+        match (a, b) {
             (Form::Disc(p), Form::Disc(q)) => {
-                out.extend(closed::discs(p.radius(), at_a.position, q.radius(), at_b.position));
+                out.extend(closed::discs(p.radius(), place, q.radius(), at_b.position))
             }
             (Form::Sphere(p), Form::Sphere(q)) => {
-                out.extend(closed::spheres(p.radius(), at_a.position, q.radius(), at_b.position));
+                out.extend(closed::spheres(p.radius(), place, q.radius(), at_b.position))
             }
-            (Form::Disc(p), Form::HalfSpace(w)) => {
-                let w = w.posed(at_b);
-                let distance = w.signed_distance(at_a.position);
-                out.extend(closed::disc_wall(p.radius(), at_a.position, distance, w.normal()));
-            }
-            (Form::Sphere(p), Form::HalfSpace(w)) => {
-                let w = w.posed(at_b);
-                let distance = w.signed_distance(at_a.position);
-                out.extend(closed::sphere_wall(p.radius(), at_a.position, distance, w.normal()));
-            }
-            (Form::Sphere(p), Form::Hull(q)) => {
-                let ball = Round::ball(p.radius(), at_a.position);
-                match q.n_faces() {
-                    ..=FEW_FACES => self.ball_faces.overlap(&ball, q, at_b, out),
-                    _ => self.ball_faces.overlap(&ball, q.facets(), at_b, out),
+            (Form::Sphere(_) | Form::Ellipsoid(_), Form::Hull(_) | Form::Facets(_)) => {
+                let round = match a {
+                    Form::Ellipsoid(p) => Round::ellipsoid(p.semi_axes(), at_a),
+                    Form::Sphere(p) => Round::ball(p.radius(), place),
+                    _ => return false,
+                };
+                match b {
+                    Form::Hull(q) if q.n_faces() <= FEW_FACES => {
+                        self.ball_faces.overlap(&round, *q, at_b, out)
+                    }
+                    Form::Hull(q) => self.ball_faces.overlap(&round, q.facets(), at_b, out),
+                    Form::Facets(q) => self.ball_faces.overlap(&round, *q, at_b, out),
+                    _ => return false,
                 }
             }
-            (Form::Sphere(p), Form::Facets(q)) => {
-                let ball = Round::ball(p.radius(), at_a.position);
-                self.ball_faces.overlap(&ball, q, at_b, out);
+            (_, Form::HalfSpace(w)) => {
+                let w = w.posed(at_b);
+                match a {
+                    Form::Disc(p) => {
+                        out.extend(closed::disc_wall(p.radius(), place, w.signed_distance(place), w.normal()))
+                    }
+                    Form::Sphere(p) => out.extend(closed::sphere_wall(
+                        p.radius(),
+                        place,
+                        w.signed_distance(place),
+                        w.normal(),
+                    )),
+                    Form::Ellipsoid(p) => out.extend(walls::ellipsoid(p, at_a, &w)),
+                    Form::Cylinder(p) => out.extend(walls::cylinder(p, at_a, &w)),
+                    Form::Hull(p) => self.half_space.overlap(p.facets(), at_a, &w, out),
+                    Form::Facets(p) => self.half_space.overlap(p, at_a, &w, out),
+                    _ => return false,
+                }
             }
-            (Form::Hull(p), Form::Hull(q)) if p.vertices().len().min(q.vertices().len()) <= CLIPPED => {
-                self.clipper.overlap(p, at_a, q, at_b, out);
-            }
-            (Form::Hull(_) | Form::Facets(_), Form::Hull(_) | Form::Facets(_)) => {
-                let (Some(p), Some(q)) = (a.form().facets(), b.form().facets()) else { return Ok(()) };
-                self.facets.overlap(p, at_a, q, at_b, out).map_err(|Impossible { volume, most }| {
-                    DemError::Impossible { a: a.name(), b: b.name(), volume, most }
-                })?;
-            }
-            (Form::Hull(p), Form::HalfSpace(w)) => {
-                self.half_space.overlap(p.facets(), at_a, &w.posed(at_b), out)
-            }
-            (Form::Facets(p), Form::HalfSpace(w)) => self.half_space.overlap(p, at_a, &w.posed(at_b), out),
-            (_, Form::Union(_))
-            | (Form::Hull(_) | Form::Facets(_), Form::Sphere(_))
-            | (Form::HalfSpace(_), Form::Disc(_) | Form::Sphere(_) | Form::Hull(_) | Form::Facets(_)) => {
-                let first = out.len();
-                self.pair(b, at_b, a, at_a)?;
-                self.patches[first..].iter_mut().for_each(|o| *o = o.swapped());
-            }
-            _ => return Err(DemError::Unsupported { a: a.name(), b: b.name() }),
+            _ => return false,
         }
-        Ok(())
+        true
     }
+}
+
+/// The order in which the two of a pair are taken: round ones first, walls and unions last.
+fn rank(form: &Form<'_>) -> usize {
+    match form {
+        Form::Disc(_) => 0,
+        Form::Sphere(_) => 1,
+        Form::Ellipsoid(_) => 2,
+        Form::Capsule(_) | Form::Cylinder(_) | Form::Smooth(_) => 3,
+        Form::Hull(_) => 4,
+        Form::Facets(_) => 5,
+        Form::Distance => 6,
+        Form::HalfSpace(_) => 7,
+        Form::Union(_) => 8,
+    }
+}
+
+/// The best route for a pair in the order of [`rank`].
+fn best(a: &Form<'_>, b: &Form<'_>) -> Option<Route> {
+    Some(match (a, b) {
+        (Form::Disc(_), Form::Disc(_) | Form::HalfSpace(_)) => Route::ClosedForm,
+        (Form::Disc(_), _) => return None,
+        (Form::Sphere(_), Form::Sphere(_)) => Route::ClosedForm,
+        (Form::Sphere(_) | Form::Ellipsoid(_), Form::Hull(_) | Form::Facets(_) | Form::HalfSpace(_)) => {
+            Route::ClosedForm
+        }
+        (Form::Cylinder(_) | Form::Hull(_) | Form::Facets(_), Form::HalfSpace(_)) => Route::ClosedForm,
+        (Form::Sphere(_) | Form::Ellipsoid(_), Form::Ellipsoid(_)) => Route::Curve,
+        (Form::Hull(p), Form::Hull(q)) if p.vertices().len().min(q.vertices().len()) <= CLIPPED => {
+            Route::Clip
+        }
+        (Form::Hull(_) | Form::Facets(_), Form::Hull(_) | Form::Facets(_)) => Route::Crossings,
+        (Form::HalfSpace(_), Form::HalfSpace(_)) => return None,
+        _ => Route::Columns,
+    })
 }
 
 /// Are all numbers of a pose finite? Short sums: they are not waited for.

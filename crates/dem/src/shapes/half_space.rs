@@ -1,5 +1,5 @@
 //! The plane wall.
-use crate::{DemError, Form, Shape};
+use crate::{DemError, Form, Shape, SmoothConvex};
 use interfaces::{Aabb, Inertia, Point, Pose, Solid, Vector};
 use nalgebra::Matrix3;
 
@@ -68,5 +68,26 @@ impl Solid for HalfSpace {
     }
     fn curvature(&self, _x: Point, _band: f64) -> f64 {
         0.0
+    }
+}
+
+impl SmoothConvex for HalfSpace {
+    fn level(&self, x: Point) -> (f64, Vector) {
+        (self.normal.dot(&(x - self.point)), self.normal)
+    }
+    fn chord(&self, o: Point, u: Vector) -> Option<[f64; 2]> {
+        let (above, rate) = (self.normal.dot(&(o - self.point)), self.normal.dot(&u));
+        if rate == 0.0 {
+            (above <= 0.0).then_some([f64::NEG_INFINITY, f64::INFINITY])
+        } else if rate > 0.0 {
+            Some([f64::NEG_INFINITY, -above / rate])
+        } else {
+            Some([-above / rate, f64::INFINITY])
+        }
+    }
+    /// Far away unless along the normal.
+    fn support(&self, direction: Vector) -> Point {
+        let across = direction - self.normal * self.normal.dot(&direction);
+        self.point + across.try_normalize(0.0).unwrap_or_default() * EVERYWHERE
     }
 }

@@ -1,5 +1,6 @@
 //! The sphere.
-use crate::{DemError, Form, Shape};
+use super::lines;
+use crate::{DemError, Form, Shape, SmoothConvex};
 use interfaces::{Aabb, Inertia, Point, Solid, SurfaceElement, Vector};
 use nalgebra::Matrix3;
 use std::f64::consts::PI;
@@ -77,5 +78,18 @@ impl Solid for Sphere {
             SurfaceElement { point: Point::from(r * normal), normal, area: whole / n }
         };
         Some((0..n as usize).map(element).collect())
+    }
+}
+
+impl SmoothConvex for Sphere {
+    fn level(&self, x: Point) -> (f64, Vector) {
+        (x.coords.norm_squared() - self.radius * self.radius, 2.0 * x.coords)
+    }
+    fn chord(&self, o: Point, u: Vector) -> Option<[f64; 2]> {
+        let o = o.coords;
+        lines::quadratic(u.norm_squared(), o.dot(&u), o.norm_squared() - self.radius * self.radius)
+    }
+    fn support(&self, direction: Vector) -> Point {
+        Point::from(self.radius * direction.try_normalize(0.0).unwrap_or(Vector::z()))
     }
 }

@@ -1,5 +1,5 @@
 //! What can go wrong.
-use crate::Route;
+use crate::{Refinement, Route};
 use interfaces::BodyId;
 
 /// Why a shape, a body or a step could not be made.
@@ -116,6 +116,12 @@ pub enum DemError {
         b: &'static str,
         /// The route.
         route: Route,
+    },
+    /// The adaptive tree cannot go so far.
+    #[error("the adaptive tree was asked for {refinement:?}; give 1 to 8 levels or a tolerance from 1e-8 to 1")]
+    Refinement {
+        /// What was asked for.
+        refinement: Refinement,
     },
     /// The step's length is unusable.
     #[error("a step of {dt} s was asked for; give a positive, finite number of seconds")]

@@ -32,6 +32,8 @@ mod vtp;
 pub use contact::PairProperties;
 pub use error::DemError;
 pub use material::Material;
-pub use overlap::{Overlap, OverlapSolver, Route, overlap};
+#[cfg(feature = "mesh")]
+pub use overlap::Facets;
+pub use overlap::{BoxKind, Normal, Overlap, OverlapSolver, Refinement, Route, SubBox, overlap};
 pub use rigid_bodies::{RigidBodies, Round};
 pub use shapes::{Disc, Form, HalfSpace, Shape, Sphere};

@@ -1,8 +1,12 @@
 //! The volume that two bodies share; one file per route to it.
 pub(crate) mod closed;
 mod solver;
+pub(crate) mod tree;
 
 pub use solver::{OverlapSolver, Route, overlap};
+#[cfg(feature = "mesh")]
+pub use tree::Facets;
+pub use tree::{BoxKind, Normal, Refinement, SubBox};
 
 use interfaces::{Point, Vector};
 

@@ -7,6 +7,8 @@ pub use disc::Disc;
 pub use half_space::HalfSpace;
 pub use sphere::Sphere;
 
+#[cfg(feature = "mesh")]
+use crate::Facets;
 use interfaces::{Inertia, Solid};
 
 /// A shape with mass, centre of mass at the origin of its frame.
@@ -23,6 +25,12 @@ pub trait Shape: Solid {
     /// What is known of the shape besides its distance: this decides how its overlaps are computed.
     fn form(&self) -> Form<'_> {
         Form::Distance
+    }
+    /// Its facets in a tree, if it is made of triangles: these then decide which boxes of the adaptive tree its surface
+    /// cuts. Build them once.
+    #[cfg(feature = "mesh")]
+    fn facets(&self) -> Option<&Facets> {
+        None
     }
 }
 

@@ -1,8 +1,8 @@
 //! What the adaptive tree costs against its error, in µs of CPU time per pair, for bodies of which only a signed distance is
 //! known. Sample run: `cargo bench -p dem --bench tree` (a minute or so); `-- torus` takes only the pairs with this word.
 //!
-//! Each pair is posed forty times at random, between a graze and half its depth; the error is that of the volume against the exact
-//! one (spheres) or against a tolerance of 1e-6.
+//! Each pair is posed twenty times at random, between a graze and half its depth; the error is that of the volume against the exact
+//! one (spheres) or against a tolerance of 3e-6.
 use cpu_time::ProcessTime;
 use dem::{OverlapSolver, Refinement, Route, Shape};
 use interfaces::{Aabb, Inertia, Point, Pose, Rotation, Solid, Vector};
@@ -112,9 +112,9 @@ fn main() {
             continue;
         }
         let tree = || OverlapSolver::new().with_route(Some(Route::Tree));
-        let mut finest = tree().with_refinement(Refinement::Tolerance(1e-6));
+        let mut finest = tree().with_refinement(Refinement::Tolerance(3e-6));
         let (mut draw, mut poses) = (Draw(7), Vec::new());
-        while poses.len() < 40 {
+        while poses.len() < 20 {
             let turn = draw.pose(0.0);
             // Push together until they overlap, then somewhat more.
             let mut at = draw.pose(2.2);

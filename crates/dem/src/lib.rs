@@ -34,6 +34,6 @@ pub use error::DemError;
 pub use material::Material;
 #[cfg(feature = "mesh")]
 pub use overlap::Facets;
-pub use overlap::{BoxKind, Normal, Overlap, OverlapSolver, Refinement, Route, SubBox, overlap};
+pub use overlap::{BoxKind, CellOverlap, Normal, Overlap, OverlapSolver, Refinement, Route, SubBox, overlap};
 pub use rigid_bodies::{RigidBodies, Round};
-pub use shapes::{Disc, Form, HalfSpace, Shape, Sphere};
+pub use shapes::{Disc, Form, HalfSpace, Implicit, Shape, Sphere};

@@ -1,8 +1,10 @@
 //! The volume that two bodies share; one file per route to it.
+mod cells;
 pub(crate) mod closed;
 mod solver;
 pub(crate) mod tree;
 
+pub use cells::CellOverlap;
 pub use solver::{OverlapSolver, Route, overlap};
 #[cfg(feature = "mesh")]
 pub use tree::Facets;

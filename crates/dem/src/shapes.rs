@@ -1,10 +1,12 @@
 //! Shapes.
 mod disc;
 mod half_space;
+mod implicit;
 mod sphere;
 
 pub use disc::Disc;
 pub use half_space::HalfSpace;
+pub use implicit::Implicit;
 pub use sphere::Sphere;
 
 #[cfg(feature = "mesh")]

@@ -40,7 +40,7 @@ impl fmt::Display for Route {
 pub struct OverlapSolver {
     route: Option<Route>,
     patches: Vec<Overlap>,
-    pub(crate) tree: AdaptiveTree,
+    tree: AdaptiveTree,
 }
 
 impl OverlapSolver {

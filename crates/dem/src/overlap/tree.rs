@@ -23,7 +23,8 @@ pub use sub_box::{BoxKind, SubBox};
 use super::Overlap;
 use crate::{DemError, Shape};
 use columns::Sums;
-use deepest::{Deepest, Oriented, Search};
+pub(crate) use deepest::Oriented;
+use deepest::{Deepest, Search};
 use grow::{Cut, Goal, Side, Tree, by_distance};
 use interfaces::{Point, Pose, Vector};
 use nalgebra::{Matrix3, SymmetricEigen};
@@ -79,9 +80,9 @@ pub(crate) struct AdaptiveTree {
     pub(crate) refinement: Refinement,
     pub(crate) normal: Normal,
     deepest: Vec<Deepest>,
-    pub(crate) roots: Vec<Oriented>,
+    roots: Vec<Oriented>,
     /// Of the last pair, one tree per root.
-    pub(crate) trees: Vec<Tree>,
+    trees: Vec<Tree>,
     patches: Patches,
     sums: Vec<Sums>,
     /// Place of the frame of the roots in the world.
@@ -157,17 +158,19 @@ impl AdaptiveTree {
             for (root, tree) in self.roots.iter_mut().zip(&mut self.trees) {
                 let bodies = search.bodies.map(|b| b.within(&root.axes, root.centre));
                 if tree.plant(&bodies, root.half, goal) {
-                    tree.refine(&bodies, goal, tolerance.max(0.1));
-                    widened |= round < ROUNDS && root.widen(tree, search.half);
+                    // Roughly first, so that little is lost if the root is too small.
+                    for tolerance in [tolerance.max(0.1), tolerance] {
+                        tree.refine(&bodies, goal, tolerance);
+                        if round < ROUNDS && root.widen(tree, search.half) {
+                            widened = true;
+                            break;
+                        }
+                    }
                 }
             }
             if !widened {
                 break;
             }
-        }
-        for (root, tree) in self.roots.iter().zip(&mut self.trees) {
-            let bodies = search.bodies.map(|b| b.within(&root.axes, root.centre));
-            tree.refine(&bodies, goal, tolerance);
         }
     }
 
@@ -315,7 +318,7 @@ impl Oriented {
     }
 
     /// What the sums in this frame say in the world.
-    fn overlap(&self, sums: &Sums, origin: Point, between: Vector) -> Overlap {
+    pub(crate) fn overlap(&self, sums: &Sums, origin: Point, between: Vector) -> Overlap {
         let centroid = sums.first / sums.volume;
         let (mut gradient, mut moment) = (Vector::zeros(), Vector::zeros());
         if sums.area.iter().all(|a| *a > 0.0) {

@@ -16,6 +16,17 @@ pub(crate) struct Sums {
 }
 
 impl Sums {
+    /// The same somewhere else, and only a share of it.
+    pub(crate) fn moved(&self, by: Vector, share: f64) -> Self {
+        let flux = self.flux.map(|f| share * f);
+        Self {
+            volume: share * self.volume,
+            first: share * (self.first + self.volume * by),
+            flux,
+            turn: [0, 1].map(|i| share * self.turn[i] + by.cross(&flux[i])),
+            area: self.area.map(|a| share * a),
+        }
+    }
     pub(crate) fn add(&mut self, o: &Self) {
         self.volume += o.volume;
         self.first += o.first;
@@ -33,8 +44,9 @@ pub(crate) struct Content {
     pub(crate) sums: Sums,
     /// ∫xᵢxⱼ dV: xx, yy, zz, yz, xz, xy; only of one body alone.
     pub(crate) second: [f64; 6],
-    /// May it have edges within the box?
-    pub(crate) ragged: bool,
+    /// How well it is summed: 0 where all is smooth, 1 where it may have edges within the box, more where columns may meet a
+    /// surface twice.
+    pub(crate) ragged: f64,
 }
 
 /// Gauss points and their weights: few where all is smooth.
@@ -97,6 +109,22 @@ fn behind(a: f64, b: f64, c: f64) -> Spans {
     out
 }
 
+/// Is anything behind all `surfaces` on the side of the box at `sign` of `axis`? Lines along axis `k` tell.
+pub(crate) fn holds(surfaces: [Option<&Quadric>; 2], axis: usize, sign: f64, k: usize) -> bool {
+    let across = 3 - axis - k;
+    [-1.0, -0.6, -0.2, 0.2, 0.6, 1.0].into_iter().any(|v| {
+        let spans = surfaces.map(|q| {
+            let Some(q) = q else { return WHOLE };
+            let seen = Surface::new(q, [axis, across, k]);
+            let [b, c] = seen.at(sign, v);
+            behind(seen.a, b, c)
+        });
+        let mut pairs =
+            spans[0].span[..spans[0].n].iter().flat_map(|p| spans[1].span[..spans[1].n].iter().map(move |q| (p, q)));
+        pairs.any(|(p, q)| p[0].max(q[0]) < p[1].min(q[1]))
+    })
+}
+
 /// A surface as columns see it: f = a t² + b t + c along each, b and c after where it stands.
 #[derive(Clone, Copy, Default)]
 struct Surface {
@@ -152,6 +180,10 @@ impl Surface {
             b[2] * b[2] - c[4],
             2.0 * b[1] * b[2] - c[5],
         ]
+    }
+    /// How steeply columns cross it.
+    fn flatness(&self) -> f64 {
+        self.b[0].abs() / (self.c[1].abs() + self.c[2].abs() + self.b[0].abs())
     }
     /// Does f only grow, or only fall, along every column?
     fn is_monotone(&self) -> bool {
@@ -245,6 +277,12 @@ impl Breaks {
             }
         }
     }
+    /// Where that curve leaves the box at the ends of such lines.
+    fn exits(&mut self, c: &[f64; 6]) {
+        for v in [-1.0, 1.0] {
+            self.roots(c[3], c[1] + c[5] * v, c[0] + v * (c[2] + c[4] * v));
+        }
+    }
     /// What is between them, in so many pieces each. Of breaks that nearly coincide one counts: what grows from them is small.
     fn pieces(&mut self, each: u32) -> impl Iterator<Item = [f64; 2]> + '_ {
         let mut kept = 1;
@@ -299,19 +337,31 @@ pub(crate) fn content(
     let mut raw = Raw::default();
     let ragged = this.n > 0 || (present[0] && present[1]) || !monotone;
     if ragged {
-        let mut breaks = Breaks::new();
+        let (mut tips, mut breaks) = (Breaks::new(), Breaks::new());
         if monotone && present[0] && present[1] {
             let meet = this.meet();
             this.note(&meet);
         }
         for kink in &this.kinks[..this.n] {
-            breaks.tips(kink);
+            tips.tips(kink);
+            breaks.exits(kink);
+        }
+        for u in &tips.at[1..tips.n - 1] {
+            breaks.push(*u);
         }
         let panels = if monotone { panels } else { 2 * panels };
         for [low, high] in breaks.pieces(panels) {
-            let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-            for [u, weight] in FOUR {
-                this.line(middle + half * u, half * weight, &mut raw);
+            let is_tip = |end: f64| tips.at[1..tips.n - 1].iter().any(|u| (u - end).abs() <= SAME);
+            let ends = [is_tip(low), is_tip(high)];
+            for [s, weight] in FOUR {
+                // Towards tips what is on the lines grows like the root of the distance.
+                let (share, rate) = match ends {
+                    [false, false] => (0.5 * (1.0 + s), 0.5),
+                    [true, false] => (0.25 * (1.0 + s) * (1.0 + s), 0.5 * (1.0 + s)),
+                    [false, true] => (1.0 - 0.25 * (1.0 - s) * (1.0 - s), 0.5 * (1.0 - s)),
+                    [true, true] => (0.5 + 0.25 * s * (3.0 - s * s), 0.75 * (1.0 - s * s)),
+                };
+                this.line(low + (high - low) * share, (high - low) * rate * weight, &mut raw);
             }
         }
     } else {
@@ -321,6 +371,11 @@ pub(crate) fn content(
             }
         }
     }
+    let ragged = match (ragged, monotone) {
+        (false, _) => 0.0,
+        (true, true) => 1.0,
+        (true, false) => 10.0,
+    };
     this.finish(&raw, centre, half, ragged)
 }
 
@@ -333,10 +388,17 @@ impl Box {
         }
     }
 
-    /// How far one surface is above the other along monotone columns, as a polynomial.
+    /// One surface's f on the other one, which monotone columns cross more steeply, as a polynomial.
     fn meet(&self) -> [f64; 6] {
         const FAR: f64 = 0.8;
-        let gap = |u: f64, v: f64| self.surfaces[0].root(FAR * u, FAR * v) - self.surfaces[1].root(FAR * u, FAR * v);
+        let [p, q] = &self.surfaces;
+        let (p, q) = if p.flatness() > q.flatness() { (q, p) } else { (p, q) };
+        let gap = |u: f64, v: f64| {
+            let (u, v) = (FAR * u, FAR * v);
+            let t = q.root(u, v).max(-2.0).min(2.0);
+            let [b, c] = p.at(u, v);
+            (p.a * t + b) * t + c
+        };
         let here = gap(0.0, 0.0);
         let [e, w, n, s] = [gap(1.0, 0.0), gap(-1.0, 0.0), gap(0.0, 1.0), gap(0.0, -1.0)];
         let mixed = gap(1.0, 1.0) + gap(-1.0, -1.0) - gap(1.0, -1.0) - gap(-1.0, 1.0);
@@ -460,7 +522,7 @@ impl Box {
     }
 
     /// The sums in the frame of the box.
-    fn finish(&self, raw: &Raw, centre: Vector, half: Vector, ragged: bool) -> Content {
+    fn finish(&self, raw: &Raw, centre: Vector, half: Vector, ragged: f64) -> Content {
         let product = half.product();
         let [u, v, t] = self.axes;
         let h = [half[u], half[v], half[t]];

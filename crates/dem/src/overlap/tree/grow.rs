@@ -1,6 +1,6 @@
 //! The tree of boxes.
-use super::columns::{Content, content};
-use super::quadric::{Quadric, stencil};
+use super::columns::{Content, content, holds};
+use super::quadric::{Quadric, STENCIL};
 use super::seen::Seen;
 use interfaces::Vector;
 use std::cmp::Ordering;
@@ -9,7 +9,7 @@ use std::collections::BinaryHeap;
 /// No leaf, or no children.
 pub(crate) const NONE: u32 = u32::MAX;
 /// Boxes that a tree may hold at most.
-const MOST: usize = 400_000;
+const MOST: usize = 100_000;
 /// Levels that a tree may have at most.
 const DEEPEST: u8 = 24;
 
@@ -18,15 +18,15 @@ const DEEPEST: u8 = 24;
 pub(crate) enum State {
     /// The box is within it.
     Inside,
-    /// Its surface is in the box, or may be; and how far it is from the model \[m\].
-    Cut(Quadric, f64),
+    /// Its surface is in the box, or may be.
+    Cut(Quadric),
 }
 
 impl State {
     pub(crate) fn quadric(&self) -> Option<&Quadric> {
         match self {
             Self::Inside => None,
-            Self::Cut(q, _) => Some(q),
+            Self::Cut(q) => Some(q),
         }
     }
 }
@@ -59,15 +59,8 @@ impl Leaf {
         if self.states.iter().any(|s| s.quadric().is_some_and(away)) {
             return false;
         }
-        let within = |x: Vector| self.states.iter().all(|s| s.quadric().is_none_or(|q| q.value(x) < 0.0));
-        const AT: [f64; 3] = [-0.9, 0.0, 0.9];
-        AT.iter().any(|u| {
-            AT.iter().any(|v| {
-                let mut x = Vector::zeros();
-                (x[axis], x[(axis + 1) % 3], x[(axis + 2) % 3]) = (sign, *u, *v);
-                within(x)
-            })
-        })
+        let surfaces = self.states.each_ref().map(State::quadric);
+        [1, 2].into_iter().any(|k| holds(surfaces, axis, sign, (axis + k) % 3))
     }
 }
 
@@ -100,7 +93,10 @@ pub(crate) struct Tree {
     free: Vec<u32>,
     due: BinaryHeap<Due>,
     /// Over the leaves: volume, error of the models, square of the error of the sums.
-    pub(crate) sum: [f64; 3],
+    sum: [f64; 3],
+    /// Of all divisions: what their models were said to miss, and by how much the volume changed.
+    said: f64,
+    done: f64,
     pub(crate) half: Vector,
 }
 
@@ -113,8 +109,10 @@ pub(crate) struct Goal {
     pub(crate) moments: bool,
 }
 
+/// How much of what a model misses the volume does: the rest cancels.
+const USUAL: f64 = 0.4;
 /// How much of a box's volume the sums may miss where surfaces end in it, with one panel and with two.
-const RAGGED: [f64; 2] = [3e-4, 5e-5];
+const RAGGED: [f64; 2] = [1e-4, 2e-5];
 
 impl Tree {
     /// Half-widths of boxes at a level.
@@ -128,6 +126,7 @@ impl Tree {
         self.free.clear();
         self.due.clear();
         self.sum = [0.0; 3];
+        (self.said, self.done) = (0.0, 0.0);
         self.half = half;
         self.nodes.push(Node { centre: Vector::zeros(), level: 0, children: NONE, leaf: NONE });
     }
@@ -173,9 +172,12 @@ impl Tree {
     pub(crate) fn refine(&mut self, bodies: &[Seen<'_>], goal: Goal, tolerance: f64) {
         let close = Close::new(bodies, goal);
         while let Some(Due(error, at)) = self.due.pop() {
-            let sum = &self.sum;
+            let [volume, models, squares] = self.sum;
             let level = self.nodes[self.leaves[at as usize].node as usize].level;
-            let enough = error.is_finite() && sum[1] + sum[2].max(0.0).sqrt() <= tolerance * sum[0];
+            // What was said is held against what came of it.
+            let scale = (USUAL * models + self.done) / (models + self.said).max(f64::MIN_POSITIVE);
+            let left = scale.max(USUAL) * models + squares.max(0.0).sqrt();
+            let enough = error.is_finite() && left <= tolerance * volume;
             if enough || level >= DEEPEST || self.nodes.len() > MOST {
                 self.due.push(Due(error, at));
                 break;
@@ -187,6 +189,7 @@ impl Tree {
     fn refine_leaf(&mut self, close: &Close<'_>, at: u32, level: u8) {
         let parent = self.leaves[at as usize];
         self.count(&parent, -1.0);
+        let before = self.sum[0];
         self.nodes[parent.node as usize].leaf = NONE;
         self.free.push(at);
         let children = self.divide(parent.node);
@@ -195,7 +198,7 @@ impl Tree {
         let distances = close.distances(&parent.states, &centres, half);
         for i in 0..8 {
             let (node, own) = (children + i as u32, distances.map(|d| d[i]));
-            let Some(leaf) = close.child(node, &parent.states, i as u32, centres[i], half, own) else {
+            let Some(leaf) = close.child(node, &parent.states, centres[i], half, own) else {
                 continue;
             };
             self.count(&leaf, 1.0);
@@ -204,6 +207,10 @@ impl Tree {
             if error > 0.0 {
                 self.due.push(Due(error, at));
             }
+        }
+        if parent.error[0].is_finite() {
+            self.said += parent.error[0];
+            self.done += (self.sum[0] - before - parent.content.sums.volume).abs();
         }
     }
 
@@ -219,7 +226,7 @@ impl Tree {
     /// Divides all boxes that a surface cuts down to a level.
     pub(crate) fn to_level(&mut self, bodies: &[Seen<'_>], half: Vector, levels: u8, cut: &impl Cut) {
         self.start(half);
-        let close = Close { bodies, panels: 2, moments: false };
+        let close = Close { bodies, panels: 1, moments: false };
         let states = [0, 1].map(|i| if i < bodies.len() { UNKNOWN } else { State::Inside });
         self.level(0, &states, &close, levels, cut);
     }
@@ -229,7 +236,7 @@ impl Tree {
         let half = self.half_at(level);
         let mut states = *known;
         for (i, state) in states.iter_mut().enumerate() {
-            if let (State::Cut(..), Some(body)) = (*state, close.bodies.get(i)) {
+            if let (State::Cut(_), Some(body)) = (*state, close.bodies.get(i)) {
                 match cut.side(i, body, centre, half) {
                     Side::Outside => return,
                     Side::Inside => *state = State::Inside,
@@ -253,7 +260,7 @@ impl Tree {
     }
 }
 
-const UNKNOWN: State = State::Cut(Quadric::ZERO, f64::INFINITY);
+const UNKNOWN: State = State::Cut(Quadric::ZERO);
 
 /// Where a box is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -304,7 +311,7 @@ impl<'a> Close<'a> {
     /// Distances of the centres of eight boxes of these half-widths from the surfaces that may be near.
     fn distances(&self, parent: &[State; 2], centres: &[Vector; 8], half: Vector) -> [[f64; 8]; 2] {
         [0, 1].map(|i| match (self.bodies.get(i), &parent[i]) {
-            (Some(body), State::Cut(..)) => body.distances(centres, 2.0 * half.norm()),
+            (Some(body), State::Cut(_)) => body.distances(centres, 2.0 * half.norm()),
             _ => [0.0; 8],
         })
     }
@@ -312,10 +319,9 @@ impl<'a> Close<'a> {
     /// Second-order models of all surfaces in a box.
     fn fit(&self, states: &mut [State; 2], centre: Vector, half: Vector) {
         for (state, body) in states.iter_mut().zip(self.bodies) {
-            if let State::Cut(..) = state {
+            if let State::Cut(_) = state {
                 let c = body.distance(centre, 2.0 * half.norm());
-                let (q, miss) = fit(body, c, centre, half).0;
-                *state = State::Cut(q, miss.abs());
+                *state = State::Cut(fit(body, c, centre, half).0);
             }
         }
     }
@@ -330,12 +336,6 @@ impl<'a> Close<'a> {
             }
         }
         self.fit(&mut states, Vector::zeros(), half);
-        // No model of the root is to be trusted.
-        for state in &mut states {
-            if let State::Cut(_, miss) = state {
-                *miss = f64::INFINITY;
-            }
-        }
         Some(Leaf { node: 0, states, content: Content::default(), error: [f64::INFINITY, 0.0] })
     }
 
@@ -344,46 +344,36 @@ impl<'a> Close<'a> {
         &self,
         node: u32,
         parent: &[State; 2],
-        i: u32,
         centre: Vector,
         half: Vector,
         distances: [f64; 2],
     ) -> Option<Leaf> {
         let diagonal = half.norm();
-        let at = 0.5 * corner(i);
         let mut states = [State::Inside; 2];
+        let mut off = [0.0; 2];
         for (b, (state, known)) in states.iter_mut().zip(parent).enumerate() {
-            let State::Cut(model, miss) = known else { continue };
+            let State::Cut(_) = known else { continue };
             let d = distances[b];
-            let slope = model.slope(at);
-            // How far the distance may differ in the child from what it is at its centre.
-            let off = (d - model.value(at)).abs();
-            let reach = 0.5 * slope.abs().sum() + 0.25 * model.curved() + 4.0 * (off + miss);
-            let reach = diagonal.min(reach);
-            if d >= reach {
+            if d >= diagonal {
                 return None;
             }
-            if d > -reach {
-                *state = *known;
+            if d <= -diagonal {
+                continue;
             }
-        }
-        let mut off = [0.0; 2];
-        for (b, state) in states.iter_mut().enumerate() {
-            let State::Cut(model, _) = *state else { continue };
-            let ((q, miss), values) = fit(&self.bodies[b], distances[b], centre, half);
-            let mut squares = (distances[b] - model.value(at)).powi(2);
-            for (x, f) in stencil().iter().zip(values) {
-                squares += (f - model.value(at + 0.5 * x)).powi(2);
+            let (q, miss) = fit(&self.bodies[b], d, centre, half);
+            // Where the surface has an edge, what it bends there is of the first order.
+            let edge = miss > 0.2 * q.curved();
+            off[b] = if edge { miss / USUAL } else { 0.5 * miss };
+            if q.c - q.reach() > 4.0 * miss {
+                return None;
             }
-            // A third of what the parent's model misses here, an order better, or what this one's own check says.
-            off[b] = 0.25 * f64::max((squares / 11.0).sqrt() / 8.0, miss.abs());
-            *state = State::Cut(q, off[b]);
+            *state = State::Cut(q);
         }
         let content = self.content(&states, centre, half);
         let mut error = [0.0; 2];
         let product = half.product();
         for b in 0..2 {
-            let State::Cut(q, _) = &states[b] else { continue };
+            let State::Cut(q) = &states[b] else { continue };
             // f changes by this much per metre.
             let slope = q.g.component_div(&half).norm().max(f64::MIN_POSITIVE);
             let mut area = content.sums.area[b];
@@ -394,18 +384,15 @@ impl<'a> Close<'a> {
             error[0] += off[b] * area / slope;
         }
         // No more than all of it.
-        error[0] = error[0].min(8.0 * product);
-        if content.ragged {
-            error[1] = RAGGED[self.panels as usize - 1] * 8.0 * product;
-        }
+        error[0] = error[0].min(8.0 * product / USUAL);
+        error[1] = content.ragged * RAGGED[self.panels as usize - 1] * 8.0 * product;
         Some(Leaf { node, states, content, error })
     }
 }
 
-/// The model of a body's surface in a box, what it misses, and the distances on the stencil.
+/// The model of a body's surface in a box, and what it misses.
 #[inline]
-fn fit(body: &Seen<'_>, c: f64, centre: Vector, half: Vector) -> ((Quadric, f64), [f64; 10]) {
-    let points = stencil().map(|x| centre + x.component_mul(&half));
-    let values = body.distances(&points, 2.0 * half.norm());
-    (Quadric::fit(c, &values), values)
+fn fit(body: &Seen<'_>, c: f64, centre: Vector, half: Vector) -> (Quadric, f64) {
+    let points = STENCIL.map(|x| centre + x.component_mul(&half));
+    Quadric::fit(c, &body.distances(&points, 2.0 * half.norm()))
 }

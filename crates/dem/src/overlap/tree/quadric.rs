@@ -12,49 +12,59 @@ pub(crate) struct Quadric {
     pub(crate) m: Vector,
 }
 
-/// Where along the axes: the best place for straight lines through a cubic.
-const FACE: f64 = 0.774_596_669_241_483_4;
-/// Where along each axis, on four diagonals.
-const CORNER: f64 = 0.6;
-/// Signs of the four corners of a tetrahedron.
-const SIGNS: [[f64; 3]; 4] = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+/// The places besides the centre where the distance must be known: the middles of the faces, two by two along the axes, and the
+/// corners, x fastest.
+pub(crate) const STENCIL: [Vector; 14] = {
+    let mut out = [Vector::new(0.0, 0.0, 0.0); 14];
+    let faces = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let mut i = 0;
+    while i < 14 {
+        let [x, y, z] = if i < 6 {
+            let s = if i % 2 == 0 { 1.0 } else { -1.0 };
+            let f = faces[i / 2];
+            [s * f[0], s * f[1], s * f[2]]
+        } else {
+            let n = i - 6;
+            [sign(n & 1), sign(n >> 1 & 1), sign(n >> 2 & 1)]
+        };
+        out[i] = Vector::new(x, y, z);
+        i += 1;
+    }
+    out
+};
 
-/// The places besides the centre where the distance must be known.
-pub(crate) fn stencil() -> [Vector; 10] {
-    std::array::from_fn(|i| match i {
-        0..6 => Vector::ith(i / 2, if i % 2 == 0 { FACE } else { -FACE }),
-        _ => CORNER * Vector::from(SIGNS[i - 6]),
-    })
+const fn sign(bit: usize) -> f64 {
+    if bit == 1 { 1.0 } else { -1.0 }
 }
 
 impl Quadric {
     const NULL: Vector = Vector::new(0.0, 0.0, 0.0);
     pub(crate) const ZERO: Self = Self { c: 0.0, g: Self::NULL, h: Self::NULL, m: Self::NULL };
-    /// Through `c` at the centre and `f` on the [`stencil`]; with what the eleventh value misses.
+    /// Through `c` at the centre and `f` on the [`STENCIL`]; with what it misses at the corners, root mean square.
     #[inline]
-    pub(crate) fn fit(c: f64, f: &[f64; 10]) -> (Self, f64) {
-        let g = Vector::from_fn(|a, _| (f[2 * a] - f[2 * a + 1]) / (2.0 * FACE));
-        let h = Vector::from_fn(|a, _| (f[2 * a] + f[2 * a + 1] - 2.0 * c) / (FACE * FACE));
-        let t = &f[6..];
-        let m = Vector::from_fn(|a, _| {
-            let sum: f64 = (0..4).map(|i| SIGNS[i][a] * t[i]).sum();
-            (sum - 4.0 * CORNER * g[a]) / (4.0 * CORNER * CORNER)
-        });
-        let mean = t.iter().sum::<f64>() / 4.0;
-        let miss = mean - c - 0.5 * CORNER * CORNER * h.sum();
-        (Self { c, g, h, m }, miss)
+    pub(crate) fn fit(c: f64, f: &[f64; 14]) -> (Self, f64) {
+        let corners = &f[6..];
+        let mut odd = [0.0; 3];
+        let mut m = [0.0; 3];
+        for (n, f) in corners.iter().enumerate() {
+            let s = [sign(n & 1), sign(n >> 1 & 1), sign(n >> 2 & 1)];
+            for a in 0..3 {
+                odd[a] += 0.125 * s[a] * f;
+                m[a] += 0.125 * s[(a + 1) % 3] * s[(a + 2) % 3] * f;
+            }
+        }
+        // The slope of a cubic that fits best all over the box is between those of faces and corners.
+        let g = Vector::from_fn(|a, _| (f[2 * a] - f[2 * a + 1]) / 3.0 + odd[a] / 3.0);
+        let h = Vector::from_fn(|a, _| f[2 * a] + f[2 * a + 1] - 2.0 * c);
+        let this = Self { c, g, h, m: m.into() };
+        let off = |(x, f): (&Vector, &f64)| (f - this.value(*x)).powi(2);
+        let miss = (STENCIL[6..].iter().zip(corners).map(off).sum::<f64>() / 8.0).sqrt();
+        (this, miss)
     }
     #[inline]
     pub(crate) fn value(&self, x: Vector) -> f64 {
         let squares = 0.5 * (self.h.x * x.x * x.x + self.h.y * x.y * x.y + self.h.z * x.z * x.z);
         self.c + self.g.dot(&x) + squares + self.m.x * x.y * x.z + self.m.y * x.x * x.z + self.m.z * x.x * x.y
-    }
-    #[inline]
-    pub(crate) fn slope(&self, x: Vector) -> Vector {
-        let m = &self.m;
-        self.g
-            + self.h.component_mul(&x)
-            + Vector::new(m.z * x.y + m.y * x.z, m.z * x.x + m.x * x.z, m.y * x.x + m.x * x.y)
     }
     /// The most by which it differs from its value at the centre.
     #[inline]

@@ -18,7 +18,9 @@ fn main() -> Outcome<()> {
     let out = folder()?;
     std::fs::create_dir_all(&out)?;
     let mut runs = Vec::new();
-    for way in [Way::Formula, Way::Tolerance].into_iter().chain((1..=6).map(Way::Tree)).chain((0..=3).map(Way::Mesh)) {
+    for way in
+        [Way::Formula, Way::Tolerance].into_iter().chain((1..=6).map(Way::Tree)).chain((0..=3).map(Way::Mesh))
+    {
         runs.push(Contact::run(way)?);
     }
     report::write(&out, &runs)

@@ -56,8 +56,7 @@ fn print(runs: &[Contact], formula: &Contact) {
             format!("{:.5}", run.rebound),
         ]
     };
-    let header =
-        ["way", "error of peak", "µs per overlap", "ms per contact", "cost, formula = 1", "rebound"];
+    let header = ["way", "error of peak", "µs per overlap", "ms per contact", "cost, formula = 1", "rebound"];
     table.matrix(&header, runs.iter().map(row).collect());
     if let Some(power) = exponent(runs) {
         table.row("tree's own cost for ℓ ≥ 3 grows like ℓ to the", number(power), "");

@@ -156,7 +156,8 @@ fn main() {
             times.sort_by(f64::total_cmp);
             println!(
                 "{name:<30} {tolerance:7.0e}: {:9.1} µs (most {:9.1}) | {:8.1e} {:8.1e} | {:6} boxes",
-                times[times.len() / 2], times[times.len() - 1],
+                times[times.len() / 2],
+                times[times.len() - 1],
                 errors[errors.len() / 2],
                 errors[errors.len() - 1],
                 boxes / poses.len()

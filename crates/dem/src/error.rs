@@ -118,13 +118,17 @@ pub enum DemError {
         route: Route,
     },
     /// The adaptive tree cannot go so far.
-    #[error("the adaptive tree was asked for {refinement:?}; give 1 to 8 levels or a tolerance from 1e-8 to 1")]
+    #[error(
+        "the adaptive tree was asked for {refinement:?}; give 1 to 8 levels or a tolerance from 1e-8 to 1"
+    )]
     Refinement {
         /// What was asked for.
         refinement: Refinement,
     },
     /// A solid's box has no volume.
-    #[error("the box around the {name} is {extent:?} m large; give one with a positive, finite extent along all axes")]
+    #[error(
+        "the box around the {name} is {extent:?} m large; give one with a positive, finite extent along all axes"
+    )]
     Bounds {
         /// Which solid.
         name: &'static str,
@@ -142,7 +146,9 @@ pub enum DemError {
         extent: [f64; 3],
     },
     /// A signed distance is not finite.
-    #[error("the signed distance of the {name} at {point:?} m is {value}; it must be finite all over its box")]
+    #[error(
+        "the signed distance of the {name} at {point:?} m is {value}; it must be finite all over its box"
+    )]
     Distance {
         /// Which solid.
         name: &'static str,

@@ -10,8 +10,7 @@ impl<const D: usize> MeshGeometry for CartesianGrid<D> {
             for j in along(1) {
                 for i in along(0) {
                     let number = [i, j, k];
-                    let mut cell =
-                        Cell { centre: Point::origin(), edges: Vector::zeros(), volume: 1.0 };
+                    let mut cell = Cell { centre: Point::origin(), edges: Vector::zeros(), volume: 1.0 };
                     for a in 0..D {
                         let (axis, n) = (self.axis(a), number[a]);
                         (cell.centre[a], cell.edges[a]) = (axis.centre(n), axis.width(n));
@@ -42,8 +41,10 @@ mod tests {
             n += 1;
             volume += cell.volume;
             for a in 0..D {
-                assert!((cell.centre[a] - 0.5 * (b.min[a] + b.max[a])).abs()
-                    <= 0.5 * (cell.edges[a] + b.max[a] - b.min[a]) + 1e-12);
+                assert!(
+                    (cell.centre[a] - 0.5 * (b.min[a] + b.max[a])).abs()
+                        <= 0.5 * (cell.edges[a] + b.max[a] - b.min[a]) + 1e-12
+                );
             }
         });
         (n, volume)

@@ -74,7 +74,8 @@ impl CellOverlap {
             return Ok(None);
         }
         let between = (at_a.position - at_b.position).try_normalize(0.0).unwrap_or(Vector::x());
-        let world = Oriented { centre: Vector::zeros(), axes: Matrix3::identity(), half: 0.5 * both.extent() };
+        let world =
+            Oriented { centre: Vector::zeros(), axes: Matrix3::identity(), half: 0.5 * both.extent() };
         Ok(Some(world.overlap(&sums, Point::from(origin), between)))
     }
 

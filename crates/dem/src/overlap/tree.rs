@@ -1,7 +1,7 @@
 //! Adaptive trees of boxes, for everything with a signed distance or facets.
 //!
 //! A box outside either body is dropped, one inside both is added, one that a surface cuts is divided into eight or, in
-//! the end, closed: the distance of each body is taken to second order, c + g·ξ + ½ ξᵀHξ from eleven points of the box,
+//! the end, closed: the distance of each body is taken to second order, c + g·ξ + ½ ξᵀHξ from fifteen points of the box,
 //! and what is behind the surfaces of both models is summed over columns (`columns.rs`). Slope and curvature so enter
 //! alike, and what is left out is of third order in the box's size.
 pub(crate) mod columns;

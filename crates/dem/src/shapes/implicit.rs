@@ -82,7 +82,8 @@ impl<S: Solid> Implicit<S> {
         let [xx, yy, zz] = [0, 1, 2].map(|a| about(a, a, second[a]));
         let [yz, xz, xy] = [(1, 2, 3), (0, 2, 4), (0, 1, 5)].map(|(a, b, i)| about(a, b, second[i]));
         let tensor = Matrix3::new(yy + zz, -xy, -xz, -xy, xx + zz, -yz, -xz, -yz, xx + yy);
-        let corner = |n: &crate::overlap::tree::grow::Node| ((n.centre - away).abs() + tree.half_at(n.level)).norm();
+        let corner =
+            |n: &crate::overlap::tree::grow::Node| ((n.centre - away).abs() + tree.half_at(n.level)).norm();
         let full = leaves().filter(|n| tree.leaves[n.leaf as usize].content.sums.volume > 0.0);
         let radius = full.map(corner).fold(0.0, f64::max);
         let centre = middle.coords + away;

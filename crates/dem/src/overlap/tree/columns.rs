@@ -119,8 +119,9 @@ pub(crate) fn holds(surfaces: [Option<&Quadric>; 2], axis: usize, sign: f64, k: 
             let [b, c] = seen.at(sign, v);
             behind(seen.a, b, c)
         });
-        let mut pairs =
-            spans[0].span[..spans[0].n].iter().flat_map(|p| spans[1].span[..spans[1].n].iter().map(move |q| (p, q)));
+        let mut pairs = spans[0].span[..spans[0].n]
+            .iter()
+            .flat_map(|p| spans[1].span[..spans[1].n].iter().map(move |q| (p, q)));
         pairs.any(|(p, q)| p[0].max(q[0]) < p[1].min(q[1]))
     })
 }
@@ -311,6 +312,8 @@ pub(crate) fn content(
     panels: u32,
     moments: bool,
 ) -> Content {
+    // Those that the whole box is behind do not matter.
+    let surfaces = surfaces.map(|q| q.filter(|q| q.c + q.reach() > 0.0));
     // Columns that all surfaces cross steeply and without a bend.
     let mut steepness = Vector::repeat(f64::INFINITY);
     for q in surfaces.iter().flatten() {
@@ -353,7 +356,8 @@ pub(crate) fn content(
         for [low, high] in breaks.pieces(panels) {
             let is_tip = |end: f64| tips.at[1..tips.n - 1].iter().any(|u| (u - end).abs() <= SAME);
             let ends = [is_tip(low), is_tip(high)];
-            for [s, weight] in FOUR {
+            let points: &[[f64; 2]] = if high - low > 1.5 { &FOUR } else { &THREE };
+            for [s, weight] in points {
                 // Towards tips what is on the lines grows like the root of the distance.
                 let (share, rate) = match ends {
                     [false, false] => (0.5 * (1.0 + s), 0.5),
@@ -421,12 +425,11 @@ impl Box {
         }
         for [low, high] in breaks.pieces(1) {
             let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-            for [v, w] in THREE {
-                let (v, w) = (middle + half * v, weight * half * w);
-                // Nothing in the middle, nothing in all.
-                if !(if self.monotone { self.simple(u, v, w, out) } else { self.column(u, v, w, out) }) {
-                    break;
-                }
+            // Nothing on one column, nothing on all of the piece.
+            if self.monotone {
+                TWO.iter().all(|[v, w]| self.simple(u, middle + half * v, weight * half * w, out));
+            } else {
+                THREE.iter().all(|[v, w]| self.column(u, middle + half * v, weight * half * w, out));
             }
         }
     }
@@ -542,11 +545,12 @@ impl Box {
             let w = &raw.turn[i];
             // In odd orders of the axes, products turn the other way.
             let sense = if (u + 1) % 3 == v { 1.0 } else { -1.0 };
-            let turn = sense * place([
-                h[1] * per[2] * w[0] - h[2] * per[1] * w[1],
-                h[2] * per[0] * w[2] - h[0] * per[2] * w[3],
-                h[0] * per[1] * w[4] - h[1] * per[0] * w[5],
-            ]);
+            let turn = sense
+                * place([
+                    h[1] * per[2] * w[0] - h[2] * per[1] * w[1],
+                    h[2] * per[0] * w[2] - h[0] * per[2] * w[3],
+                    h[0] * per[1] * w[4] - h[1] * per[0] * w[5],
+                ]);
             out.sums.flux[i] = flux;
             out.sums.turn[i] = turn + centre.cross(&flux);
             out.sums.area[i] = flux.norm();

@@ -55,7 +55,8 @@ pub(crate) struct Leaf {
 impl Leaf {
     /// Does what it holds come to its side along `axis`, the lower (−1) or the upper one (1)?
     pub(crate) fn reaches(&self, axis: usize, sign: f64) -> bool {
-        let away = |q: &Quadric| q.c + sign * q.g[axis] - (q.g.abs().sum() - q.g[axis].abs()) - q.curved() > 0.0;
+        let away =
+            |q: &Quadric| q.c + sign * q.g[axis] - (q.g.abs().sum() - q.g[axis].abs()) - q.curved() > 0.0;
         if self.states.iter().any(|s| s.quadric().is_some_and(away)) {
             return false;
         }
@@ -363,7 +364,7 @@ impl<'a> Close<'a> {
             let (q, miss) = fit(&self.bodies[b], d, centre, half);
             // Where the surface has an edge, what it bends there is of the first order.
             let edge = miss > 0.2 * q.curved();
-            off[b] = if edge { miss / USUAL } else { 0.5 * miss };
+            off[b] = if edge { miss / USUAL } else { 0.25 * miss };
             if q.c - q.reach() > 4.0 * miss {
                 return None;
             }

@@ -58,8 +58,7 @@ impl Patches {
         }
         for i in (0..8).filter(|i| i >> axis & 1 == 0) {
             let side = |node: u32, children: u32, i: u32| if children == NONE { node } else { children + i };
-            let (low, high) =
-                (side(below, p.children, i | 1 << axis), side(above, q.children, i));
+            let (low, high) = (side(below, p.children, i | 1 << axis), side(above, q.children, i));
             self.across(tree, low, high, axis);
         }
     }

@@ -45,7 +45,8 @@ fn what_is_off_the_origin_is_moved_there() {
     // Half-edges 0.6 and 0.3 along the diagonals of x and y, 0.2 along z.
     let brick = |x: Vector| {
         let half = 0.5_f64.sqrt();
-        let q = Vector::new((half * (x.x + x.y)).abs() - 0.6, (half * (x.x - x.y)).abs() - 0.3, x.z.abs() - 0.2);
+        let q =
+            Vector::new((half * (x.x + x.y)).abs() - 0.6, (half * (x.x - x.y)).abs() - 0.3, x.z.abs() - 0.2);
         q.map(|q| q.max(0.0)).norm() + q.max().min(0.0)
     };
     let i = Implicit::new("brick", Given(brick, [0.7, 0.7, 0.25]), 1e-3).unwrap().inertia(1.0);

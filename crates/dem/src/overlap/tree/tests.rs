@@ -86,7 +86,7 @@ fn balls_at_all_depths() {
                         continue;
                     }
                     let o = one(solver.solve(&BALL, &a, &BALL, &b).unwrap());
-                    assert!((o.volume / lens(d) - 1.0).abs() < tol, "{tol} {depth} {direction:?} {o:?}");
+                    assert!((o.volume / lens(d) - 1.0).abs() < 2.0 * tol, "{tol} {depth} {o:?}");
                     let off = o.centroid - nalgebra::center(&a.position, &b.position);
                     assert!(
                         off.dot(&direction).abs() < 3.0 * tol * depth && off.norm() < 3.0 * tol,

@@ -3,9 +3,9 @@ use example_support::Outcome;
 use example_support::cpu::Stopwatch;
 use example_support::prescribed_bodies::PrescribedBodies;
 use siltflow::dem::{CellOverlap, Material, OverlapSolver, PairProperties, Refinement, Route, Shape, Sphere};
-use siltflow::flow::{CartesianGrid, Side};
+use siltflow::flow::CartesianGrid;
 use siltflow::ibm::SolidFraction;
-use siltflow::interfaces::{BodyId, Lattice, Pose, Twist};
+use siltflow::interfaces::{BodyId, Lattice, Nodes, Pose, Twist};
 use std::f64::consts::PI;
 
 /// Diameter [m].
@@ -69,7 +69,9 @@ impl Scene {
         let edge = DIAMETER / CELLS as f64;
         let cells = [2 * CELLS, 2 * CELLS, 3 * CELLS];
         let grid = CartesianGrid::new(cells, cells.map(|n| n as f64 * edge))?;
-        let lattice = grid.lattice(None, &[Side::WALL.both(); 3]);
+        let axis = |n: usize| Nodes::uniform(0.5 * edge, edge, n, false);
+        let stride = [1, cells[0], cells[0] * cells[1]];
+        let lattice = Lattice::new(cells.map(axis), 0, stride);
         let stiffness = PairProperties::new(&elastic, &elastic).stiffness / length;
         Ok(Self { sphere, grid, lattice, stiffness, mass: sphere.inertia(elastic.density).mass })
     }

@@ -197,8 +197,8 @@ impl Way {
         match self {
             Self::Formula => "formula".into(),
             Self::Tolerance => "tree to 1e-3".into(),
-            Self::Tree(levels) => format!("tree, ℓ = {levels}"),
-            Self::Mesh(levels) => format!("flow mesh, ℓ = {levels}"),
+            Self::Tree(levels) => format!("tree, level {levels}"),
+            Self::Mesh(levels) => format!("flow mesh, level {levels}"),
         }
     }
 }

@@ -59,7 +59,7 @@ fn print(runs: &[Contact], formula: &Contact) {
     let header = ["way", "error of peak", "µs per overlap", "ms per contact", "cost, formula = 1", "rebound"];
     table.matrix(&header, runs.iter().map(row).collect());
     if let Some(power) = exponent(runs) {
-        table.row("tree's own cost for ℓ ≥ 3 grows like ℓ to the", number(power), "");
+        table.row("tree's own cost for level ≥ 3 grows like the level to the", number(power), "");
     }
     table.note("cost: all of a contact, with both spheres put into the flow mesh in every step");
     println!("{table}");
@@ -89,7 +89,7 @@ fn figure_7a(runs: &[Contact]) -> Vec<Drawing> {
     // On the way in.
     let half = |run: &Contact| run.path.len() / 2;
     let mut forces = Drawing {
-        title: "|f_c| against overlap: formula, and trees of levels ℓ".into(),
+        title: "|f_c| against overlap: formula, and trees of several levels".into(),
         range: [(0.0, 1.05 * most), (0.0, 1.1 * peak)],
         labels: Some(["overlap over diameter, %".into(), "|f_c|, N".into()]),
         ..Drawing::default()
@@ -135,7 +135,7 @@ fn figure_7b(runs: &[Contact], formula: &Contact) -> Vec<Panel> {
     vec![
         Panel {
             title: "Cost of a whole contact, formula = 1".into(),
-            x: "levels ℓ".into(),
+            x: "levels".into(),
             y: "relative CPU time".into(),
             series: vec![
                 series("virtual mesh (tree)", &whole, false),
@@ -144,7 +144,7 @@ fn figure_7b(runs: &[Contact], formula: &Contact) -> Vec<Panel> {
         },
         Panel {
             title: "Cost of one overlap".into(),
-            x: "levels ℓ".into(),
+            x: "levels".into(),
             y: "µs of CPU time".into(),
             series: vec![
                 series("virtual mesh (tree)", &overlap, false),

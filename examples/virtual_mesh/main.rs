@@ -135,7 +135,7 @@ fn figure_6a(
         ..Drawing::default()
     };
     let close = Drawing {
-        title: format!("Sub-boxes, at most ℓ = {LEVELS}, cut at z = {z:.2}"),
+        title: format!("Sub-boxes, at most level {LEVELS}, cut at z = {z:.2}"),
         range: [grown((x0, x1), 0.06), grown((y0, y1), 0.06)],
         cells,
         lines,

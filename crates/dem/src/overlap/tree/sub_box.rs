@@ -35,15 +35,19 @@ pub struct SubBox {
 impl SubBox {
     pub(crate) fn new(node: &Node, tree: &Tree, root: &Oriented, origin: Point) -> Self {
         let leaf = &tree.leaves[node.leaf as usize];
+        let half = tree.half_at(node.level);
+        let full = leaf.content.sums.volume > (1.0 - 1e-12) * 8.0 * half.product();
         let kind = match &leaf.states {
             [State::Inside, State::Inside] => BoxKind::Inside,
+            // Near a surface, but not cut by it.
+            _ if full => BoxKind::Inside,
             _ if leaf.is_edge() => BoxKind::Edge,
             _ => BoxKind::Cut,
         };
         Self {
             centre: origin + (root.centre + root.axes * node.centre),
             axes: root.axes,
-            half: tree.half_at(node.level),
+            half,
             level: node.level,
             kind,
             volume: leaf.content.sums.volume,

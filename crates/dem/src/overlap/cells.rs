@@ -62,7 +62,7 @@ impl CellOverlap {
             let centre = cell.centre.coords - origin;
             let within = bodies.map(|body| body.within(&Matrix3::identity(), centre));
             let half = 0.5 * cell.edges;
-            self.tree.to_level(&within, half, self.levels, &cut);
+            self.tree.grow_levels(&within, half, self.levels, &cut);
             // Of cells that do not fill their box.
             let share = cell.volume / cell.edges.product();
             for node in self.tree.nodes.iter().filter(|n| n.leaf != NONE) {

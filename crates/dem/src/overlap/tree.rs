@@ -126,7 +126,7 @@ impl AdaptiveTree {
                 let root = Oriented { centre: Vector::zeros(), axes: Matrix3::identity(), half };
                 self.roots.push(root);
                 self.room();
-                self.trees[0].to_level(&bodies, half, levels, &Surfaces { shapes: [a, b] });
+                self.trees[0].grow_levels(&bodies, half, levels, &Surfaces { shapes: [a, b] });
             }
             Refinement::Tolerance(tolerance) => self.align(&Search { bodies, half }, tolerance),
         }

@@ -199,7 +199,7 @@ impl Surface {
     /// Where f < 0 on a monotone column.
     #[inline(always)]
     fn span(&self, u: f64, v: f64) -> [f64; 2] {
-        let root = self.root(u, v).max(-1.0).min(1.0);
+        let root = self.root(u, v).clamp(-1.0, 1.0);
         if self.b[0] > 0.0 { [-1.0, root] } else { [root, 1.0] }
     }
 }
@@ -399,7 +399,7 @@ impl Box {
         let (p, q) = if p.flatness() > q.flatness() { (q, p) } else { (p, q) };
         let gap = |u: f64, v: f64| {
             let (u, v) = (FAR * u, FAR * v);
-            let t = q.root(u, v).max(-2.0).min(2.0);
+            let t = q.root(u, v).clamp(-2.0, 2.0);
             let [b, c] = p.at(u, v);
             (p.a * t + b) * t + c
         };

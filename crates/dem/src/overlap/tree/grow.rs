@@ -225,7 +225,7 @@ impl Tree {
     }
 
     /// Divides all boxes that a surface cuts down to a level.
-    pub(crate) fn to_level(&mut self, bodies: &[Seen<'_>], half: Vector, levels: u8, cut: &impl Cut) {
+    pub(crate) fn grow_levels(&mut self, bodies: &[Seen<'_>], half: Vector, levels: u8, cut: &impl Cut) {
         self.start(half);
         let close = Close { bodies, panels: 1, moments: false };
         let states = [0, 1].map(|i| if i < bodies.len() { UNKNOWN } else { State::Inside });

@@ -1,5 +1,5 @@
 //! What can go wrong.
-use crate::Route;
+use crate::{Refinement, Route};
 use interfaces::BodyId;
 
 /// Why a shape, a body or a step could not be made.
@@ -189,6 +189,46 @@ pub enum DemError {
         b: &'static str,
         /// The route.
         route: Route,
+    },
+    /// The adaptive tree cannot go so far.
+    #[error(
+        "the adaptive tree was asked for {refinement:?}; give 1 to 8 levels or a tolerance from 1e-8 to 1"
+    )]
+    Refinement {
+        /// What was asked for.
+        refinement: Refinement,
+    },
+    /// A solid's box has no volume.
+    #[error(
+        "the box around the {name} is {extent:?} m large; give one with a positive, finite extent along all axes"
+    )]
+    Bounds {
+        /// Which solid.
+        name: &'static str,
+        /// Its extent \[m\].
+        extent: [f64; 3],
+    },
+    /// A solid has no inside.
+    #[error(
+        "nothing of the {name} was found within its box of {extent:?} m; is its distance negative inside, and the box around it?"
+    )]
+    Empty {
+        /// Which solid.
+        name: &'static str,
+        /// Extent of its box \[m\].
+        extent: [f64; 3],
+    },
+    /// A signed distance is not finite.
+    #[error(
+        "the signed distance of the {name} at {point:?} m is {value}; it must be finite all over its box"
+    )]
+    Distance {
+        /// Which solid.
+        name: &'static str,
+        /// Where \[m\].
+        point: [f64; 3],
+        /// Its value \[m\].
+        value: f64,
     },
     /// The step's length is unusable.
     #[error("a step of {dt} s was asked for; give a positive, finite number of seconds")]

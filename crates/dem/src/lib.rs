@@ -32,11 +32,13 @@ mod vtp;
 pub use contact::PairProperties;
 pub use error::DemError;
 pub use material::Material;
-pub use overlap::{Overlap, OverlapSolver, Route, overlap};
+#[cfg(feature = "mesh")]
+pub use overlap::FacetIndex;
+pub use overlap::{BoxKind, CellOverlap, Normal, Overlap, OverlapSolver, Refinement, Route, SubBox, overlap};
 pub use rigid_bodies::{RigidBodies, Round};
 #[cfg(feature = "mesh")]
 pub use shapes::{AdmissionReport, MeshError, Shell, Thinnest, TriangleMesh, TriangleSoup};
 pub use shapes::{
-    Capsule, ConvexPolyhedron, Cuboid, Cylinder, Disc, Ellipsoid, Facets, Form, HalfSpace, Part, Shape,
-    SmoothConvex, Sphere, Union,
+    Capsule, ConvexPolyhedron, Cuboid, Cylinder, Disc, Ellipsoid, Facets, Form, HalfSpace, Implicit, Part,
+    Shape, SmoothConvex, Sphere, Union,
 };

@@ -1,5 +1,6 @@
 //! The volume that two bodies share; one file per route to it.
 mod ball_faces;
+mod cells;
 mod clip;
 pub(crate) mod closed;
 mod columns;
@@ -8,9 +9,14 @@ mod ellipsoids;
 mod facets;
 mod half_space;
 mod solver;
+pub(crate) mod tree;
 mod walls;
 
+pub use cells::CellOverlap;
 pub use solver::{OverlapSolver, Route, overlap};
+#[cfg(feature = "mesh")]
+pub use tree::FacetIndex;
+pub use tree::{BoxKind, Normal, Refinement, SubBox};
 
 use interfaces::{Point, Vector};
 

@@ -9,6 +9,7 @@ mod ellipsoid_surface;
 mod facets;
 mod half_space;
 mod hull;
+mod implicit;
 mod lines;
 mod moments;
 mod smooth_convex;
@@ -29,6 +30,7 @@ pub use ellipsoid::Ellipsoid;
 pub use facets::Facets;
 pub(crate) use facets::{Leaf, Node, WIDTH, moved};
 pub use half_space::HalfSpace;
+pub use implicit::Implicit;
 pub(crate) use moments::Moments;
 pub use smooth_convex::SmoothConvex;
 pub use sphere::Sphere;
@@ -36,6 +38,8 @@ pub use sphere::Sphere;
 pub use triangle_mesh::{AdmissionReport, MeshError, Shell, Thinnest, TriangleMesh, TriangleSoup};
 pub use union::{Part, Union};
 
+#[cfg(feature = "mesh")]
+use crate::FacetIndex;
 use interfaces::{Inertia, Solid, Vector};
 
 /// A shape with mass, centre of mass at the origin of its frame.
@@ -52,6 +56,12 @@ pub trait Shape: Solid {
     /// What is known of the shape besides its distance: this decides how its overlaps are computed.
     fn form(&self) -> Form<'_> {
         Form::Distance
+    }
+    /// Its facets in a tree, if it is made of triangles: these then decide which boxes of the adaptive tree its surface
+    /// cuts. Build them once.
+    #[cfg(feature = "mesh")]
+    fn facet_index(&self) -> Option<&FacetIndex> {
+        None
     }
 }
 

@@ -35,6 +35,7 @@ mod hooks;
 mod implicit;
 mod kernels;
 pub mod linear;
+mod mesh_geometry;
 mod metrics;
 mod momentum_matrix;
 pub mod operators;

@@ -1,7 +1,7 @@
 //! The words that the siltflow crates share, and nothing else: where things are ([`Pose`],
 //! [`Aabb`], [`Periods`]), how they move ([`Twist`]) and are pushed ([`Wrench`]), what a body
 //! owes its neighbours ([`Solid`], [`Kinematics`], [`Bodies`], [`Dynamics`]), how a flow shows
-//! its velocity ([`Lattice`], [`Nodes`], [`VelocityField`]), what a restart needs ([`Checkpoint`]), what a turbulence model asks of a flow
+//! its velocity ([`Lattice`], [`Nodes`], [`VelocityField`]) and its cells ([`MeshGeometry`]), what a restart needs ([`Checkpoint`]), what a turbulence model asks of a flow
 //! ([`Transport`], [`Closure`]) and is told of walls ([`WallRow`]), and the container of the files that ParaView reads ([`vtk`]).
 //!
 //! The numerical crates depend on this one and on none of each other, so each can be taken
@@ -21,6 +21,7 @@ mod bodies;
 mod cut_walls;
 mod geometry;
 mod lattice;
+mod mesh;
 mod nodes;
 mod restart;
 mod solid;
@@ -32,6 +33,7 @@ pub use bodies::{Bodies, BodyId, Dynamics, Freedom, Inertia, Kinematics, Load};
 pub use cut_walls::{CutComponent, CutFace, CutNode, CutWalls, Link, SolidPoint};
 pub use geometry::{Aabb, Periods, Point, Pose, Rotation, Twist, Vector, Wrench};
 pub use lattice::{Lattice, VelocityField};
+pub use mesh::{Cell, MeshGeometry};
 pub use nodes::Nodes;
 pub use restart::{Checkpoint, RestartError};
 pub use solid::{Polyhedron, Solid, SurfaceElement};

@@ -3,6 +3,7 @@ use super::ball_faces::{BallFaces, Round};
 use super::clip::Clipper;
 use super::facets::{FacetOverlap, Impossible};
 use super::half_space::HalfSpaceOverlap;
+use super::tree::{AdaptiveTree, Normal, Refinement, SubBox};
 use super::{Overlap, closed, columns, walls};
 use crate::{DemError, Form, Shape};
 use interfaces::Pose;
@@ -21,6 +22,8 @@ pub enum Route {
     Columns,
     /// Integrals along the curve where the surfaces of two ellipsoids or spheres cross.
     Curve,
+    /// Boxes that are divided where the surfaces are, for all that has a signed distance.
+    Tree,
 }
 
 impl fmt::Display for Route {
@@ -31,6 +34,7 @@ impl fmt::Display for Route {
             Self::Crossings => "crossings of triangles",
             Self::Columns => "columns",
             Self::Curve => "curve",
+            Self::Tree => "adaptive tree",
         })
     }
 }
@@ -57,6 +61,7 @@ pub struct OverlapSolver {
     clipper: Clipper,
     facets: FacetOverlap,
     half_space: HalfSpaceOverlap,
+    tree: AdaptiveTree,
 }
 
 /// Polyhedra are clipped while one of them has no more vertices than this; beyond, crossings are found faster.
@@ -80,6 +85,23 @@ impl OverlapSolver {
     #[must_use]
     pub fn with_tolerance(self, tolerance: f64) -> Self {
         Self { tolerance: Some(tolerance), ..self }
+    }
+
+    /// How far the adaptive tree goes; to a relative error of the volume of about 1e-3 unless told.
+    #[must_use]
+    pub fn with_refinement(mut self, refinement: Refinement) -> Self {
+        self.tree.refinement = refinement;
+        self
+    }
+    /// What the normals of the adaptive tree are taken from.
+    #[must_use]
+    pub fn with_normal(mut self, normal: Normal) -> Self {
+        self.tree.normal = normal;
+        self
+    }
+    /// The boxes that the adaptive tree ended with when it was last used.
+    pub fn boxes(&self) -> impl Iterator<Item = SubBox> + '_ {
+        self.tree.boxes()
     }
 
     /// What two bodies share: one patch per connected region, none when they are apart.
@@ -156,6 +178,14 @@ impl OverlapSolver {
                 let found = columns::overlap(a, at_a, b, at_b, Some(route), self.tolerance);
                 found.map(|patch| out.extend(patch)).is_some()
             }
+            Route::Tree => {
+                self.tree.refinement.check()?;
+                let found = AdaptiveTree::supports(a, b);
+                if found {
+                    self.tree.overlap(a, at_a, b, at_b, out);
+                }
+                found
+            }
         };
         if found { Ok(()) } else { Err(DemError::Route { a: a.name(), b: b.name(), route }) }
     }
@@ -226,6 +256,14 @@ fn rank(form: &Form<'_>) -> usize {
     }
 }
 
+/// Is it convex and known by straight lines?
+fn is_smooth(form: &Form<'_>) -> bool {
+    matches!(
+        form,
+        Form::Sphere(_) | Form::Ellipsoid(_) | Form::Capsule(_) | Form::Cylinder(_) | Form::Smooth(_)
+    )
+}
+
 /// The best route for a pair in the order of [`rank`].
 fn best(a: &Form<'_>, b: &Form<'_>) -> Option<Route> {
     Some(match (a, b) {
@@ -242,7 +280,9 @@ fn best(a: &Form<'_>, b: &Form<'_>) -> Option<Route> {
         }
         (Form::Hull(_) | Form::Facets(_), Form::Hull(_) | Form::Facets(_)) => Route::Crossings,
         (Form::HalfSpace(_), Form::HalfSpace(_)) => return None,
-        _ => Route::Columns,
+        (_, Form::HalfSpace(_)) if is_smooth(a) => Route::Columns,
+        (_, _) if is_smooth(a) && is_smooth(b) => Route::Columns,
+        _ => Route::Tree,
     })
 }
 

@@ -23,9 +23,10 @@ pub use soup::TriangleSoup;
 pub use thickness::Thinnest;
 
 use crate::shapes::{Facets, Moments};
-use crate::{Form, Shape};
+use crate::{FacetIndex, Form, Shape};
 use interfaces::{Aabb, Inertia, Point, Polyhedron, Solid, Vector};
 use std::path::Path;
+use std::sync::OnceLock;
 use surface::{Nearest, Surface};
 
 /// A body whose surface is a closed, consistently oriented triangle mesh.
@@ -40,6 +41,8 @@ pub struct TriangleMesh {
     faces: Vec<[u32; 3]>,
     surface: Surface,
     facets: Facets,
+    /// For the adaptive tree, made when first asked for.
+    index: OnceLock<FacetIndex>,
     bounds: Aabb,
     /// Distance of the farthest vertex.
     radius: f64,
@@ -83,6 +86,7 @@ impl TriangleMesh {
             faces,
             surface,
             facets,
+            index: OnceLock::new(),
             bounds,
             radius: farthest,
             volume: moments.volume,
@@ -147,6 +151,10 @@ impl Shape for TriangleMesh {
     }
     fn form(&self) -> Form<'_> {
         Form::Facets(&self.facets)
+    }
+    fn facet_index(&self) -> Option<&FacetIndex> {
+        let surface = Polyhedron { vertices: &self.vertices, faces: &self.faces };
+        Some(self.index.get_or_init(|| FacetIndex::new(surface)))
     }
 }
 

@@ -62,7 +62,7 @@ pub fn draw(path: &Path, columns: usize, drawings: &[Drawing]) -> io::Result<()>
     let rows: Vec<&[Drawing]> = drawings.chunks(columns.max(1)).collect();
     let foot = |row: &[Drawing]| {
         let axes = if row.iter().any(|d| d.labels.is_some()) { FOOT } else { 0.0 };
-        axes.max(ROW * row.iter().map(|d| d.legend.len()).max().unwrap_or(0) as f64) + 12.0
+        axes + ROW * row.iter().map(|d| d.legend.len()).max().unwrap_or(0) as f64 + 12.0
     };
     let height: f64 = rows.iter().map(|row| TITLE + SIZE.1 + foot(row)).sum();
     let width = columns as f64 * (LEFT + SIZE.0) + MARGIN;
@@ -115,7 +115,8 @@ impl Drawing {
         }
         canvas.clip(None);
         for (row, (paint, text)) in self.legend.iter().enumerate() {
-            let y = rect.bottom() + ROW * (row as f64 + 0.5) + 4.0;
+            let below = if self.labels.is_some() { FOOT } else { 4.0 };
+            let y = rect.bottom() + below + ROW * (row as f64 + 0.5);
             let key = Rect::new(rect.left, y - 8.0, 26.0, 16.0);
             canvas.fill(Rect::new(key.left - 1.0, key.top - 1.0, 28.0, 18.0), INK, 1.0);
             canvas.fill(key, paint.colour(&map), 1.0);

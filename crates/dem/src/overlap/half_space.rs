@@ -71,7 +71,8 @@ impl HalfSpaceOverlap {
                 let side = |a: usize| if normal[a] > 0.0 { node.low[a][slot] } else { node.high[a][slot] };
                 let deepest: f64 =
                     (0..3).map(|a| if normal[a] == 0.0 { 0.0 } else { normal[a] * f64::from(side(a)) }).sum();
-                if !(deepest <= offset) || node.low[0][slot] > node.high[0][slot] {
+                let empty = node.low[0][slot] > node.high[0][slot];
+                if empty || deepest.is_nan() || deepest > offset {
                     continue;
                 }
                 if !node.is_leaf {

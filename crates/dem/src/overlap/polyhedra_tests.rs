@@ -120,7 +120,11 @@ fn convex(kind: usize, size: [i32; 3]) -> ConvexPolyhedron {
             (0..8)
                 .map(|i: u32| {
                     let face = [i & 1, 2 + (i >> 1 & 1), 4 + (i >> 2 & 1)];
-                    if i.count_ones() % 2 == 0 { face.to_vec() } else { vec![face[1], face[0], face[2]] }
+                    if i.count_ones().is_multiple_of(2) {
+                        face.to_vec()
+                    } else {
+                        vec![face[1], face[0], face[2]]
+                    }
                 })
                 .collect(),
         ),

@@ -73,7 +73,7 @@ impl Solid for Cuboid {
     }
     /// Rectangles. The level surface outside has rounded edges, which are left out: `offset` 0 only.
     fn surface(&self, spacing: f64, offset: f64) -> Option<Vec<SurfaceElement>> {
-        if offset != 0.0 || !(spacing > 0.0) {
+        if offset != 0.0 || spacing.is_nan() || spacing <= 0.0 {
             return None;
         }
         let mut all = Vec::new();

@@ -122,7 +122,9 @@ pub enum DemError {
         depth: f64,
     },
     /// No formula for this pair of shapes.
-    #[error("a {a} and a {b} cannot touch; use shapes of one dimension, all discs or all spheres")]
+    #[error(
+        "a {a} and a {b} have no overlap that could be computed: discs meet discs and plane walls only, and two walls share no finite volume; use bodies of one dimension"
+    )]
     Unsupported {
         /// One shape.
         a: &'static str,

@@ -61,5 +61,7 @@ mod smooth_tests;
 #[cfg(test)]
 mod tests;
 
+#[cfg(all(test, feature = "mesh"))]
+mod memory_tests;
 #[cfg(test)]
 mod polyhedra_tests;

@@ -99,8 +99,8 @@ impl Clipper {
     fn cut(&mut self, normal: Vector, offset: f64, face: u32) -> bool {
         self.heights.clear();
         self.heights.extend(self.places.iter().map(|x| normal.dot(x) - offset));
-        let ahead = |edge: &Edge, end: usize| self.heights[edge.ends[end] as usize] > 0.0;
-        if !self.edges.iter().any(|e| ahead(e, 0) || ahead(e, 1)) {
+        // Places that are no longer on any edge may be ahead, too: then the edges all stay.
+        if self.heights.iter().all(|h| *h <= 0.0) {
             return true;
         }
         self.open.clear();

@@ -63,9 +63,9 @@ pub(crate) fn spheres(ra: f64, a: Point, rb: f64, b: Point) -> Option<Overlap> {
     }
     let per_distance = 1.0 / d;
     let [sa, sb] = [rb, ra].map(|other| 0.5 * depth * (2.0 * other - depth) * per_distance);
-    let [va, vb] = [(ra, sa), (rb, sb)].map(|(r, s)| s * s * (r - s / 3.0));
+    let [va, vb] = [(ra, sa), (rb, sb)].map(|(r, s)| s * s * (r - s * (1.0 / 3.0)));
     let (s, r) = if sa < sb { (sa, ra) } else { (sb, rb) };
-    let normal = apart / d;
+    let normal = apart * per_distance;
     let share = if va + vb > 0.0 { vb / (va + vb) } else { 0.5 };
     Some(overlap(PI * (va + vb), a - apart * share, normal, PI * s * (2.0 * r - s)))
 }

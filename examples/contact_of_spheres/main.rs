@@ -5,7 +5,7 @@
 //! flow mesh of 20 per d_p, refined near both (AMR). The time loop is the same for all: velocity Verlet, and in every step both
 //! spheres come into the flow mesh anew, as the paper's solver has them do.
 //!
-//! Sample run: `cargo run --release --example contact_of_spheres`, ten seconds or so; all goes to `out/contact_of_spheres`, or
+//! Sample run: `cargo run --release --example contact_of_spheres`, a minute or so; all goes to `out/contact_of_spheres`, or
 //! where `--out FOLDER` says.
 mod contact;
 mod report;

@@ -123,8 +123,8 @@ fn figure_7b(runs: &[Contact], formula: &Contact) -> Vec<Panel> {
         points: runs
             .iter()
             .filter_map(|run| match run.way {
-                Way::Tree(l) if !mesh => Some((f64::from(l), value(run), String::new())),
-                Way::Mesh(l @ 1..) if mesh => Some((f64::from(l), value(run), String::new())),
+                Way::Tree(l) if !mesh => Some((f64::from(l), value(run), l.to_string())),
+                Way::Mesh(l @ 1..) if mesh => Some((f64::from(l), value(run), l.to_string())),
                 _ => None,
             })
             .collect(),

@@ -1,9 +1,9 @@
-//! Overlaps of smooth convex pairs: relative errors against a much finer run, and CPU time per pair. The depth is a share of
+//! Overlaps of round bodies with one another and with boxes: relative errors against a much finer run, and CPU time per pair. The depth is a share of
 //! the cube root of the smaller volume.
 //!
 //! `cargo bench -p dem --bench columns`
 use cpu_time::ThreadTime;
-use dem::{Capsule, Cylinder, Ellipsoid, OverlapSolver, Route, Shape, Sphere};
+use dem::{Capsule, Cuboid, Cylinder, Ellipsoid, OverlapSolver, Route, Shape, Sphere};
 use interfaces::{Pose, Rotation, Vector};
 use std::hint::black_box;
 
@@ -24,6 +24,7 @@ fn main() {
     let capsule = |r, l| Box::new(Capsule::new(r, l).unwrap()) as Box<dyn Shape>;
     let cylinder = |r, l| Box::new(Cylinder::new(r, l).unwrap()) as Box<dyn Shape>;
     let sphere = |r| Box::new(Sphere::new(r).unwrap()) as Box<dyn Shape>;
+    let cuboid = |a, b, c| Box::new(Cuboid::new([a, b, c]).unwrap()) as Box<dyn Shape>;
     let pairs = [
         ("spheres", sphere(1.0), sphere(0.7)),
         ("ellipsoids 1:1.5:2", ellipsoid(1.0, 1.5, 2.0), ellipsoid(1.0, 1.5, 2.0)),
@@ -32,6 +33,12 @@ fn main() {
         ("ellipsoid 10:10:1, small sphere", ellipsoid(3.0, 3.0, 0.3), sphere(0.01)),
         ("capsules", capsule(0.5, 2.0), capsule(0.5, 2.0)),
         ("cylinders", cylinder(0.5, 2.0), cylinder(0.5, 2.0)),
+        ("flat cylinders", cylinder(1.0, 0.2), cylinder(1.0, 0.2)),
+        ("capsule, cylinder", capsule(0.5, 2.0), cylinder(0.5, 2.0)),
+        ("ball, capsule", sphere(0.7), capsule(0.5, 2.0)),
+        ("ball, cylinder", sphere(0.7), cylinder(0.5, 2.0)),
+        ("capsule, box", capsule(0.5, 2.0), cuboid(1.0, 1.5, 2.0)),
+        ("cylinder, box", cylinder(0.5, 2.0), cuboid(1.0, 1.5, 2.0)),
     ];
     println!(
         "pair | depth of the size | median error | 99 % | worst | gradient, median | moment, median | µs per pair"
@@ -49,13 +56,12 @@ fn main() {
 /// along the line of centres.
 fn measure(name: &str, a: &dyn Shape, b: &dyn Shape, depth: f64) {
     let mut random = Random(1);
-    // Cylinders take long.
-    let count = if name == "cylinders" { 6 } else { 40 };
-    let round = name.contains("sphere") || name.contains("ellipsoid");
+    let count = 100;
+    let round = name.starts_with("sphere") || name.starts_with("ellipsoid");
     // Spheres not by their closed form.
     let route = round.then_some(Route::Curve);
     let exact = if name == "spheres" { Some(Route::ClosedForm) } else { route };
-    let mut fine = OverlapSolver::new().with_route(exact).with_tolerance(if round { 1e-10 } else { 1e-6 });
+    let mut fine = OverlapSolver::new().with_route(exact).with_tolerance(if round { 1e-10 } else { 1e-11 });
     let mut solver = OverlapSolver::new().with_route(route);
     let poses: Vec<[Pose; 2]> = (0..count)
         .map(|_| {

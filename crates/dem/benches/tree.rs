@@ -1,18 +1,47 @@
 //! What the adaptive tree costs against its error, in µs of CPU time per pair, for bodies of which only a signed distance is
 //! known. Sample run: `cargo bench -p dem --bench tree` (a minute or so); `-- torus` takes only the pairs with this word.
 //!
-//! Each pair is posed twenty times at random, between a graze and half its depth; the error is that of the volume against the exact
-//! one (spheres) or against a tolerance of 3e-6.
+//! Each pair is posed twenty times at random, between a graze and half its depth. The errors are those of the volume, and of the
+//! normal of the largest region in degrees, against the exact ones (spheres) or against a tolerance of 3e-6. The rows go to
+//! `out/overlap/tree.csv`, too: pair, tolerance, median and largest µs, median and largest error, median and largest degrees,
+//! median number of distances asked for, and the poses with boxes.
 use cpu_time::ProcessTime;
 use dem::{OverlapSolver, Refinement, Route, Shape};
 use interfaces::{Aabb, Inertia, Point, Pose, Rotation, Solid, Vector};
 use std::f64::consts::PI;
+use std::fmt::Write;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// A signed distance and a box.
 struct Body {
     name: &'static str,
     distance: fn(Vector) -> f64,
     half: Vector,
+}
+
+/// The same, and counts how often its distance is asked for.
+struct Counted<'a>(&'a Body, AtomicUsize);
+
+impl Solid for Counted<'_> {
+    fn signed_distance(&self, x: Point, _: f64) -> f64 {
+        self.1.fetch_add(1, Relaxed);
+        (self.0.distance)(x.coords)
+    }
+    fn aabb(&self) -> Aabb {
+        self.0.aabb()
+    }
+}
+
+impl Shape for Counted<'_> {
+    fn name(&self) -> &'static str {
+        self.0.name
+    }
+    fn inertia(&self, density: f64) -> Inertia {
+        self.0.inertia(density)
+    }
+    fn bounding_radius(&self) -> f64 {
+        self.0.bounding_radius()
+    }
 }
 
 impl Solid for Body {
@@ -28,8 +57,12 @@ impl Shape for Body {
     fn name(&self) -> &'static str {
         self.name
     }
-    fn inertia(&self, _: f64) -> Inertia {
-        unimplemented!("only overlaps are asked for")
+    /// That of its box.
+    fn inertia(&self, density: f64) -> Inertia {
+        let (h, volume) = (self.half, 8.0 * self.half.product());
+        let third = |a: f64, b: f64| density * volume * (a * a + b * b) / 3.0;
+        let diagonal = Vector::new(third(h.y, h.z), third(h.x, h.z), third(h.x, h.y));
+        Inertia { mass: density * volume, volume, tensor: nalgebra::Matrix3::from_diagonal(&diagonal) }
     }
     fn bounding_radius(&self) -> f64 {
         self.half.norm()
@@ -82,9 +115,25 @@ impl Draw {
     }
 }
 
-fn volume(solver: &mut OverlapSolver, a: &Body, at_a: &Pose, b: &Body, at_b: &Pose) -> f64 {
-    let patches = solver.solve(a, at_a, b, at_b).expect("a route");
-    patches.iter().map(|p| p.volume).sum()
+/// Volume of all regions, centroid and normal of the largest one.
+fn measure(
+    solver: &mut OverlapSolver,
+    a: &dyn Shape,
+    at_a: &Pose,
+    b: &dyn Shape,
+    at_b: &Pose,
+) -> [Vector; 3] {
+    // Too many boxes: not a number.
+    let Ok(patches) = solver.solve(a, at_a, b, at_b) else { return [Vector::repeat(f64::NAN); 3] };
+    let volume: f64 = patches.iter().map(|p| p.volume).sum();
+    let largest = patches.iter().max_by(|p, q| p.volume.total_cmp(&q.volume));
+    let [centroid, normal] = largest.map_or([Vector::zeros(); 2], |p| [p.centroid.coords, p.normal]);
+    [Vector::x() * volume, centroid, normal]
+}
+
+fn sorted(mut values: Vec<f64>) -> [f64; 2] {
+    values.sort_by(f64::total_cmp);
+    [values[values.len() / 2], values[values.len() - 1]]
 }
 
 fn main() {
@@ -103,9 +152,10 @@ fn main() {
         (&superellipsoid, &superellipsoid),
         (&superellipsoid, &torus),
         (&ball, &brick),
-        (&brick, &brick),
     ];
-    println!("pair; per tolerance: median µs | median and largest relative error of the volume");
+    let mut csv = String::from(
+        "pair,tolerance,us_median,us_largest,error_median,error_largest,degrees_median,degrees_largest,distances_median,poses_with_boxes\n",
+    );
     for (a, b) in pairs {
         let name = format!("{}-{}", a.name, b.name);
         if only.as_ref().is_some_and(|o| !name.contains(o.as_str())) {
@@ -120,48 +170,64 @@ fn main() {
             let mut at = draw.pose(2.2);
             let step = 0.995;
             let mut rough = tree().with_refinement(Refinement::Tolerance(1e-1));
-            while volume(&mut rough, a, &turn, b, &at) == 0.0 && at.position.coords.norm() > 0.3 {
+            while measure(&mut rough, a, &turn, b, &at)[0].x == 0.0 && at.position.coords.norm() > 0.3 {
                 at.position.coords *= step;
             }
             at.position.coords *= 1.0 - 0.2 * draw.next().powi(2);
-            let exact = if a.name == "ball" && b.name == "ball" {
+            let mut exact = measure(&mut finest, a, &turn, b, &at);
+            if a.name == "ball" && b.name == "ball" {
                 let d = 2.0 - at.position.coords.norm();
-                PI * d * d * (6.0 - d) / 12.0
-            } else {
-                volume(&mut finest, a, &turn, b, &at)
-            };
-            if exact > 0.0 {
+                exact[0].x = PI * d * d * (6.0 - d) / 12.0;
+                exact[2] = -at.position.coords.normalize();
+            }
+            if exact[0].x > 0.0 {
                 poses.push((turn, at, exact));
             }
         }
-        for tolerance in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5] {
+        for tolerance in [1e-1, 1e-2, 1e-3, 1e-4] {
             let mut solver = tree().with_refinement(Refinement::Tolerance(tolerance));
-            let (mut errors, mut times, mut boxes) = (Vec::new(), Vec::new(), 0);
+            let (mut errors, mut degrees, mut counts, mut times) = (vec![], vec![], vec![], vec![]);
+            let mut boxes = 0;
             for (at_a, at_b, exact) in &poses {
-                let found = volume(&mut solver, a, at_a, b, at_b);
-                errors.push((found / exact - 1.0).abs());
-                boxes += solver.boxes().count();
+                let counted = [a, b].map(|body| Counted(body, AtomicUsize::new(0)));
+                let found = measure(&mut solver, &counted[0], at_a, &counted[1], at_b);
+                counts.push(counted.iter().map(|c| c.1.load(Relaxed) as f64).sum::<f64>());
+                let error = (found[0].x / exact[0].x - 1.0).abs();
+                if std::env::var("SHOW").is_ok() {
+                    println!("  {error:.1e} {} {}", solver.boxes().count(), counts[counts.len() - 1]);
+                }
+                errors.push(error);
+                // Of regions of about the same size the other one may come first.
+                if (found[1] - exact[1]).norm() < 0.02 {
+                    degrees.push(found[2].angle(&exact[2]).to_degrees());
+                }
+                boxes += usize::from(solver.boxes().next().is_some());
                 let mut best = f64::INFINITY;
                 for _ in 0..3 {
                     let repeat = if tolerance > 1e-4 { 20 } else { 3 };
                     let start = ProcessTime::now();
                     for _ in 0..repeat {
-                        std::hint::black_box(volume(&mut solver, a, at_a, b, at_b));
+                        std::hint::black_box(measure(&mut solver, a, at_a, b, at_b));
                     }
                     best = best.min(start.elapsed().as_secs_f64() / f64::from(repeat));
                 }
                 times.push(1e6 * best);
             }
-            errors.sort_by(f64::total_cmp);
-            times.sort_by(f64::total_cmp);
+            let [time, error, degree] = [sorted(times), sorted(errors), sorted(degrees)];
+            let count = sorted(counts);
             println!(
-                "{name:<30} {tolerance:7.0e}: {:9.1} µs (most {:9.1}) | {:8.1e} {:8.1e} | {:6} boxes",
-                times[times.len() / 2],
-                times[times.len() - 1],
-                errors[errors.len() / 2],
-                errors[errors.len() - 1],
-                boxes / poses.len()
+                "{name:<30} {tolerance:6.0e}: {:8.1} µs (most {:8.1}) | {:7.1e} {:7.1e} | {:7.1e}° {:7.1e}° | {:6} distances, {boxes} with boxes",
+                time[0], time[1], error[0], error[1], degree[0], degree[1], count[0]
             );
+            writeln!(
+                csv,
+                "{name},{tolerance:e},{:.1},{:.1},{:.2e},{:.2e},{:.2e},{:.2e},{},{boxes}",
+                time[0], time[1], error[0], error[1], degree[0], degree[1], count[0]
+            )
+            .expect("memory");
         }
     }
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../out/overlap");
+    std::fs::create_dir_all(&folder).expect("a folder for results");
+    std::fs::write(folder.join("tree.csv"), csv).expect("a file for results");
 }

@@ -200,6 +200,18 @@ pub enum DemError {
         /// What was asked for.
         refinement: Refinement,
     },
+    /// The adaptive tree has as many boxes as it may have.
+    #[error(
+        "{boxes} boxes of the adaptive tree bring the error of the volume of {what} down to {error:.1e} of it only; ask for a larger tolerance"
+    )]
+    Boxes {
+        /// The body or bodies.
+        what: String,
+        /// How many boxes there are.
+        boxes: usize,
+        /// The relative error of the volume, about.
+        error: f64,
+    },
     /// A solid's box has no volume.
     #[error(
         "the box around the {name} is {extent:?} m large; give one with a positive, finite extent along all axes"

@@ -8,6 +8,8 @@ mod doubling;
 mod ellipsoids;
 mod facets;
 mod half_space;
+mod integrals;
+mod slices;
 mod solver;
 pub(crate) mod tree;
 mod walls;
@@ -49,6 +51,10 @@ impl Overlap {
     pub fn rate(&self, velocity: Vector, spin: Vector) -> f64 {
         self.gradient.dot(&velocity) + self.moment.dot(&spin)
     }
+    /// All of a body that lies within the other, where nothing changes when it moves.
+    pub(crate) fn whole(volume: f64, centroid: Point, normal: Vector) -> Self {
+        Self { volume, centroid, normal, gradient: Vector::zeros(), moment: Vector::zeros() }
+    }
     /// As the second body sees it.
     #[must_use]
     pub fn swapped(&self) -> Self {
@@ -57,10 +63,14 @@ impl Overlap {
 }
 
 #[cfg(test)]
+mod routes_tests;
+#[cfg(test)]
 mod smooth_tests;
 #[cfg(test)]
 mod tests;
 
+#[cfg(all(test, feature = "mesh"))]
+mod every_pair_tests;
 #[cfg(all(test, feature = "mesh"))]
 mod memory_tests;
 #[cfg(test)]

@@ -9,6 +9,8 @@ mod ellipsoid_surface;
 mod facets;
 mod half_space;
 mod hull;
+#[cfg(any(test, feature = "mesh"))]
+mod icosphere;
 mod implicit;
 mod lines;
 mod moments;
@@ -17,12 +19,14 @@ mod sphere;
 mod spiral;
 #[cfg(test)]
 mod tests;
+mod triangle;
 #[cfg(feature = "mesh")]
 mod triangle_mesh;
 mod union;
 
 pub use capsule::Capsule;
 pub use convex_polyhedron::ConvexPolyhedron;
+pub(crate) use convex_polyhedron::Plane;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
 pub use disc::Disc;
@@ -30,6 +34,8 @@ pub use ellipsoid::Ellipsoid;
 pub use facets::Facets;
 pub(crate) use facets::{Leaf, Node, WIDTH, moved};
 pub use half_space::HalfSpace;
+#[cfg(any(test, feature = "mesh"))]
+pub(crate) use icosphere::icosphere;
 pub use implicit::Implicit;
 pub(crate) use moments::Moments;
 pub use smooth_convex::SmoothConvex;
@@ -40,7 +46,7 @@ pub use union::{Part, Union};
 
 #[cfg(feature = "mesh")]
 use crate::FacetIndex;
-use interfaces::{Inertia, Solid, Vector};
+use interfaces::{Inertia, Solid};
 
 /// A shape with mass, centre of mass at the origin of its frame.
 ///
@@ -101,22 +107,4 @@ impl<'a> Form<'a> {
             _ => None,
         }
     }
-}
-
-/// The point of a triangle nearest to `x`.
-pub(crate) fn nearest_in_triangle(x: Vector, [a, b, c]: [Vector; 3]) -> Vector {
-    let (u, v) = (b - a, c - a);
-    let normal = u.cross(&v);
-    // Barycentric coordinates of the foot on the plane.
-    let (w, square) = (x - a, normal.norm_squared());
-    let (s, t) = (w.cross(&v).dot(&normal), u.cross(&w).dot(&normal));
-    if s >= 0.0 && t >= 0.0 && s + t <= square && square > 0.0 {
-        return a + u * (s / square) + v * (t / square);
-    }
-    let on_edge = |p: Vector, q: Vector| {
-        let along = (x - p).dot(&(q - p)) / (q - p).norm_squared();
-        p + (q - p) * if along.is_finite() { along.clamp(0.0, 1.0) } else { 0.0 }
-    };
-    let nearer = |p: Vector, q: Vector| if (x - p).norm_squared() <= (x - q).norm_squared() { p } else { q };
-    nearer(on_edge(a, b), nearer(on_edge(b, c), on_edge(c, a)))
 }

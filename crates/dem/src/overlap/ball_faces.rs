@@ -302,7 +302,7 @@ fn within(b: &impl Faces) -> Option<(f64, Point)> {
 /// One within the other: the volume no longer changes.
 fn contained(volume: f64, centroid: Point, apart: Vector) -> Overlap {
     let normal = apart.try_normalize(0.0).unwrap_or(Vector::x());
-    Overlap { volume, centroid, normal, gradient: Vector::zeros(), moment: Vector::zeros() }
+    Overlap::whole(volume, centroid, normal)
 }
 
 /// The region of `volume` whose faces have the `sums`, back in the world; `None` when it is empty.

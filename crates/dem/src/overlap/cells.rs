@@ -1,5 +1,6 @@
 //! Overlaps summed on the cells of a mesh.
 use super::Overlap;
+use super::solver::check;
 use super::tree::grow::{NONE, Tree};
 use super::tree::seen::{Seen, shared};
 use super::tree::{AdaptiveTree, Oriented, Refinement, Surfaces};
@@ -46,9 +47,7 @@ impl CellOverlap {
         at_b: &Pose,
     ) -> Result<Option<Overlap>, DemError> {
         for (shape, at) in [(a, at_a), (b, at_b)] {
-            if !(at.position.coords.sum() + at.orientation.coords.sum()).is_finite() {
-                return Err(DemError::Pose { name: shape.name(), position: at.position.into() });
-            }
+            check(shape, at)?;
         }
         if !AdaptiveTree::supports(a, b) {
             return Err(DemError::Unsupported { a: a.name(), b: b.name() });

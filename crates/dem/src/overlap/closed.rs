@@ -96,7 +96,7 @@ fn pair(
     if d <= (ra - rb).abs() {
         // One inside the other: no force from the gradient, but the volume is known.
         let (r, centroid) = if ra < rb { (ra, a) } else { (rb, b) };
-        return Some(overlap(whole(r), centroid, normal, 0.0));
+        return Some(Overlap::whole(whole(r), centroid, normal));
     }
     // Depth of each one's part beyond the plane of the common circle, without cancellation.
     let (sa, sb) = (depth * (2.0 * rb - depth) / (2.0 * d), depth * (2.0 * ra - depth) / (2.0 * d));
@@ -121,7 +121,7 @@ fn wall(
     if depth <= 0.0 {
         None
     } else if depth >= 2.0 * r {
-        Some(overlap(whole, at, normal, 0.0))
+        Some(Overlap::whole(whole, at, normal))
     } else {
         let p = part(r, depth);
         Some(overlap(p.volume, at - normal * p.centroid, normal, p.cut))

@@ -5,7 +5,6 @@ mod meeting;
 mod pair;
 mod polar;
 pub(super) mod rules;
-mod sums;
 
 use super::{Overlap, Route, ellipsoids};
 use crate::{Form, HalfSpace, Shape, SmoothConvex};
@@ -14,9 +13,7 @@ use interfaces::{Pose, Vector};
 use meeting::{Meeting, meet};
 use pair::{Body, Pair};
 
-/// Largest relative error of a volume that is aimed at.
-const TOLERANCE: f64 = 1e-5;
-/// The finest one worth asking for.
+/// The finest tolerance worth asking for.
 const FINEST: f64 = 1e-10;
 
 /// The overlap of two smooth convex bodies, or of one and a wall, by this `route` or the better one of columns and curve; the
@@ -27,10 +24,10 @@ pub(super) fn overlap(
     b: &dyn Shape,
     at_b: &Pose,
     route: Option<Route>,
-    tolerance: Option<f64>,
+    tolerance: f64,
 ) -> Option<Option<Overlap>> {
     // Also where it is not a number.
-    let tolerance = tolerance.unwrap_or(TOLERANCE).max(FINEST);
+    let tolerance = FINEST.max(tolerance);
     let reach = a.bounding_radius() + b.bounding_radius();
     let far = (at_a.position - at_b.position).norm() >= reach;
     let semi_axes = [semi_axes(a.form()), semi_axes(b.form())];
@@ -88,13 +85,7 @@ impl<'a> Posed<'a> {
     }
     /// The overlap when all of it lies within the other body.
     fn contained(&self, normal: Vector) -> Overlap {
-        Overlap {
-            volume: self.shape.inertia(1.0).volume,
-            centroid: self.at.position,
-            normal,
-            gradient: Vector::zeros(),
-            moment: Vector::zeros(),
-        }
+        Overlap::whole(self.shape.inertia(1.0).volume, self.at.position, normal)
     }
 }
 
@@ -138,13 +129,13 @@ fn integrate(pair: &Pair, frame: &Frame, a: Posed, b: Option<Posed>, tolerance: 
         let refined = lens::edge(&views).and_then(|edge| frame.refined(pair, &edge));
         let frame = refined.as_ref().filter(|f| f.lens).unwrap_or(frame);
         if let Some(sums) = lens::lens(&frame.views(pair), frame.lengths(), tolerance) {
-            return sums.overlap(frame, a.at.position);
+            return frame.overlap(&sums, a.at.position);
         }
     }
     // Rays are less even than columns: a margin.
     match polar::polar(&views, frame.lengths(), 0.2 * tolerance) {
         polar::Found::Within(0) => Some(a.contained(-frame.axes[2].normalize())),
         polar::Found::Within(_) => b.map(|b| b.contained(-frame.axes[2].normalize())),
-        polar::Found::Crossing(sums) => sums.overlap(frame, a.at.position),
+        polar::Found::Crossing(sums) => frame.overlap(&sums, a.at.position),
     }
 }

@@ -38,13 +38,7 @@ impl Posed {
         self.turn * Matrix3::from_diagonal(&self.semi_axes)
     }
     fn whole(&self, direction: Vector) -> Overlap {
-        Overlap {
-            volume: 2.0 / 3.0 * TAU * self.semi_axes.product(),
-            centroid: self.position,
-            normal: direction,
-            gradient: Vector::zeros(),
-            moment: Vector::zeros(),
-        }
+        Overlap::whole(2.0 / 3.0 * TAU * self.semi_axes.product(), self.position, direction)
     }
 }
 

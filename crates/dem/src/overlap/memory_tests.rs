@@ -1,5 +1,8 @@
 //! What a solver needs memory for.
-use crate::{ConvexPolyhedron, Cuboid, Ellipsoid, HalfSpace, OverlapSolver, Shape, Sphere, TriangleMesh};
+use crate::{
+    Capsule, ConvexPolyhedron, Cuboid, Cylinder, Ellipsoid, HalfSpace, OverlapSolver, Shape, Sphere,
+    TriangleMesh,
+};
 use interfaces::{Point, Pose, Rotation, Vector};
 
 /// Once it has met a pair, it allocates nothing for it, near or apart, whatever pairs come between.
@@ -17,6 +20,10 @@ fn a_warmed_up_solver_allocates_nothing() {
     let mut pairs: Vec<[&dyn Shape; 2]> = exact.iter().flat_map(|a| exact.iter().map(|b| [*a, *b])).collect();
     pairs.retain(|[a, b]| !(a.name() == "half-space" && b.name() == "half-space"));
     pairs.extend([[&ellipsoid as &dyn Shape, &ellipsoid as _], [&ellipsoid, &mesh], [&ellipsoid, &wall]]);
+    let (capsule, cylinder) = (Capsule::new(0.7, 0.9).unwrap(), Cylinder::new(0.8, 1.1).unwrap());
+    let tubes: [&dyn Shape; 2] = [&capsule, &cylinder];
+    let others: [&dyn Shape; 6] = [&sphere, &cube, &hull, &wall, &capsule, &cylinder];
+    pairs.extend(tubes.iter().flat_map(|a| others.iter().map(|b| [*a, *b])));
     let poses = |distance: f64| {
         let orientation = Rotation::from_scaled_axis(Vector::new(0.3, 0.4, 0.5));
         [Pose::at([0.0; 3]), Pose { position: Point::new(0.3, 0.4, distance), orientation }]

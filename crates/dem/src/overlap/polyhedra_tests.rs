@@ -311,3 +311,31 @@ proptest! {
         assert_relative_eq!(m, m1 + m2, epsilon = 1e-12);
     }
 }
+
+/// A tetrahedron with its tip in one arm of a U and its base in the other: every edge at the tip leaves the U and enters it again.
+#[test]
+fn across_a_gap() {
+    let u = BTreeSet::from([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [2, 1, 0]]);
+    let u = surface(&u, Vector::zeros()).unwrap();
+    let corners = [[0.5, 1.5, 0.5], [2.5, 1.2, 0.2], [2.5, 1.8, 0.5], [2.5, 1.5, 0.8]].map(Vector::from);
+    let whole =
+        (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).dot(&(corners[3] - corners[0])) / 6.0;
+    for first in 0..4 {
+        // The search starts from another corner.
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| (i + first) % 4);
+        let turn = if (whole > 0.0) == (first % 2 == 0) { [b, c, d] } else { [c, b, d] };
+        let [b, c, d] = turn;
+        let faces = [[a, c, b], [a, b, d], [b, c, d], [a, d, c]].map(|f| f.map(|i| i as u32));
+        let tip = Facets::new(corners.to_vec(), faces.to_vec()).unwrap();
+        let mut shares: Vec<f64> =
+            solve(&mut FacetOverlap::default(), &tip, &Pose::at([0.0; 3]), &u, &Pose::at([0.0; 3]))
+                .iter()
+                .map(|o| o.volume / whole.abs())
+                .collect();
+        shares.sort_by(f64::total_cmp);
+        // Sections grow with the square of the distance from the tip.
+        assert_eq!(shares.len(), 2, "{shares:?}");
+        assert_relative_eq!(shares[0], 0.25_f64.powi(3), max_relative = 1e-12);
+        assert_relative_eq!(shares[1], 1.0 - 0.75_f64.powi(3), max_relative = 1e-12);
+    }
+}

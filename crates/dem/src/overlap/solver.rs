@@ -3,7 +3,8 @@ use super::ball_faces::{BallFaces, Round};
 use super::clip::Clipper;
 use super::facets::{FacetOverlap, Impossible};
 use super::half_space::HalfSpaceOverlap;
-use super::tree::{AdaptiveTree, Normal, Refinement, SubBox};
+use super::slices::Slices;
+use super::tree::{AdaptiveTree, Exhausted, Normal, Refinement, SubBox};
 use super::{Overlap, closed, columns, walls};
 use crate::{DemError, Form, Shape};
 use interfaces::Pose;
@@ -20,6 +21,8 @@ pub enum Route {
     Crossings,
     /// Columns over the contact of smooth convex bodies; rays where the overlap is deep.
     Columns,
+    /// Parallel slices, for capsules and cylinders with one another, with spheres, convex polyhedra and walls.
+    Slices,
     /// Integrals along the curve where the surfaces of two ellipsoids or spheres cross.
     Curve,
     /// Boxes that are divided where the surfaces are, for all that has a signed distance.
@@ -33,6 +36,7 @@ impl fmt::Display for Route {
             Self::Clip => "clipping",
             Self::Crossings => "crossings of triangles",
             Self::Columns => "columns",
+            Self::Slices => "slices",
             Self::Curve => "curve",
             Self::Tree => "adaptive tree",
         })
@@ -61,8 +65,12 @@ pub struct OverlapSolver {
     clipper: Clipper,
     facets: FacetOverlap,
     half_space: HalfSpaceOverlap,
+    slices: Slices,
     tree: AdaptiveTree,
 }
+
+/// Largest relative error of a volume that is aimed at unless told.
+const TOLERANCE: f64 = 1e-5;
 
 /// Polyhedra are clipped while one of them has no more vertices than this; beyond, crossings are found faster.
 const CLIPPED: usize = 30;
@@ -108,7 +116,7 @@ impl OverlapSolver {
     ///
     /// # Errors
     /// [`DemError::Unsupported`] for pairs without a route, [`DemError::Route`] when the route asked for does not lead there,
-    /// [`DemError::Pose`] when a pose is not finite.
+    /// [`DemError::Pose`] when a pose is not finite, [`DemError::Boxes`] when the adaptive tree does not come to its tolerance.
     pub fn solve(
         &mut self,
         a: &dyn Shape,
@@ -118,15 +126,16 @@ impl OverlapSolver {
     ) -> Result<&[Overlap], DemError> {
         self.patches.clear();
         for (shape, at) in [(a, at_a), (b, at_b)] {
-            if !is_finite(at) {
-                return Err(DemError::Pose { name: shape.name(), position: at.position.into() });
-            }
+            check(shape, at)?;
         }
         // The most frequent pair of all, before all else.
-        if let (Form::Sphere(p), Form::Sphere(q)) = (a.form(), b.form()) {
-            self.patches.extend(closed::spheres(p.radius(), at_a.position, q.radius(), at_b.position));
-        } else {
-            self.pair(a, at_a, b, at_b)?;
+        match (self.route, a.form(), b.form()) {
+            (None, Form::Sphere(p), Form::Sphere(q)) => {
+                if let Some(patch) = p.overlap(at_a.position, q, at_b.position) {
+                    self.patches.push(patch);
+                }
+            }
+            _ => self.pair(a, at_a, b, at_b)?,
         }
         Ok(&self.patches)
     }
@@ -152,6 +161,7 @@ impl OverlapSolver {
         let out = &mut self.patches;
         let best = || best(&form_a, &form_b).ok_or(DemError::Unsupported { a: a.name(), b: b.name() });
         let route = self.route.map_or_else(best, Ok)?;
+        let tolerance = self.tolerance.unwrap_or(TOLERANCE);
         let found = match route {
             Route::ClosedForm => self.closed_form(&form_a, at_a, &form_b, at_b),
             Route::Clip => match (&form_a, &form_b) {
@@ -174,15 +184,19 @@ impl OverlapSolver {
                 }
                 _ => false,
             },
+            Route::Slices => self.slices.overlap((&form_a, at_a), (&form_b, at_b), tolerance, out),
             Route::Curve | Route::Columns => {
-                let found = columns::overlap(a, at_a, b, at_b, Some(route), self.tolerance);
+                let found = columns::overlap(a, at_a, b, at_b, Some(route), tolerance);
                 found.map(|patch| out.extend(patch)).is_some()
             }
             Route::Tree => {
                 self.tree.refinement.check()?;
                 let found = AdaptiveTree::supports(a, b);
                 if found {
-                    self.tree.overlap(a, at_a, b, at_b, out);
+                    let what = || format!("a {} in a {}", a.name(), b.name());
+                    let exhausted =
+                        |Exhausted { boxes, error }| DemError::Boxes { what: what(), boxes, error };
+                    self.tree.overlap(a, at_a, b, at_b, out).map_err(exhausted)?;
                 }
                 found
             }
@@ -241,18 +255,18 @@ impl OverlapSolver {
     }
 }
 
-/// The order in which the two of a pair are taken: round ones first, walls and unions last.
+/// The order in which the two of a pair are taken: unions first, which are taken apart, then round ones; walls last.
 fn rank(form: &Form<'_>) -> usize {
     match form {
-        Form::Disc(_) => 0,
-        Form::Sphere(_) => 1,
-        Form::Ellipsoid(_) => 2,
-        Form::Capsule(_) | Form::Cylinder(_) | Form::Smooth(_) => 3,
-        Form::Hull(_) => 4,
-        Form::Facets(_) => 5,
-        Form::Distance => 6,
-        Form::HalfSpace(_) => 7,
-        Form::Union(_) => 8,
+        Form::Union(_) => 0,
+        Form::Disc(_) => 1,
+        Form::Sphere(_) => 2,
+        Form::Ellipsoid(_) => 3,
+        Form::Capsule(_) | Form::Cylinder(_) | Form::Smooth(_) => 4,
+        Form::Hull(_) => 5,
+        Form::Facets(_) => 6,
+        Form::Distance => 7,
+        Form::HalfSpace(_) => 8,
     }
 }
 
@@ -280,17 +294,26 @@ fn best(a: &Form<'_>, b: &Form<'_>) -> Option<Route> {
         }
         (Form::Hull(_) | Form::Facets(_), Form::Hull(_) | Form::Facets(_)) => Route::Crossings,
         (Form::HalfSpace(_), Form::HalfSpace(_)) => return None,
+        (Form::Capsule(_), Form::HalfSpace(_)) => Route::Slices,
         (_, Form::HalfSpace(_)) if is_smooth(a) => Route::Columns,
+        (Form::Sphere(_), Form::Capsule(_) | Form::Cylinder(_)) => Route::Slices,
+        (Form::Capsule(_) | Form::Cylinder(_), Form::Capsule(_) | Form::Cylinder(_) | Form::Hull(_)) => {
+            Route::Slices
+        }
         (_, _) if is_smooth(a) && is_smooth(b) => Route::Columns,
         _ => Route::Tree,
     })
 }
 
-/// Are all numbers of a pose finite? Short sums: they are not waited for.
+/// Refuses poses that are not finite. Short sums: they are not waited for.
 #[inline]
-fn is_finite(at: &Pose) -> bool {
+pub(super) fn check(shape: &dyn Shape, at: &Pose) -> Result<(), DemError> {
     let (x, q) = (&at.position, &at.orientation.coords);
-    (((x.x + x.y) + (q.x + q.y)) + ((x.z + q.z) + q.w)).is_finite()
+    if (((x.x + x.y) + (q.x + q.y)) + ((x.z + q.z) + q.w)).is_finite() {
+        Ok(())
+    } else {
+        Err(DemError::Pose { name: shape.name(), position: at.position.into() })
+    }
 }
 
 /// Do the spheres around two shapes meet?

@@ -1,16 +1,24 @@
-//! Adaptive trees of boxes, for everything with a signed distance or facets.
+//! Everything with a signed distance or facets: lenses where contacts are simple, adaptive trees of boxes where they are not.
+//!
+//! `scan.rs` looks for places where both bodies are, `deepest.rs` goes down from them. What is like a lens there, between two
+//! pieces of surface that meet at one rim, is summed along lines (`lens.rs`); all else is left to the trees.
 //!
 //! A box outside either body is dropped, one inside both is added, one that a surface cuts is divided into eight or, in
 //! the end, closed: the distance of each body is taken to second order, c + g·ξ + ½ ξᵀHξ from fifteen points of the box,
 //! and what is behind the surfaces of both models is summed over columns (`columns.rs`). Slope and curvature so enter
 //! alike, and what is left out is of third order in the box's size.
+mod around;
 pub(crate) mod columns;
+mod cut;
 mod deepest;
 #[cfg(feature = "mesh")]
 mod facet_index;
 pub(crate) mod grow;
+mod lens;
 mod patches;
 pub(crate) mod quadric;
+mod roots;
+mod scan;
 pub(crate) mod seen;
 mod sub_box;
 #[cfg(test)]
@@ -22,13 +30,18 @@ pub use sub_box::{BoxKind, SubBox};
 
 use super::Overlap;
 use crate::{DemError, Shape};
+pub(crate) use around::Oriented;
 use columns::Sums;
-pub(crate) use deepest::Oriented;
-use deepest::{Deepest, Search};
-use grow::{Cut, Goal, Side, Tree, by_distance};
-use interfaces::{Point, Pose, Vector};
+pub(crate) use cut::Surfaces;
+use deepest::Search;
+pub(crate) use grow::Exhausted;
+use grow::{Goal, Tree};
+use interfaces::{Point, Pose, Rotation, Vector};
+use lens::Lenses;
 use nalgebra::{Matrix3, SymmetricEigen};
 use patches::Patches;
+use roots::{Root, merge};
+use scan::Scan;
 use seen::{Seen, shared};
 
 /// How far the adaptive tree goes.
@@ -37,8 +50,15 @@ pub enum Refinement {
     /// As Isoz et al. (2023), section 4: boxes along the world's axes, from what the two bodies' own boxes share; all that
     /// a surface cuts are divided, this many times, 1 to 8.
     Levels(u8),
-    /// Boxes along the contact, those with the largest errors divided first until the relative error of the volume is
-    /// about this, from 1e-8 to 1.
+    /// To a relative error of the volume of about this, from 1e-8 to 1. A region between two pieces of surface that meet at one rim
+    /// is summed along lines and has no boxes; any other one is divided into boxes along the contact, those with the largest
+    /// errors first.
+    ///
+    /// Regions are looked for in boxes, down to a 32nd of what the bodies' own boxes share along each axis. A box is left out where a
+    /// distance is larger than it reaches, which is a proof as distances change by no more than the way gone, or where
+    /// weighted means of both distances, linear but for what nine points in the box tell, are positive all over it, which is none: a
+    /// bump that all nine points miss may be missed. So may regions smaller than the last boxes, and those as near as this to
+    /// another one.
     Tolerance(f64),
 }
 
@@ -74,14 +94,15 @@ pub enum Normal {
     PlaneFit,
 }
 
-/// Computes overlaps by trees and keeps the memory of it.
+/// Computes overlaps by lenses and trees and keeps the memory of it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct AdaptiveTree {
     pub(crate) refinement: Refinement,
     pub(crate) normal: Normal,
-    deepest: Vec<Deepest>,
+    scan: Scan,
     starts: Vec<Vector>,
-    roots: Vec<Oriented>,
+    lenses: Lenses,
+    roots: Vec<Root>,
     /// Of the last pair, one tree per root.
     trees: Vec<Tree>,
     patches: Patches,
@@ -106,6 +127,10 @@ impl AdaptiveTree {
         extents.iter().all(|e| e.z > 0.0) && extents.iter().any(finite)
     }
 
+    /// Adds the patches of a pair.
+    ///
+    /// # Errors
+    /// If boxes do not suffice for the tolerance.
     pub(crate) fn overlap(
         &mut self,
         a: &dyn Shape,
@@ -113,30 +138,64 @@ impl AdaptiveTree {
         b: &dyn Shape,
         at_b: &Pose,
         out: &mut Vec<Overlap>,
-    ) {
+    ) -> Result<(), Exhausted> {
         self.roots.clear();
         // Around the first body, so that places far from the world's origin lose no digits.
         let apart = at_b.position - at_a.position;
-        let near_a = Pose { position: Point::origin(), ..*at_a };
-        let near_b = Pose { position: Point::from(apart), ..*at_b };
-        let Some(both) = shared(&a.aabb().posed(&near_a), &b.aabb().posed(&near_b)) else { return };
-        let middle = nalgebra::center(&both.min, &both.max).coords;
-        self.origin = at_a.position + middle;
-        let bodies = [Seen::new(a, &near_a, middle), Seen::new(b, &near_b, middle)];
-        let half = 0.5 * both.extent();
         match self.refinement {
             Refinement::Levels(levels) => {
+                let Some((bodies, half)) = self.frame(a, at_a, b, at_b, Rotation::identity()) else {
+                    return Ok(());
+                };
                 let root = Oriented { centre: Vector::zeros(), axes: Matrix3::identity(), half };
-                self.roots.push(root);
+                self.roots.push(Root::boxed(root, Vector::zeros()));
                 self.room();
                 self.trees[0].grow_levels(&bodies, half, levels, &Surfaces { shapes: [a, b] });
             }
-            Refinement::Tolerance(tolerance) => self.align(&Search { bodies, half }, tolerance),
+            Refinement::Tolerance(tolerance) => {
+                // Along the world or a body, whatever makes the shared box smallest; none, and they are apart.
+                let mut least = (f64::INFINITY, Rotation::identity());
+                for turn in [Rotation::identity(), at_a.orientation, at_b.orientation] {
+                    let Some((_, half)) = self.frame(a, at_a, b, at_b, turn) else { return Ok(()) };
+                    if half.product() < 0.99 * least.0 {
+                        least = (half.product(), turn);
+                    }
+                }
+                let Some((bodies, half)) = self.frame(a, at_a, b, at_b, least.1) else { return Ok(()) };
+                self.align(&Search { bodies, half }, tolerance)?;
+                let turn = least.1.to_rotation_matrix();
+                self.roots.iter_mut().for_each(|root| root.turn(turn.matrix()));
+            }
         }
         let between = (-apart).try_normalize(0.0).unwrap_or(Vector::x());
-        for root in 0..self.roots.len() {
-            self.collect(root, between, out);
+        for number in 0..self.roots.len() {
+            match &self.roots[number].lens {
+                Some(lens) => out.push(lens.overlap(self.origin, between)),
+                None => self.collect(number, between, out),
+            }
         }
+        Ok(())
+    }
+
+    /// Both bodies as a frame turned by `turn` sees them, from the middle of what their boxes share along its axes, and the
+    /// half-widths of this; the middle becomes the origin.
+    fn frame<'a>(
+        &mut self,
+        a: &'a dyn Shape,
+        at_a: &Pose,
+        b: &'a dyn Shape,
+        at_b: &Pose,
+        turn: Rotation,
+    ) -> Option<([Seen<'a>; 2], Vector)> {
+        let back = turn.inverse();
+        let [near_a, near_b] = [at_a, at_b].map(|at| Pose {
+            position: Point::from(back * (at.position - at_a.position)),
+            orientation: back * at.orientation,
+        });
+        let both = shared(&a.aabb().posed(&near_a), &b.aabb().posed(&near_b))?;
+        let middle = nalgebra::center(&both.min, &both.max).coords;
+        self.origin = at_a.position + turn * middle;
+        Some(([Seen::new(a, &near_a, middle), Seen::new(b, &near_b, middle)], 0.5 * both.extent()))
     }
 
     /// One tree per root.
@@ -145,54 +204,53 @@ impl AdaptiveTree {
         self.trees.resize_with(most, Tree::default);
     }
 
-    /// Finds a root for every region and grows a tree in it.
-    fn align(&mut self, search: &Search<'_>, tolerance: f64) {
-        search.deepest(&mut self.deepest);
-        for deepest in &self.deepest {
-            if !self.roots.iter().any(|root| root.holds(deepest.at)) {
-                self.roots.push(search.around(deepest));
-            }
+    /// Finds all regions and measures them.
+    fn align(&mut self, search: &Search<'_>, tolerance: f64) -> Result<(), Exhausted> {
+        let step = self.scan.begin(search, &mut self.starts);
+        for i in 0..self.starts.len() {
+            self.look(search, self.starts[i], step, tolerance);
         }
+        // Regions that no start led to.
         loop {
-            self.grow(search, tolerance);
-            // Regions that no start led to: places there are in no root.
-            self.starts.clear();
-            let (roots, starts) = (&self.roots, &mut self.starts);
-            let known = |x: Vector, reach: f64| roots.iter().any(|root| root.holds_ball(x, reach));
-            search.scan(known, &mut |x, reach| {
-                if !starts.iter().any(|start| (x - start).norm() < 3.0 * reach) {
-                    starts.push(x);
-                }
-            });
-            let before = self.roots.len();
-            for start in &self.starts {
-                let Some(deepest) = search.descend(*start) else { continue };
-                let held = self.roots.iter().any(|root| root.holds(deepest.at));
-                if !held && self.roots.len() < MOST_ROOTS {
-                    self.roots.push(search.around(&deepest));
-                }
-            }
-            if self.roots.len() == before {
-                break;
-            }
+            let roots = &self.roots;
+            let known = |x: Vector, reach: f64, last| roots.iter().any(|root| root.knows(x, reach, last));
+            let Some(start) = self.scan.next(search, known) else { break };
+            self.look(search, start, step, tolerance);
         }
+        self.grow(search, tolerance)
     }
 
-    /// Grows a tree in every root, and roots where what they hold comes to their sides.
-    fn grow(&mut self, search: &Search<'_>, tolerance: f64) {
+    /// A root for the region that `start` leads to, if it is a new one.
+    fn look(&mut self, search: &Search<'_>, start: Vector, step: f64, tolerance: f64) {
+        let known = |x: Vector| self.roots.iter().any(|root| root.holds(x) || root.sees(search, x));
+        if self.roots.len() == MOST_ROOTS || known(start) {
+            return;
+        }
+        let Some(deepest) = search.descend(start, step).filter(|deepest| !known(deepest.at)) else { return };
+        let lens = match self.normal {
+            Normal::Gradient => self.lenses.measure(search, &deepest, tolerance),
+            Normal::PlaneFit => None,
+        };
+        self.roots.push(lens.map_or_else(|| Root::boxed(search.around(&deepest), deepest.at), Root::of));
+    }
+
+    /// Grows a tree in every root that is not a lens, and roots where what they hold comes to their sides.
+    fn grow(&mut self, search: &Search<'_>, tolerance: f64) -> Result<(), Exhausted> {
         let goal = Goal { tolerance, moments: false };
         for round in 1..=ROUNDS {
-            merge(&mut self.roots);
             self.room();
+            merge(&mut self.roots, &mut self.trees);
             let mut widened = false;
-            for (root, tree) in self.roots.iter_mut().zip(&mut self.trees) {
-                let bodies = search.bodies.map(|b| b.within(&root.axes, root.centre));
-                if tree.plant(&bodies, root.half, goal) {
+            for (root, tree) in self.roots.iter_mut().zip(&mut self.trees).filter(|(root, _)| !root.done) {
+                let bounds = &mut root.bounds;
+                let bodies = search.bodies.map(|b| b.within(&bounds.axes, bounds.centre));
+                root.done = true;
+                if tree.plant(&bodies, bounds.half, goal) {
                     // Roughly first, so that little is lost if the root is too small.
                     for tolerance in [tolerance.max(0.1), tolerance] {
-                        tree.refine(&bodies, goal, tolerance);
-                        if round < ROUNDS && root.widen(tree, search.half) {
-                            widened = true;
+                        tree.refine(&bodies, goal, tolerance)?;
+                        if round < ROUNDS && bounds.widen(tree, search.half) {
+                            (root.done, widened) = (false, true);
                             break;
                         }
                     }
@@ -202,11 +260,12 @@ impl AdaptiveTree {
                 break;
             }
         }
+        Ok(())
     }
 
     /// The patches in one root.
     fn collect(&mut self, number: usize, between: Vector, out: &mut Vec<Overlap>) {
-        let (root, tree) = (&self.roots[number], &self.trees[number]);
+        let (root, tree) = (&self.roots[number].bounds, &self.trees[number]);
         self.patches.find(tree);
         self.sums.clear();
         self.sums.resize(tree.leaves.len(), Sums::default());
@@ -239,96 +298,15 @@ impl AdaptiveTree {
 
     /// The boxes of the last pair.
     pub(crate) fn boxes(&self) -> impl Iterator<Item = SubBox> + '_ {
-        self.roots.iter().zip(&self.trees).flat_map(move |(root, tree)| {
+        let trees = self.roots.iter().zip(&self.trees).filter(|(root, _)| root.lens.is_none());
+        trees.flat_map(move |(root, tree)| {
             let kept = tree.nodes.iter().filter(|n| n.leaf != grow::NONE);
-            kept.map(move |node| SubBox::new(node, tree, root, self.origin))
+            kept.map(move |node| SubBox::new(node, tree, &root.bounds, self.origin))
         })
     }
 }
 
-/// Decides by facets of bodies that have them, by distance else.
-pub(crate) struct Surfaces<'a> {
-    pub(crate) shapes: [&'a dyn Shape; 2],
-}
-
-impl Cut for Surfaces<'_> {
-    fn side(&self, i: usize, body: &Seen<'_>, centre: Vector, half: Vector) -> Side {
-        #[cfg(feature = "mesh")]
-        if let Some(facets) = self.shapes[i].facet_index() {
-            let place = Point::from(body.turn * centre + body.shift);
-            return if facets.cut(place, &body.turn, half) {
-                Side::Cut
-            } else if body.distance(centre, half.norm()) < 0.0 {
-                Side::Inside
-            } else {
-                Side::Outside
-            };
-        }
-        let _ = (i, self.shapes);
-        by_distance(body, centre, half)
-    }
-}
-
 impl Oriented {
-    fn local(&self, x: Vector) -> Vector {
-        self.axes.transpose() * (x - self.centre)
-    }
-    fn holds(&self, x: Vector) -> bool {
-        self.holds_ball(x, 0.0)
-    }
-    /// Does it hold all that is within `reach` of `x`?
-    fn holds_ball(&self, x: Vector, reach: f64) -> bool {
-        let x = self.local(x);
-        (0..3).all(|a| x[a].abs() + reach <= self.half[a])
-    }
-    /// Lower and upper corner, in this box's frame, of all of the other one.
-    fn reach(&self, o: &Self) -> [Vector; 2] {
-        let (middle, half) = (self.local(o.centre), (self.axes.transpose() * o.axes).abs() * o.half);
-        [middle - half, middle + half]
-    }
-    fn may_meet(&self, o: &Self) -> bool {
-        let meets = |a: &Self, b: &Self| {
-            let [low, high] = a.reach(b);
-            (0..3).all(|i| low[i] <= a.half[i] && high[i] >= -a.half[i])
-        };
-        meets(self, o) && meets(o, self)
-    }
-    fn set(&mut self, low: Vector, high: Vector) {
-        self.centre += self.axes * (0.5 * (low + high));
-        self.half = 0.5 * (high - low);
-    }
-
-    /// Half as large again where what it holds comes to its sides, but no larger than what holds all, of half-widths
-    /// `limit` around the origin; tells whether it was.
-    fn widen(&mut self, tree: &Tree, limit: Vector) -> bool {
-        let mut touched = [[false; 2]; 3];
-        for node in tree.nodes.iter().filter(|n| n.leaf != grow::NONE) {
-            let (leaf, half) = (&tree.leaves[node.leaf as usize], tree.half_at(node.level));
-            for (a, touched) in touched.iter_mut().enumerate() {
-                let edge = (1.0 - 1e-9) * self.half[a] - half[a];
-                for (end, sign) in [-1.0, 1.0].into_iter().enumerate() {
-                    touched[end] |= sign * node.centre[a] > edge && leaf.reaches(a, sign);
-                }
-            }
-        }
-        let whole = Self { centre: Vector::zeros(), axes: Matrix3::identity(), half: (1.0 + 1e-9) * limit };
-        let [least, most] = self.reach(&whole);
-        let (mut low, mut high) = (-self.half, self.half);
-        for a in 0..3 {
-            if touched[a][0] {
-                low[a] = (-2.0 * self.half[a]).max(least[a]).min(low[a]);
-            }
-            if touched[a][1] {
-                high[a] = (2.0 * self.half[a]).min(most[a]).max(high[a]);
-            }
-        }
-        let widened = low != -self.half || high != self.half;
-        if widened {
-            self.set(low, high);
-        }
-        widened
-    }
-
     /// The normal of the plane through the edge boxes of a patch, if they have one.
     fn plane(&self, tree: &Tree, patches: &mut Patches, patch: u32) -> Option<Vector> {
         let (mut n, mut first, mut second) = (0.0, Vector::zeros(), Matrix3::zeros());
@@ -368,23 +346,5 @@ impl Oriented {
             gradient,
             moment: self.axes * moment,
         }
-    }
-}
-
-/// Makes one of roots that may meet.
-fn merge(roots: &mut Vec<Oriented>) {
-    'again: loop {
-        for j in 1..roots.len() {
-            for i in 0..j {
-                if roots[i].may_meet(&roots[j]) {
-                    let other = roots.swap_remove(j);
-                    let root = &mut roots[i];
-                    let [low, high] = root.reach(&other);
-                    root.set(low.inf(&-root.half), high.sup(&root.half));
-                    continue 'again;
-                }
-            }
-        }
-        return;
     }
 }

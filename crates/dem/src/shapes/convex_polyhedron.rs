@@ -1,6 +1,7 @@
 //! The convex polyhedron.
 use super::Facets;
 use super::hull::hull;
+use super::triangle::Triangle;
 use crate::{DemError, Form, Shape};
 use interfaces::{Aabb, Inertia, Point, Polyhedron, Solid, Vector};
 use nalgebra::Matrix3;
@@ -218,9 +219,11 @@ impl Solid for ConvexPolyhedron {
         if deepest <= 0.0 || deepest >= band {
             return deepest;
         }
-        let corners = self.triangles.iter().map(|t| t.map(|v| self.points[v as usize].coords));
-        let square = |t: [Vector; 3]| (x.coords - super::nearest_in_triangle(x.coords, t)).norm_squared();
-        corners.map(square).fold(f64::INFINITY, f64::min).sqrt()
+        let square = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| self.points[v as usize].coords);
+            Triangle::new(a, b, c).nearest(x.coords).0.norm_squared()
+        };
+        self.triangles.iter().map(square).fold(f64::INFINITY, f64::min).sqrt()
     }
     fn aabb(&self) -> Aabb {
         let [low, high] = self.facets.bounds;

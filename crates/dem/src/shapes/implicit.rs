@@ -1,5 +1,5 @@
 //! Shapes from a signed distance.
-use crate::overlap::tree::grow::{Goal, NONE, Tree};
+use crate::overlap::tree::grow::{Exhausted, Goal, NONE, Tree};
 use crate::overlap::tree::seen::Seen;
 use crate::{DemError, Shape};
 use interfaces::{Aabb, Inertia, Point, Pose, Solid, SurfaceElement, Vector};
@@ -45,7 +45,8 @@ impl<S: Solid> Implicit<S> {
     ///
     /// # Errors
     /// [`DemError::Refinement`] for another tolerance, [`DemError::Bounds`] if the solid's box is flat or not finite,
-    /// [`DemError::Distance`] if a distance is not finite, [`DemError::Empty`] if nothing is found inside.
+    /// [`DemError::Distance`] if a distance is not finite, [`DemError::Empty`] if nothing is found inside,
+    /// [`DemError::Boxes`] if the tolerance takes too many boxes.
     pub fn new(name: &'static str, solid: S, tolerance: f64) -> Result<Self, DemError> {
         crate::Refinement::Tolerance(tolerance).check()?;
         let bounds = solid.aabb();
@@ -58,11 +59,15 @@ impl<S: Solid> Implicit<S> {
         let bodies = [Seen::new(&watched, &Pose::at([0.0; 3]), middle.coords)];
         let goal = Goal { tolerance, moments: true };
         let mut tree = Tree::default();
+        let mut spent = None;
         if tree.plant(&bodies, 0.5 * extent, goal) {
-            tree.refine(&bodies, goal, tolerance);
+            spent = tree.refine(&bodies, goal, tolerance).err();
         }
         if let Some((point, value)) = watched.odd.into_inner().unwrap_or_default() {
             return Err(DemError::Distance { name, point, value });
+        }
+        if let Some(Exhausted { boxes, error }) = spent {
+            return Err(DemError::Boxes { what: format!("the {name}"), boxes, error });
         }
         let (mut volume, mut first, mut second) = (0.0, Vector::zeros(), [0.0; 6]);
         let leaves = || tree.nodes.iter().filter(|n| n.leaf != NONE);

@@ -1,5 +1,6 @@
 //! The sphere.
 use super::lines;
+use crate::overlap::{Overlap, closed};
 use crate::{DemError, Form, Shape, SmoothConvex};
 use interfaces::{Aabb, Inertia, Point, Solid, SurfaceElement, Vector};
 use nalgebra::Matrix3;
@@ -26,6 +27,12 @@ impl Sphere {
     /// Its radius \[m\].
     pub fn radius(&self) -> f64 {
         self.radius
+    }
+    /// What this one, its centre at `at`, shares with another: what [`OverlapSolver`](crate::OverlapSolver) answers, for those who know
+    /// that both are spheres and that their places are finite.
+    #[inline]
+    pub fn overlap(&self, at: Point, other: &Self, at_other: Point) -> Option<Overlap> {
+        closed::spheres(self.radius, at, other.radius, at_other)
     }
 }
 

@@ -14,7 +14,6 @@ mod tests;
 mod text;
 mod thickness;
 mod topology;
-mod triangle;
 mod winding;
 
 pub use admission::{AdmissionReport, Shell};
@@ -23,7 +22,7 @@ pub use soup::TriangleSoup;
 pub use thickness::Thinnest;
 
 use crate::shapes::{Facets, Moments};
-use crate::{FacetIndex, Form, Shape};
+use crate::{ConvexPolyhedron, FacetIndex, Form, Shape};
 use interfaces::{Aabb, Inertia, Point, Polyhedron, Solid, Vector};
 use std::path::Path;
 use std::sync::OnceLock;
@@ -41,6 +40,8 @@ pub struct TriangleMesh {
     faces: Vec<[u32; 3]>,
     surface: Surface,
     facets: Facets,
+    /// The same body, if it is convex and small: cutting is faster then.
+    hull: Option<Box<ConvexPolyhedron>>,
     /// For the adaptive tree, made when first asked for.
     index: OnceLock<FacetIndex>,
     bounds: Aabb,
@@ -80,12 +81,14 @@ impl TriangleMesh {
         let vertices = points.iter().map(|p| Point::from(*p)).collect();
         let open = |face| MeshError::NotClosed { count: 1, faces: vec![face] };
         let facets = Facets::new(points.clone(), faces.clone()).map_err(open)?;
+        let hull = convex(&points, &faces).map(Box::new);
         let surface = Surface::new(points, faces.clone());
         Ok(Self {
             vertices,
             faces,
             surface,
             facets,
+            hull,
             index: OnceLock::new(),
             bounds,
             radius: farthest,
@@ -150,12 +153,31 @@ impl Shape for TriangleMesh {
         self.radius
     }
     fn form(&self) -> Form<'_> {
-        Form::Facets(&self.facets)
+        self.hull.as_deref().map_or(Form::Facets(&self.facets), Form::Hull)
     }
     fn facet_index(&self) -> Option<&FacetIndex> {
         let surface = Polyhedron { vertices: &self.vertices, faces: &self.faces };
         Some(self.index.get_or_init(|| FacetIndex::new(surface)))
     }
+}
+
+/// Convex bodies with no more vertices than this are taken for [`ConvexPolyhedron`]s.
+const SMALL: usize = 30;
+
+/// The body as a polyhedron, if it is small and convex, but for round-off.
+fn convex(points: &[Vector], faces: &[[u32; 3]]) -> Option<ConvexPolyhedron> {
+    let size = points.iter().map(|p| p.amax()).fold(0.0, f64::max);
+    let behind = |f: &[u32; 3]| {
+        let [a, b, c] = f.map(|v| points[v as usize]);
+        let normal = (b - a).cross(&(c - a)).normalize();
+        points.iter().all(|p| normal.dot(&(p - a)) <= 1e-14 * size)
+    };
+    if points.len() > SMALL || !faces.iter().all(behind) {
+        return None;
+    }
+    let vertices: Vec<[f64; 3]> = points.iter().map(|p| (*p).into()).collect();
+    let faces: Vec<Vec<u32>> = faces.iter().map(|f| f.to_vec()).collect();
+    ConvexPolyhedron::new(&vertices, &faces).ok()
 }
 
 /// Lower and upper corner of the box around places.

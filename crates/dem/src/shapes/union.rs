@@ -195,6 +195,15 @@ mod tests {
         let (one, two) = (volume(&union), volume(&whole));
         assert_eq!((one.0, two.0), (2, 1));
         assert_relative_eq!(one.1, two.1, epsilon = 1e-14);
+        // The other way round, too: no tree of boxes.
+        let swapped = solver.solve(&ball, &at, &union, &Pose::at([0.0; 3])).unwrap();
+        assert_relative_eq!(swapped.iter().map(|o| o.volume).sum::<f64>(), two.1, epsilon = 1e-14);
+        let sphere = crate::Sphere::new(0.5).unwrap();
+        let unions = solver.solve(&union, &at, &union, &Pose::at([0.0; 3])).unwrap();
+        assert!(unions.iter().all(|o| o.volume > 0.0 && o.area().is_finite()));
+        let ball_in = solver.solve(&sphere, &Pose::at([0.4, 0.0, 0.0]), &union, &Pose::at([0.0; 3])).unwrap();
+        let ball_in: f64 = ball_in.iter().map(|o| o.volume).sum();
+        assert_relative_eq!(ball_in, sphere.inertia(1.0).volume, epsilon = 1e-14);
     }
 
     #[test]

@@ -2,7 +2,6 @@
 mod bodies;
 mod exact;
 mod properties;
-mod speed;
 
 use super::{BallFaces, Faces, Round};
 use crate::Overlap;

@@ -1,5 +1,7 @@
 //! Axes that make the overlap about as wide as it is thick.
 use super::pair::{Pair, View};
+use crate::Overlap;
+use crate::overlap::integrals::Integrals;
 use interfaces::{Point, Vector};
 use nalgebra::{Matrix3, Matrix5, Vector5};
 
@@ -128,4 +130,26 @@ fn across(e: Vector) -> [Vector; 2] {
     other[e.iamin()] = 1.0;
     let t = e.cross(&other).normalize();
     [t, e.cross(&t)]
+}
+
+impl Frame {
+    /// The overlap whose integrals in this frame, the moment along the axes but not stretched, are `sums`; `origin` is that of the
+    /// frame in which this one is given.
+    pub(super) fn overlap(&self, sums: &Integrals, origin: Point) -> Option<Overlap> {
+        if sums.volume.is_nan() || sums.volume <= 0.0 {
+            return None;
+        }
+        let middle = sums.first / sums.volume;
+        let gradient = self.area(sums.area);
+        let units = self.axes.map(|v| v.normalize());
+        let about = units[0] * sums.moment[0] + units[1] * sums.moment[1] + units[2] * sums.moment[2];
+        let centroid = self.point(middle);
+        Some(Overlap {
+            volume: sums.volume * self.cell(),
+            centroid: origin + centroid.coords,
+            normal: (-gradient).try_normalize(0.0).unwrap_or(-units[2]),
+            gradient,
+            moment: about - (centroid.coords - self.origin).cross(&gradient),
+        })
+    }
 }

@@ -1,8 +1,8 @@
 //! Overlaps like lenses: columns from the second body's surface up to the first's.
 use super::pair::View;
 use super::rules::{RADIAL, Radial};
-use super::sums::Sums;
 use crate::overlap::doubling::Doubling;
+use crate::overlap::integrals::Integrals;
 use interfaces::Vector;
 use std::f64::consts::TAU;
 
@@ -51,7 +51,7 @@ pub(super) fn edge(views: &[View; 2]) -> Option<[Vector; 5]> {
 /// between the axis and the edge carry columns; thickness at the axis and the zero at the edge come free. The
 /// integrals over the azimuth are trapezoidal and converge exponentially; S = ½∮x × dx and the moment −½∮|x|²dx are
 /// integrals along the edge.
-pub(super) fn lens(views: &[View; 2], lengths: [f64; 3], tolerance: f64) -> Option<Sums> {
+pub(super) fn lens(views: &[View; 2], lengths: [f64; 3], tolerance: f64) -> Option<Integrals> {
     let columns = Columns::new(views, lengths)?;
     let mut edges = [Edge::default(); MOST];
     let mut rule = 0;
@@ -68,7 +68,7 @@ pub(super) fn lens(views: &[View; 2], lengths: [f64; 3], tolerance: f64) -> Opti
 
 /// How the integral over the azimuth ended.
 enum Around {
-    Done(Sums),
+    Done(Integrals),
     /// More points are needed between the axis and the edge.
     Crooked,
 }
@@ -148,7 +148,7 @@ impl Columns {
         rule: usize,
         tolerance: f64,
     ) -> Option<Around> {
-        let (mut sums, mut doubling) = (Sums::default(), Doubling::new(tolerance));
+        let (mut sums, mut doubling) = (Integrals::default(), Doubling::new(tolerance));
         let crooked = SLOPE[rule] * (tolerance / 1e-5).min(1.0).powf(0.4);
         let mut around = FIRST;
         while around <= MOST {
@@ -183,7 +183,7 @@ impl Columns {
         None
     }
     /// The integrals over a half-plane, and by how much the slope at the edge that they suggest is wrong.
-    fn meridian(&self, plane: &HalfPlane, crossing: &Crossing, rule: &Radial) -> Option<(Sums, f64)> {
+    fn meridian(&self, plane: &HalfPlane, crossing: &Crossing, rule: &Radial) -> Option<(Integrals, f64)> {
         let Crossing { edge: Edge { s, z }, change, slope } = crossing;
         let [low, high] = self.axis;
         let thick = high - low;
@@ -204,7 +204,7 @@ impl Columns {
         let dx = Vector::new(change.s * cos - s * sin, change.s * sin + s * cos, change.z);
         let lengths = Vector::from(self.lengths);
         let square = x.component_mul(&lengths).norm_squared();
-        let sums = Sums {
+        let sums = Integrals {
             volume: s2 * volume,
             first: s2 * Vector::new(s * cos * outward, s * sin * outward, upward),
             area: 0.5 * x.cross(&dx),

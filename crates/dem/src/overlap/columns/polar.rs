@@ -1,8 +1,8 @@
 //! Deep overlaps: rays from a point of both.
 use super::pair::View;
 use super::rules::KRONROD;
-use super::sums::Sums;
 use crate::overlap::doubling::Doubling;
+use crate::overlap::integrals::Integrals;
 use interfaces::Vector;
 use std::f64::consts::{PI, TAU};
 
@@ -11,7 +11,7 @@ pub(super) enum Found {
     /// All of this body (0 or 1) lies within the other.
     Within(usize),
     /// The surfaces cross.
-    Crossing(Sums),
+    Crossing(Integrals),
 }
 
 /// Meridians to begin with; the doubling ends at the second.
@@ -29,7 +29,7 @@ const HALVINGS: [u32; 2] = [6, 9];
 /// trapezoidal rule is doubled, and where that does not settle, adaptive Gauss-Kronrod rules take its place.
 pub(super) fn polar(views: &[View; 2], lengths: [f64; 3], tolerance: f64) -> Found {
     let rays = Rays { views, lengths, tolerance };
-    let (mut sums, mut doubling) = (Sums::default(), Doubling::new(tolerance));
+    let (mut sums, mut doubling) = (Integrals::default(), Doubling::new(tolerance));
     let mut around = FIRST;
     let mut extremes = Extremes::default();
     loop {
@@ -56,7 +56,7 @@ pub(super) fn polar(views: &[View; 2], lengths: [f64; 3], tolerance: f64) -> Fou
     }
     // Octants, so that symmetric pairs are split where they are.
     let whole = sums.volume * (TAU / around as f64);
-    let sums = (0..8).map(|i| f64::from(i) * TAU / 8.0).fold(Sums::default(), |sums, from| {
+    let sums = (0..8).map(|i| f64::from(i) * TAU / 8.0).fold(Integrals::default(), |sums, from| {
         sums + kronrod(from, from + TAU / 8.0, tolerance * whole, HALVINGS[1], &|phi| {
             rays.meridian(phi, &mut Extremes::default())
         })
@@ -64,19 +64,21 @@ pub(super) fn polar(views: &[View; 2], lengths: [f64; 3], tolerance: f64) -> Fou
     Found::Crossing(sums)
 }
 
-/// ∫f over `from` … `to`, halved until the volume's error is about `error`.
-fn kronrod(from: f64, to: f64, error: f64, halvings: u32, f: &impl Fn(f64) -> Sums) -> Sums {
+/// ∫f over `from` … `to`, halved until the error of the volume is about `error`, and that of the area ten times as much.
+fn kronrod(from: f64, to: f64, error: f64, halvings: u32, f: &impl Fn(f64) -> Integrals) -> Integrals {
     let width = to - from;
-    let (mut fine, mut coarse) = (Sums::default(), 0.0);
+    let (mut fine, mut coarse, mut coarse_area) = (Integrals::default(), 0.0, Vector::zeros());
     for [at, weight, seven] in KRONROD {
         let value = f(from + width * at);
         fine = fine + value * (width * weight);
         coarse += width * seven * value.volume;
+        coarse_area += value.area * (width * seven);
     }
-    let scale = fine.volume.abs();
     // Smooth pieces are far better by the better rule, kinks only by a factor.
-    let share = (fine.volume - coarse).abs() / scale;
-    let guess = scale * share * (1e4 * share).sqrt().min(1.0);
+    let left = |change: f64, scale: f64| change * (1e4 * change / scale).sqrt().min(1.0);
+    let of_volume = left((fine.volume - coarse).abs(), fine.volume.abs());
+    let of_area = left((fine.area - coarse_area).norm(), fine.area.norm() + fine.volume.abs());
+    let guess = if of_area > 10.0 * of_volume { 0.1 * of_area } else { of_volume };
     if halvings == 0 || guess.is_nan() || guess <= error {
         return fine;
     }
@@ -118,10 +120,11 @@ impl Rays<'_> {
         }
     }
     /// What a ray along `u` adds per solid angle.
-    fn ray(&self, u: Vector) -> Sums {
+    fn ray(&self, u: Vector) -> Integrals {
         let [a, b] = self.reach(u);
         let r = a.min(b);
-        let mut sums = Sums { volume: r * r * r / 3.0, first: u * (0.25 * r.powi(4)), ..Sums::default() };
+        let mut sums =
+            Integrals { volume: r * r * r / 3.0, first: u * (0.25 * r.powi(4)), ..Integrals::default() };
         if a <= b && r > 0.0 {
             let v = &self.views[0];
             let along = v.axes[0] * u[0] + v.axes[1] * u[1] + v.axes[2] * u[2];
@@ -140,7 +143,7 @@ impl Rays<'_> {
         sums
     }
     /// The integrals over the meridian at the azimuth `phi`.
-    fn meridian(&self, phi: f64, extremes: &mut Extremes) -> Sums {
+    fn meridian(&self, phi: f64, extremes: &mut Extremes) -> Integrals {
         let (sin, cos) = phi.sin_cos();
         let towards = |theta: f64| {
             let (s, c) = theta.sin_cos();
@@ -149,7 +152,7 @@ impl Rays<'_> {
         let at = |i: usize| PI * i as f64 / PLACES as f64;
         let f = |theta: f64| self.ray(towards(theta)) * theta.sin();
         let error = 0.1 * self.tolerance;
-        let (mut sums, mut from) = (Sums::default(), 0.0);
+        let (mut sums, mut from) = (Integrals::default(), 0.0);
         let mut last = self.beyond(towards(0.0));
         for i in 0..=PLACES {
             let now = if i == 0 { last } else { self.beyond(towards(at(i))) };

@@ -83,7 +83,7 @@ impl FacetOverlap {
         if !(-round_off <= least && volume <= most + round_off) {
             return Err(Impossible { volume: if least < 0.0 { least } else { volume }, most });
         }
-        let towards = apart.try_normalize(0.0).unwrap_or_default();
+        let towards = apart.try_normalize(0.0).unwrap_or(Vector::x());
         out.extend(sums.iter().filter(|s| s.volume > 0.0).map(|s| s.overlap(to_world, towards)));
         Ok(())
     }

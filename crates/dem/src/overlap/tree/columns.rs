@@ -1,53 +1,15 @@
 //! What lies behind one or two curved surfaces in a box.
+mod breaks;
+mod sums;
+mod surface;
+
+pub(crate) use sums::{Content, Sums};
+pub(crate) use surface::holds;
+
 use super::quadric::Quadric;
+use breaks::{Breaks, SAME};
 use interfaces::Vector;
-
-/// Sums over a part of space, and over the pieces of surface that bound it.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Sums {
-    /// ∫dV.
-    pub(crate) volume: f64,
-    /// ∫x dV.
-    pub(crate) first: Vector,
-    /// Of each body, ∫n dA and ∫x × n dA over its surface, and ∫dA, or a little less.
-    pub(crate) flux: [Vector; 2],
-    pub(crate) turn: [Vector; 2],
-    pub(crate) area: [f64; 2],
-}
-
-impl Sums {
-    /// The same somewhere else, and only a share of it.
-    pub(crate) fn moved(&self, by: Vector, share: f64) -> Self {
-        let flux = self.flux.map(|f| share * f);
-        Self {
-            volume: share * self.volume,
-            first: share * (self.first + self.volume * by),
-            flux,
-            turn: [0, 1].map(|i| share * self.turn[i] + by.cross(&flux[i])),
-            area: self.area.map(|a| share * a),
-        }
-    }
-    pub(crate) fn add(&mut self, o: &Self) {
-        self.volume += o.volume;
-        self.first += o.first;
-        for i in 0..2 {
-            self.flux[i] += o.flux[i];
-            self.turn[i] += o.turn[i];
-            self.area[i] += o.area[i];
-        }
-    }
-}
-
-/// What is in a box.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Content {
-    pub(crate) sums: Sums,
-    /// ∫xᵢxⱼ dV: xx, yy, zz, yz, xz, xy; only of one body alone.
-    pub(crate) second: [f64; 6],
-    /// How well it is summed: 0 where all is smooth, 1 where it may have edges within the box, more where columns may meet a
-    /// surface twice.
-    pub(crate) ragged: f64,
-}
+use surface::{Surface, WHOLE, behind};
 
 /// Gauss points and their weights: few where all is smooth.
 const TWO: [[f64; 2]; 2] = [[-0.577_350_269_189_625_8, 1.0], [0.577_350_269_189_625_8, 1.0]];
@@ -59,150 +21,6 @@ const FOUR: [[f64; 2]; 4] = [
     [0.339_981_043_584_856_3, 0.652_145_154_862_546_1],
     [0.861_136_311_594_052_6, 0.347_854_845_137_453_9],
 ];
-
-/// Where a·t² + b·t + c < 0 between −1 and 1: at most two spans, the first `n` count.
-#[derive(Clone, Copy)]
-struct Spans {
-    n: usize,
-    span: [[f64; 2]; 2],
-}
-
-const WHOLE: Spans = Spans { n: 1, span: [[-1.0, 1.0]; 2] };
-const NONE: Spans = Spans { n: 0, span: [[0.0; 2]; 2] };
-
-#[inline]
-fn behind(a: f64, b: f64, c: f64) -> Spans {
-    if b.abs() > 2.0 * a.abs() {
-        // Monotone.
-        let (low, high) = (a - b + c, a + b + c);
-        if low >= 0.0 && high >= 0.0 {
-            return NONE;
-        }
-        if low < 0.0 && high < 0.0 {
-            return WHOLE;
-        }
-        let root = (-2.0 * c / (b + (b * b - 4.0 * a * c).max(0.0).sqrt().copysign(b))).clamp(-1.0, 1.0);
-        let span = if b > 0.0 { [-1.0, root] } else { [root, 1.0] };
-        return Spans { n: 1, span: [span; 2] };
-    }
-    let square = b * b - 4.0 * a * c;
-    if square <= 0.0 {
-        return if a + c < 0.0 || (a == 0.0 && c < 0.0) { WHOLE } else { NONE };
-    }
-    let far = -0.5 * (b + square.sqrt().copysign(b));
-    let (r, s) = (far / a, if far == 0.0 { 0.0 } else { c / far });
-    let (low, high) = (r.min(s), r.max(s));
-    let mut out = NONE;
-    let mut push = |from: f64, to: f64| {
-        let span = [from.clamp(-1.0, 1.0), to.clamp(-1.0, 1.0)];
-        if span[0] < span[1] {
-            out.span[out.n] = span;
-            out.n += 1;
-        }
-    };
-    if a > 0.0 {
-        push(low, high);
-    } else {
-        push(-1.0, low);
-        push(high, 1.0);
-    }
-    out
-}
-
-/// Is anything behind all `surfaces` on the side of the box at `sign` of `axis`? Lines along axis `k` tell.
-pub(crate) fn holds(surfaces: [Option<&Quadric>; 2], axis: usize, sign: f64, k: usize) -> bool {
-    let across = 3 - axis - k;
-    [-1.0, -0.6, -0.2, 0.2, 0.6, 1.0].into_iter().any(|v| {
-        let spans = surfaces.map(|q| {
-            let Some(q) = q else { return WHOLE };
-            let seen = Surface::new(q, [axis, across, k]);
-            let [b, c] = seen.at(sign, v);
-            behind(seen.a, b, c)
-        });
-        let mut pairs = spans[0].span[..spans[0].n]
-            .iter()
-            .flat_map(|p| spans[1].span[..spans[1].n].iter().map(move |q| (p, q)));
-        pairs.any(|(p, q)| p[0].max(q[0]) < p[1].min(q[1]))
-    })
-}
-
-/// A surface as columns see it: f = a t² + b t + c along each, b and c after where it stands.
-#[derive(Clone, Copy, Default)]
-struct Surface {
-    a: f64,
-    /// b = b₀ + b₁u + b₂v.
-    b: [f64; 3],
-    /// c = c₀ + c₁u + c₂v + c₃u² + c₄v² + c₅uv.
-    c: [f64; 6],
-}
-
-impl Surface {
-    /// `axes`: those of u, v and t, in cyclic order.
-    fn new(q: &Quadric, [u, v, t]: [usize; 3]) -> Self {
-        Self {
-            a: 0.5 * q.h[t],
-            // q.m is numbered by the axis that is not there.
-            b: [q.g[t], q.m[v], q.m[u]],
-            c: [q.c, q.g[u], q.g[v], 0.5 * q.h[u], 0.5 * q.h[v], q.m[t]],
-        }
-    }
-    #[inline(always)]
-    fn at(&self, u: f64, v: f64) -> [f64; 2] {
-        let c = &self.c;
-        let value = c[0] + u * (c[1] + c[3] * u + c[5] * v) + v * (c[2] + c[4] * v);
-        [self.b[0] + self.b[1] * u + self.b[2] * v, value]
-    }
-    /// ∂f/∂u, ∂f/∂v and ∂f/∂t.
-    #[inline(always)]
-    fn slope(&self, u: f64, v: f64, t: f64) -> [f64; 3] {
-        let (b, c) = (&self.b, &self.c);
-        [
-            c[1] + 2.0 * c[3] * u + c[5] * v + b[1] * t,
-            c[2] + 2.0 * c[4] * v + c[5] * u + b[2] * t,
-            b[0] + b[1] * u + b[2] * v + 2.0 * self.a * t,
-        ]
-    }
-    /// f at the end t of the columns, as a polynomial like c.
-    fn face(&self, t: f64) -> [f64; 6] {
-        let (mut face, b) = (self.c, &self.b);
-        face[0] += self.a * t * t + b[0] * t;
-        face[1] += b[1] * t;
-        face[2] += b[2] * t;
-        face
-    }
-    /// The discriminant b² − 4ac as a polynomial like c.
-    fn discriminant(&self) -> [f64; 6] {
-        let (b, c) = (&self.b, self.c.map(|c| 4.0 * self.a * c));
-        [
-            b[0] * b[0] - c[0],
-            2.0 * b[0] * b[1] - c[1],
-            2.0 * b[0] * b[2] - c[2],
-            b[1] * b[1] - c[3],
-            b[2] * b[2] - c[4],
-            2.0 * b[1] * b[2] - c[5],
-        ]
-    }
-    /// How steeply columns cross it.
-    fn flatness(&self) -> f64 {
-        self.b[0].abs() / (self.c[1].abs() + self.c[2].abs() + self.b[0].abs())
-    }
-    /// Does f only grow, or only fall, along every column?
-    fn is_monotone(&self) -> bool {
-        self.b[0].abs() - self.b[1].abs() - self.b[2].abs() > 2.0 * self.a.abs()
-    }
-    /// Where f = 0 on a monotone column; beyond ±1, on the right side, if it is nowhere.
-    #[inline(always)]
-    fn root(&self, u: f64, v: f64) -> f64 {
-        let [b, c] = self.at(u, v);
-        -2.0 * c / (b + (b * b - 4.0 * self.a * c).max(0.0).sqrt().copysign(b))
-    }
-    /// Where f < 0 on a monotone column.
-    #[inline(always)]
-    fn span(&self, u: f64, v: f64) -> [f64; 2] {
-        let root = self.root(u, v).clamp(-1.0, 1.0);
-        if self.b[0] > 0.0 { [-1.0, root] } else { [root, 1.0] }
-    }
-}
 
 /// What columns sum to, in u, v and t.
 #[derive(Clone, Copy, Default)]
@@ -227,79 +45,6 @@ struct Box {
     n: usize,
     axes: [usize; 3],
     moments: bool,
-}
-
-/// Where columns change in kind along a line, its ends among them.
-#[derive(Clone, Copy)]
-struct Breaks {
-    at: [f64; 32],
-    n: usize,
-}
-
-/// Breaks of lines (from −1 to 1) that are nearer count as one.
-const SAME: f64 = 1e-3;
-
-impl Breaks {
-    fn new() -> Self {
-        let mut at = [-1.0; 32];
-        at[1] = 1.0;
-        Self { at, n: 2 }
-    }
-    fn push(&mut self, v: f64) {
-        if v > -1.0 && v < 1.0 && self.n < self.at.len() {
-            let mut i = self.n;
-            while self.at[i - 1] > v {
-                self.at[i] = self.at[i - 1];
-                i -= 1;
-            }
-            self.at[i] = v;
-            self.n += 1;
-        }
-    }
-    /// The roots of a·v² + b·v + c.
-    #[inline]
-    fn roots(&mut self, a: f64, b: f64, c: f64) {
-        let square = b * b - 4.0 * a * c;
-        if square > 0.0 {
-            let far = -0.5 * (b + square.sqrt().copysign(b));
-            self.push(far / a);
-            self.push(c / far);
-        }
-    }
-    /// Where a line of the other direction ceases to meet the curve on which a polynomial is zero, in the box.
-    fn tips(&mut self, c: &[f64; 6]) {
-        let (a, b) = (c[5] * c[5] - 4.0 * c[3] * c[4], 2.0 * c[2] * c[5] - 4.0 * c[1] * c[4]);
-        let mut tips = Self::new();
-        tips.roots(a, b, c[2] * c[2] - 4.0 * c[0] * c[4]);
-        for u in &tips.at[1..tips.n - 1] {
-            // A little beyond the sides does not harm.
-            if (c[2] + c[5] * u).abs() <= 1.05 * (2.0 * c[4]).abs() {
-                self.push(*u);
-            }
-        }
-    }
-    /// Where that curve leaves the box at the ends of such lines.
-    fn exits(&mut self, c: &[f64; 6]) {
-        for v in [-1.0, 1.0] {
-            self.roots(c[3], c[1] + c[5] * v, c[0] + v * (c[2] + c[4] * v));
-        }
-    }
-    /// What is between them, in so many pieces each. Of breaks that nearly coincide one counts: what grows from them is small.
-    fn pieces(&mut self, each: u32) -> impl Iterator<Item = [f64; 2]> + '_ {
-        let mut kept = 1;
-        for i in 1..self.n {
-            if self.at[i] - self.at[kept - 1] > SAME {
-                self.at[kept] = self.at[i];
-                kept += 1;
-            }
-        }
-        self.at[kept - 1] = 1.0;
-        self.n = kept;
-        self.at[..kept].windows(2).flat_map(move |ends| {
-            let size = (ends[1] - ends[0]) / f64::from(each);
-            (0..each).map(move |i| [ends[0] + size * f64::from(i), ends[0] + size * f64::from(i + 1)])
-        })
-    }
 }
 
 /// The part of a box, of half-widths `half` around `centre`, that is behind all `surfaces`. Columns along one axis, from

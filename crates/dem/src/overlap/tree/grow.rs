@@ -1,5 +1,6 @@
 //! The tree of boxes.
 use super::columns::{Content, content, holds};
+use super::cut::{Cut, Side, by_distance};
 use super::quadric::{Quadric, STENCIL};
 use super::seen::Seen;
 use interfaces::Vector;
@@ -9,7 +10,7 @@ use std::collections::BinaryHeap;
 /// No leaf, or no children.
 pub(crate) const NONE: u32 = u32::MAX;
 /// Boxes that a tree may hold at most.
-const MOST: usize = 100_000;
+const MOST: usize = 400_000;
 /// Levels that a tree may have at most.
 const DEEPEST: u8 = 24;
 
@@ -101,6 +102,14 @@ pub(crate) struct Tree {
     pub(crate) half: Vector,
 }
 
+/// A tree may not grow farther.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Exhausted {
+    pub(crate) boxes: usize,
+    /// Of the volume, relative.
+    pub(crate) error: f64,
+}
+
 /// How a tree is refined.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Goal {
@@ -170,7 +179,15 @@ impl Tree {
     }
 
     /// Divides the boxes with the largest errors until the volume is as exact as `tolerance` says.
-    pub(crate) fn refine(&mut self, bodies: &[Seen<'_>], goal: Goal, tolerance: f64) {
+    ///
+    /// # Errors
+    /// If the boxes do not suffice.
+    pub(crate) fn refine(
+        &mut self,
+        bodies: &[Seen<'_>],
+        goal: Goal,
+        tolerance: f64,
+    ) -> Result<(), Exhausted> {
         let close = Close::new(bodies, goal);
         while let Some(Due(error, at)) = self.due.pop() {
             let [volume, models, squares] = self.sum;
@@ -179,12 +196,16 @@ impl Tree {
             let scale = (USUAL * models + self.done) / (models + self.said).max(f64::MIN_POSITIVE);
             let left = scale.max(USUAL) * models + squares.max(0.0).sqrt();
             let enough = error.is_finite() && left <= tolerance * volume;
-            if enough || level >= DEEPEST || self.nodes.len() > MOST {
+            if enough {
                 self.due.push(Due(error, at));
                 break;
             }
+            if level >= DEEPEST || self.nodes.len() > MOST {
+                return Err(Exhausted { boxes: self.nodes.len(), error: left / volume });
+            }
             self.refine_leaf(&close, at, level);
         }
+        Ok(())
     }
 
     fn refine_leaf(&mut self, close: &Close<'_>, at: u32, level: u8) {
@@ -262,29 +283,6 @@ impl Tree {
 }
 
 const UNKNOWN: State = State::Cut(Quadric::ZERO);
-
-/// Where a box is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Side {
-    Outside,
-    Inside,
-    Cut,
-}
-
-/// Decides whether the surface of body `i` cuts a box.
-pub(crate) trait Cut {
-    fn side(&self, i: usize, body: &Seen<'_>, centre: Vector, half: Vector) -> Side;
-}
-
-/// By the distance of the centre, which no point of the box is farther from than half the diagonal.
-pub(crate) fn by_distance(body: &Seen<'_>, centre: Vector, half: Vector) -> Side {
-    let band = half.norm();
-    match body.distance(centre, band) {
-        d if d >= band => Side::Outside,
-        d if d <= -band => Side::Inside,
-        _ => Side::Cut,
-    }
-}
 
 /// Child `i` of eight, as signs.
 fn corner(i: u32) -> Vector {

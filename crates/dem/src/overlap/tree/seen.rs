@@ -40,11 +40,6 @@ impl<'a> Seen<'a> {
         self.solid.signed_distances(&places, band, &mut out);
         out
     }
-    /// The outward normal at a point that is `distance` from the surface of a body about `size` large.
-    pub(crate) fn normal(&self, y: Vector, distance: f64, size: f64) -> Vector {
-        let band = (1.01 * distance.abs()).max(1e-3 * size);
-        self.turn.transpose() * self.solid.normal(self.place(y), band)
-    }
 }
 
 /// What two boxes share; `None` if they are apart.

@@ -1,5 +1,5 @@
 //! The boxes of a tree, to look at.
-use super::deepest::Oriented;
+use super::around::Oriented;
 use super::grow::{Leaf, Node, State, Tree};
 use interfaces::{Point, Vector};
 use nalgebra::Matrix3;

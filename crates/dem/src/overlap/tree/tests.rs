@@ -33,6 +33,10 @@ impl Shape for Given {
     }
 }
 
+#[cfg(feature = "mesh")]
+mod facets;
+mod regions;
+
 const BALL: Given = Given { distance: |x| x.norm() - 1.0, half: [1.0; 3] };
 const TORUS: Given = Given { distance: |x| (x.x.hypot(x.y) - 0.7).hypot(x.z) - 0.3, half: [1.0, 1.0, 0.3] };
 /// Unit edges.
@@ -213,6 +217,8 @@ fn walls_and_what_is_refused() {
     let o = one(tolerance(1e-4).solve(&ELLIPSOID, &at(5.0, 0.0, 0.5), &wall, &at(0.0, 0.0, 0.0)).unwrap());
     // A cap of height ⅕/0.4 of the half-axis, of the ball that it is the image of.
     let exact = 0.24 * PI * 0.25 * 2.5 / 3.0;
+    // Its centroid is 0.675 of the half-axis from the middle.
+    assert!((o.centroid - Point::new(5.0, 0.0, 0.23)).norm() < 1e-4, "{o:?}");
     assert!((o.volume / exact - 1.0).abs() < 1e-4 && (o.normal - Vector::z()).norm() < 1e-3, "{o:?}");
     let disc = crate::Disc::new(1.0).unwrap();
     let mut solver = tolerance(1e-2);
@@ -279,99 +285,6 @@ fn no_memory_is_asked_for_again() {
     }
 }
 
-#[cfg(feature = "mesh")]
-mod facets {
-    use super::*;
-    use crate::FacetIndex;
-    use interfaces::Polyhedron;
-
-    /// The unit cube as twelve triangles.
-    struct Triangles {
-        vertices: Vec<Point>,
-        faces: Vec<[u32; 3]>,
-        facets: FacetIndex,
-    }
-
-    impl Triangles {
-        fn new() -> Self {
-            let corner = |i: usize| Point::from([i & 1, i >> 1 & 1, i >> 2 & 1].map(|c| c as f64 - 0.5));
-            let vertices: Vec<Point> = (0..8).map(corner).collect();
-            let faces = vec![
-                [0, 2, 1],
-                [1, 2, 3],
-                [4, 5, 6],
-                [5, 7, 6],
-                [0, 1, 4],
-                [1, 5, 4],
-                [2, 6, 3],
-                [3, 6, 7],
-                [0, 4, 2],
-                [2, 4, 6],
-                [1, 3, 5],
-                [3, 7, 5],
-            ];
-            let facets = FacetIndex::new(Polyhedron { vertices: &vertices, faces: &faces });
-            Self { vertices, faces, facets }
-        }
-    }
-    impl Solid for Triangles {
-        fn signed_distance(&self, x: Point, band: f64) -> f64 {
-            CUBE.signed_distance(x, band)
-        }
-        fn aabb(&self) -> Aabb {
-            CUBE.aabb()
-        }
-        fn polyhedron(&self) -> Option<Polyhedron<'_>> {
-            Some(Polyhedron { vertices: &self.vertices, faces: &self.faces })
-        }
-    }
-    impl Shape for Triangles {
-        fn name(&self) -> &'static str {
-            "triangles"
-        }
-        fn inertia(&self, density: f64) -> Inertia {
-            CUBE.inertia(density)
-        }
-        fn bounding_radius(&self) -> f64 {
-            0.75_f64.sqrt()
-        }
-        fn facet_index(&self) -> Option<&FacetIndex> {
-            Some(&self.facets)
-        }
-    }
-
-    /// Facets tell which boxes are cut exactly, so fewer are than by the distance of their centres; the sum is the same.
-    #[test]
-    fn facets_decide_which_boxes_are_cut() {
-        let (cube, b) = (Triangles::new(), turned(at(0.7, 0.4, 0.3), [0.3, 0.2, 0.5]));
-        assert_eq!(cube.facets.len(), 12);
-        let count = |shape: &dyn Shape| {
-            let mut solver = solver(Refinement::Levels(4));
-            let o = one(solver.solve(shape, &at(0.0, 0.0, 0.0), shape, &b).unwrap());
-            (o.volume, solver.boxes().filter(|b| b.kind != BoxKind::Inside).count())
-        };
-        let ((by_facets, few), (by_distance, many)) = (count(&cube), count(&CUBE));
-        assert!(few < many, "{few} {many}");
-        assert!((by_facets / by_distance - 1.0).abs() < 1e-3, "{by_facets} {by_distance}");
-        let exact = one(tolerance(1e-4).solve(&CUBE, &at(0.0, 0.0, 0.0), &CUBE, &b).unwrap()).volume;
-        assert!((by_facets / exact - 1.0).abs() < 5e-3, "{by_facets} {exact}");
-    }
-
-    #[test]
-    fn a_box_and_a_triangle() {
-        let vertices = [Point::new(0.0, 0.0, 0.0), Point::new(1.0, 0.0, 0.0), Point::new(0.0, 1.0, 0.0)];
-        let facets = FacetIndex::new(Polyhedron { vertices: &vertices, faces: &[[0, 1, 2]] });
-        let turn =
-            |angle: f64| *Rotation::from_axis_angle(&Vector::z_axis(), angle).to_rotation_matrix().matrix();
-        let cut = |x, y, z, angle| facets.cut(Point::new(x, y, z), &turn(angle), Vector::repeat(0.1));
-        assert!(cut(0.3, 0.3, 0.05, 0.0) && !cut(0.3, 0.3, 0.11, 0.0));
-        // Before the long side: corner first, or side first.
-        assert!(cut(0.59, 0.59, 0.0, 0.0) && !cut(0.61, 0.61, 0.0, 0.0));
-        assert!(cut(0.57, 0.57, 0.0, PI / 4.0) && !cut(0.59, 0.59, 0.0, PI / 4.0));
-        assert!(!facets.is_empty());
-    }
-}
-
 proptest! {
     #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -411,4 +324,18 @@ proptest! {
         let [up, down] = [h, -h].map(|s| sum(tolerance(1e-5).solve(a, &push(s), b, &at_b).unwrap()).0);
         prop_assert!((0.5 * (up - down) / h - gradient.y).abs() < 0.02 * area.max(0.05));
     }
+}
+
+#[test]
+fn a_route_asked_for_is_taken_for_spheres_too() {
+    let ball = crate::Sphere::new(1.0).unwrap();
+    let [here, there] = [Pose::at([0.0; 3]), Pose::at([1.5, 0.0, 0.0])];
+    let mut solver = solver(Refinement::Levels(1));
+    let volume = solver.solve(&ball, &here, &ball, &there).unwrap()[0].volume;
+    assert!(solver.boxes().next().is_some());
+    let exact = OverlapSolver::new().solve(&ball, &here, &ball, &there).unwrap()[0].volume;
+    assert!((volume / exact - 1.0).abs() > 1e-6, "one level cannot be exact: {volume} and {exact}");
+    let refused =
+        OverlapSolver::new().with_route(Some(Route::Clip)).solve(&ball, &here, &ball, &there).map(<[_]>::len);
+    assert!(refused.is_err());
 }

@@ -1,5 +1,5 @@
 //! A few neighbouring triangles and a box around them.
-use super::triangle::{Part, Triangle};
+use crate::shapes::triangle::{Part, Triangle};
 use interfaces::{Point, Vector};
 use std::ops::Range;
 

@@ -1,6 +1,6 @@
 //! The nearest point of a mesh.
 use super::cluster::{self, Cluster, Found};
-use super::triangle::{Part, Triangle};
+use crate::shapes::triangle::{Part, Triangle};
 use interfaces::{Point, Vector};
 use parry3d::bounding_volume::Aabb;
 use parry3d::partitioning::{Bvh, BvhBuildStrategy, BvhNode};

@@ -4,8 +4,9 @@ mod crossings;
 mod reading;
 mod signs;
 
-use super::sphere::icosphere;
 use super::*;
+use crate::shapes::icosphere;
+use interfaces::Pose;
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
@@ -234,4 +235,39 @@ proptest! {
         let foot = p - n * d;
         prop_assert!(mesh.signed_distance(foot, 1.0).abs() < 1e-12);
     }
+}
+
+#[test]
+fn small_convex_meshes_are_cut_like_hulls() {
+    let cube = made(&brick([-0.5; 3], [0.5; 3]));
+    let ball = made(&icosphere(1.0, 2));
+    assert!(matches!(cube.form(), Form::Hull(_)));
+    // Too large, and not convex.
+    assert!(matches!(ball.form(), Form::Facets(_)));
+    assert!(matches!(made(&star()).form(), Form::Facets(_)));
+    let mut dented = icosphere(1.0, 0);
+    dented.0[0] = dented.0[0].map(|x| 0.2 * x);
+    assert!(matches!(made(&dented).form(), Form::Facets(_)));
+    // A fold of 1e-11 along the diagonal of a face is no round-off: inwards it is not convex, outwards it is.
+    let folded = [-1e-11, 1e-11].map(|step| {
+        let mut faces = brick([-0.5; 3], [0.5; 3]);
+        faces
+            .0
+            .iter_mut()
+            .for_each(|v| v[0] += if v[1] * v[2] * v[0] > 0.0 { step * v[0].signum() } else { 0.0 });
+        matches!(made(&faces).form(), Form::Hull(_))
+    });
+    assert!(folded.contains(&false), "{folded:?}");
+    let at = Pose {
+        position: Point::new(0.7, 0.5, 0.6),
+        orientation: interfaces::Rotation::from_scaled_axis(Vector::new(0.3, -0.5, 0.2)),
+    };
+    let by = |route| {
+        let mut solver = crate::OverlapSolver::new().with_route(Some(route));
+        solver.solve(&cube, &Pose::at([0.0; 3]), &cube, &at).unwrap()[0]
+    };
+    let (cut, crossed) = (by(crate::Route::Clip), by(crate::Route::Crossings));
+    assert!((cut.volume - crossed.volume).abs() < 1e-15, "{} {}", cut.volume, crossed.volume);
+    assert!((cut.gradient - crossed.gradient).norm() < 1e-14);
+    assert!((cut.moment - crossed.moment).norm() < 1e-14);
 }

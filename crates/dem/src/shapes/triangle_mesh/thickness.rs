@@ -1,6 +1,6 @@
 //! Where a body or a gap in it is thinnest.
 use super::crossings::FaceTree;
-use super::triangle::Triangle;
+use crate::shapes::triangle::Triangle;
 use interfaces::{Point, Vector};
 use parry3d::partitioning::BvhNode;
 

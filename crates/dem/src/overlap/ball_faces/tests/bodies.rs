@@ -1,7 +1,6 @@
 //! Small polyhedra.
 use super::Faces;
-use interfaces::{Point, Polyhedron, Vector};
-use std::collections::HashMap;
+use interfaces::{Point, Polyhedron};
 
 /// A triangle mesh.
 #[derive(Clone, Debug)]
@@ -77,48 +76,10 @@ pub(super) fn tetrahedron(corners: [[f64; 3]; 4]) -> Body {
     Body { vertices, faces, convex: true }
 }
 
-/// Icosahedron on the sphere of radius `r`, every triangle cut into four `level` times.
-pub(super) fn icosphere(r: f64, level: usize) -> Body {
-    let g = 0.5 * (1.0 + 5.0_f64.sqrt());
-    let mut vertices = Vec::new();
-    for (a, b) in [(-1.0, g), (1.0, g), (-1.0, -g), (1.0, -g)] {
-        vertices.extend([Vector::new(a, b, 0.0), Vector::new(0.0, a, b), Vector::new(b, 0.0, a)]);
-    }
-    let mut faces = Vec::new();
-    for (i, p) in vertices.iter().enumerate() {
-        for (j, q) in vertices.iter().enumerate().skip(i + 1) {
-            for (k, s) in vertices.iter().enumerate().skip(j + 1) {
-                if [(p, q), (q, s), (s, p)].iter().all(|(p, q)| ((*p - *q).norm() - 2.0).abs() < 1e-9) {
-                    let outward = p.dot(&q.cross(s)) > 0.0;
-                    faces.push(if outward {
-                        [i as u32, j as u32, k as u32]
-                    } else {
-                        [i as u32, k as u32, j as u32]
-                    });
-                }
-            }
-        }
-    }
-    assert_eq!(faces.len(), 20);
-    for _ in 0..level {
-        let mut middles = HashMap::new();
-        let mut middle = |p: u32, q: u32| {
-            *middles.entry((p.min(q), p.max(q))).or_insert_with(|| {
-                vertices.push(0.5 * (vertices[p as usize] + vertices[q as usize]));
-                vertices.len() as u32 - 1
-            })
-        };
-        faces = faces
-            .iter()
-            .flat_map(|&[p, q, s]| {
-                let (a, b, c) = (middle(p, q), middle(q, s), middle(s, p));
-                [[p, a, c], [a, q, b], [c, b, s], [a, b, c]]
-            })
-            .collect();
-        vertices.iter_mut().for_each(|v| *v = v.normalize());
-    }
-    let vertices = vertices.iter().map(|v| Point::from(v.normalize() * r)).collect();
-    Body { vertices, faces, convex: true }
+/// A tessellated sphere of radius `r`.
+pub(super) fn icosphere(r: f64, times: u32) -> Body {
+    let (vertices, faces) = crate::shapes::icosphere(r, times);
+    Body { vertices: vertices.into_iter().map(Point::from).collect(), faces, convex: true }
 }
 
 /// A polygon in the plane z = 0, counter-clockwise, and triangles that fill it, pulled out to z = `height`.

@@ -36,6 +36,7 @@ impl Triangle {
     pub(crate) fn cross(&self) -> Vector {
         self.ab.cross(&self.ac)
     }
+    #[cfg(feature = "mesh")]
     /// Angle at corner `i`.
     pub(crate) fn angle(&self, i: usize) -> f64 {
         let bc = self.ac - self.ab;
@@ -45,6 +46,7 @@ impl Triangle {
             _ => bc.angle(&self.ac),
         }
     }
+    #[cfg(feature = "mesh")]
     /// How far ahead of `x`, along a unit vector, it is hit, if at all; at its edges in any case.
     pub(crate) fn ahead(&self, x: Vector, along: Vector) -> Option<f64> {
         let (cross, from) = (self.cross(), x - self.a);

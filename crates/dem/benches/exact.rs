@@ -1,8 +1,7 @@
-//! CPU time per pair of every exact route: `cargo bench -p dem --bench overlap`. Those that approximate have benches of their own
-//! (`columns`, `tree`).
-use dem::{Cuboid, OverlapSolver, Shape, Sphere, TriangleMesh};
+//! CPU time per pair of every exact route: `cargo bench -p dem --bench exact`. Those that approximate have benches of their own
+//! (`columns`, `tree`). `-- spheres` takes only the pairs with this word.
+use dem::{ConvexPolyhedron, Cuboid, OverlapSolver, Shape, Sphere, TriangleMesh};
 use interfaces::{Point, Pose, Rotation, Vector};
-use std::collections::HashMap;
 
 /// Median CPU time of a call \[µs\], over nine runs.
 fn time(mut call: impl FnMut()) -> f64 {
@@ -22,43 +21,12 @@ fn at(position: [f64; 3], turn: [f64; 3]) -> Pose {
     Pose { position: Point::from(position), orientation: Rotation::from_scaled_axis(Vector::from(turn)) }
 }
 
-/// An icosahedron with every face cut into four, `levels` times, its corners at `radius` of their direction.
-fn icosphere(levels: usize, radius: impl Fn(Vector) -> f64) -> TriangleMesh {
-    let g = 0.5 * (1.0 + 5f64.sqrt());
-    let mut vertices: Vec<Vector> = Vec::new();
-    for (s, t) in [(1.0, g), (-1.0, g), (1.0, -g), (-1.0, -g)] {
-        vertices.extend([Vector::new(0.0, s, t), Vector::new(s, t, 0.0), Vector::new(t, 0.0, s)]);
-    }
-    let mut faces: Vec<[u32; 3]> = Vec::new();
-    for a in 0..12 {
-        for b in a + 1..12 {
-            for c in b + 1..12 {
-                let [p, q, r] = [a, b, c].map(|i: usize| vertices[i]);
-                if [p - q, q - r, r - p].iter().all(|e| e.norm() < 2.1) {
-                    let outward = p.cross(&q).dot(&r) > 0.0;
-                    let [a, b, c] = [a, b, c].map(|i| i as u32);
-                    faces.push(if outward { [a, b, c] } else { [a, c, b] });
-                }
-            }
-        }
-    }
-    for _ in 0..levels {
-        let mut middles = HashMap::new();
-        let mut middle = |a: u32, b: u32| {
-            *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
-                vertices.push((vertices[a as usize].normalize() + vertices[b as usize].normalize()) * 0.5);
-                vertices.len() as u32 - 1
-            })
-        };
-        let cut = |[a, b, c]: [u32; 3]| {
-            let [p, q, r] = [middle(a, b), middle(b, c), middle(c, a)];
-            [[a, p, r], [p, b, q], [r, q, c], [p, q, r]]
-        };
-        faces = faces.into_iter().flat_map(cut).collect();
-    }
-    let place = |v: &Vector| (v.normalize() * radius(v.normalize())).into();
-    let vertices: Vec<[f64; 3]> = vertices.iter().map(place).collect();
-    TriangleMesh::new(&vertices, &faces).expect("a closed surface")
+/// A tessellated sphere of 20·4ⁿ triangles, its corners put at `radius` of their direction.
+fn mesh(times: u32, radius: impl Fn(Vector) -> f64) -> TriangleMesh {
+    let ball = TriangleMesh::sphere(1.0, times).expect("a closed surface");
+    let place = |v: &Point| (v.coords * radius(v.coords)).into();
+    let vertices: Vec<[f64; 3]> = ball.vertices().iter().map(place).collect();
+    TriangleMesh::new(&vertices, ball.faces()).expect("a closed surface")
 }
 
 /// Bulges and hollows: not convex.
@@ -68,7 +36,11 @@ fn rock(n: Vector) -> f64 {
 
 fn main() {
     let mut solver = OverlapSolver::new();
+    let word = std::env::args().skip(1).find(|word| !word.starts_with("--"));
     let mut row = |name: &str, a: &dyn Shape, b: &dyn Shape, at_b: Pose| {
+        if word.as_ref().is_some_and(|word| !name.contains(word)) {
+            return;
+        }
         let origin = Pose::at([0.0; 3]);
         let patches = solver.solve(a, &origin, b, &at_b).expect("an overlap");
         let (n, volume) = (patches.len(), patches.iter().fold(0.0, |sum, o| sum + o.volume));
@@ -80,6 +52,14 @@ fn main() {
         println!("{name:44} {us:9.3} µs  {n} patches, {:8.4} % of the smaller body", 100.0 * share);
     };
     let ball = Sphere::new(1.0).expect("a sphere");
+    let places: Vec<Point> = (0..1024).map(|i| Point::new(1.8 + 1e-4 * f64::from(i), 0.3, 0.1)).collect();
+    let us = time(|| {
+        let sum = |sum: f64, at: &Point| {
+            sum + ball.overlap(Point::origin(), &ball, *at).map_or(0.0, |o| o.volume + o.centroid.x)
+        };
+        std::hint::black_box(std::hint::black_box(&places).iter().fold(0.0, sum));
+    });
+    println!("{:44} {:9.4} µs", "spheres, by Sphere::overlap", us / places.len() as f64);
     row("spheres", &ball, &ball, at([1.8, 0.3, 0.1], [0.0; 3]));
     let cube = Cuboid::new([1.0; 3]).expect("a box");
     row("cubes, corner in", &cube, &cube, at([0.8, 0.7, 0.75], [0.3, 0.2, 0.5]));
@@ -90,9 +70,15 @@ fn main() {
     row("sphere and cube", &ball, &cube, at([1.2, 0.6, 0.3], [0.3, 0.2, 0.5]));
     let direction = Vector::new(0.8, 0.5, 0.33).normalize();
     let turn = [0.3, 0.7, -0.4];
+    let corners: Vec<[f64; 3]> = mesh(0, |_| 1.0).vertices().iter().map(|v| (*v).into()).collect();
+    let icosahedron = ConvexPolyhedron::from_points(&corners).expect("a hull");
+    for d in [1.8, 1.5, 0.7] {
+        let name = format!("convex polyhedra of 20 faces, centres {d} apart");
+        row(&name, &icosahedron, &icosahedron, at((direction * d).into(), turn));
+    }
     for (levels, faces) in [(0, 20), (3, 1280), (5, 20_480)] {
         for (kind, radius) in [("round", (|_| 1.0) as fn(Vector) -> f64), ("rocks", rock)] {
-            let mesh = icosphere(levels, radius);
+            let mesh = mesh(levels, radius);
             for d in [1.95, 1.8, 1.5, 0.7] {
                 let name = format!("{kind}, {faces} triangles, centres {d} apart");
                 row(&name, &mesh, &mesh, at((direction * d).into(), turn));

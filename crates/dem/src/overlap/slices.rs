@@ -1,0 +1,240 @@
+//! Capsules and cylinders with one another, with spheres and with convex polyhedra: integrals over parallel slices.
+mod apart;
+mod frame;
+mod heights;
+mod outline;
+mod polyhedron;
+mod region;
+mod rules;
+mod slice;
+mod sweep;
+#[cfg(test)]
+mod tests;
+mod tube;
+
+use super::Overlap;
+use super::integrals::Integrals;
+use crate::{ConvexPolyhedron, Form, HalfSpace, Shape};
+use frame::Frame;
+use interfaces::{Pose, Vector};
+use polyhedron::SlicedPolyhedron;
+use region::Region;
+use slice::Slice;
+use tube::{Ends, SlicedTube, Tube};
+
+/// The finest tolerance worth asking for.
+const FINEST: f64 = 1e-12;
+/// Lines nearer to one another than this share of the size are taken for one.
+const SLACK: f64 = 4e-16;
+/// Sine of the angle between axes that are taken for parallel.
+const PARALLEL: f64 = 1e-15;
+/// Cosine of the angle to the axis from which on faces are across a tube, not beside it.
+const BESIDE: f64 = 0.99;
+
+/// Slices along the axes of both bodies. A capsule's is all within a radius of a straight line, a cylinder's a rectangle, and a
+/// polyhedron's a polygon: what two of them share has an outline of straight pieces and arcs, along which area,
+/// first moment and the integrals of the surface's normal are known exactly. What remains is one integral over the height.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Slices {
+    polyhedron: SlicedPolyhedron,
+    slices: [Slice; 2],
+    region: Region,
+}
+
+impl Slices {
+    /// Adds what both share, to a share of `tolerance` of its volume; answers whether these are shapes for it.
+    pub(super) fn overlap(
+        &mut self,
+        a: (&Form<'_>, &Pose),
+        b: (&Form<'_>, &Pose),
+        tolerance: f64,
+        out: &mut Vec<Overlap>,
+    ) -> bool {
+        // Also where it is not a number.
+        let tolerance = FINEST.max(tolerance);
+        let Some(tube) = tube_of(a.0, a.1) else { return false };
+        match b.0 {
+            Form::Hull(q) => out.extend(self.polyhedron(&tube, q, b.1, tolerance)),
+            Form::HalfSpace(w) => out.extend(self.wall(&tube, &w.posed(b.1), tolerance)),
+            _ => match tube_of(b.0, b.1) {
+                Some(other) => out.extend(self.tubes(&tube, &other, tolerance)),
+                None => return false,
+            },
+        }
+        true
+    }
+
+    fn tubes(&mut self, a: &Tube, b: &Tube, tolerance: f64) -> Option<Overlap> {
+        let apart = b.at.position - a.at.position;
+        let reach = a.bound() + b.bound();
+        if apart.norm_squared() >= reach * reach {
+            return None;
+        }
+        let axis = if a.half > 0.0 { a.axis } else { b.axis };
+        let both = if a.half > 0.0 && b.half > 0.0 { a.axis.cross(&b.axis) } else { Vector::zeros() };
+        // Across both axes or, where there is but one direction, across that and the way to the other centre.
+        let normal = if both.norm() > PARALLEL { both } else { axis.cross(&apart) };
+        let origin = if a.bound() < b.bound() { a.at.position } else { b.at.position };
+        let frame = Frame::new(origin, axis, normal);
+        let scene = Scene { slack: SLACK * (reach + apart.norm()), tolerance };
+        let found = self.integrate(&scene, a.sliced(&frame), Other::Tube(b.sliced(&frame)))?;
+        let normal = (-apart).try_normalize(0.0).unwrap_or(-axis);
+        match found.of {
+            [true, false] => Some(Overlap::whole(a.volume(), a.at.position, normal)),
+            [false, true] => Some(Overlap::whole(b.volume(), b.at.position, normal)),
+            _ => frame.overlap(&found.sums, found.base, normal),
+        }
+    }
+
+    fn polyhedron(&mut self, a: &Tube, b: &ConvexPolyhedron, at_b: &Pose, tolerance: f64) -> Option<Overlap> {
+        let apart = at_b.position - a.at.position;
+        let reach = a.bound() + b.bounding_radius();
+        if apart.norm_squared() >= reach * reach {
+            return None;
+        }
+        // The face that the tube is farthest in front of or least behind.
+        let turn = at_b.orientation.to_rotation_matrix().into_inner();
+        let (mut most, mut normal) = (f64::NEG_INFINITY, Vector::z());
+        let (mut most_beside, mut beside) = (f64::NEG_INFINITY, Vector::z());
+        for plane in &b.planes {
+            let n = turn * plane.normal;
+            let ahead = -n.dot(&apart) - plane.offset - a.reach(n);
+            if ahead > most {
+                (most, normal) = (ahead, n);
+            }
+            if ahead > most_beside && n.dot(&a.axis).abs() < BESIDE {
+                (most_beside, beside) = (ahead, n);
+            }
+        }
+        if most >= 0.0 {
+            return None;
+        }
+        let origin = if a.bound() < b.bounding_radius() { a.at.position } else { at_b.position };
+        // In slices across it a face is always the same line: the one so found of those that are beside the tube.
+        let frame = Frame::new(origin, a.axis, a.axis.cross(&beside));
+        let scene = Scene { slack: SLACK * (reach + apart.norm()), tolerance };
+        let mut sliced = std::mem::take(&mut self.polyhedron);
+        sliced.place(b, at_b, &frame);
+        let found = self.integrate(&scene, a.sliced(&frame), Other::Polyhedron(&mut sliced));
+        self.polyhedron = sliced;
+        let found = found?;
+        match found.of {
+            [true, false] => Some(Overlap::whole(a.volume(), a.at.position, normal)),
+            [false, true] => Some(Overlap::whole(b.volume(), at_b.position, normal)),
+            _ => frame.overlap(&found.sums, found.base, normal),
+        }
+    }
+
+    /// A wall that stands where it is: in all slices across it the same rectangle, larger than the tube.
+    fn wall(&mut self, a: &Tube, wall: &HalfSpace, tolerance: f64) -> Option<Overlap> {
+        let n = wall.normal();
+        let distance = wall.signed_distance(a.at.position);
+        let reach = a.reach(n);
+        if distance >= reach {
+            return None;
+        }
+        if distance <= -reach {
+            return Some(Overlap::whole(a.volume(), a.at.position, n));
+        }
+        let frame = Frame::new(a.at.position, a.axis, a.axis.cross(&n));
+        let size = 2.0 * a.bound();
+        let out = frame.direction(n).xy();
+        self.slices[1].body = 1;
+        self.slices[1].rectangle(out * (-distance - size), out, [size, size], 0.0);
+        let scene = Scene { slack: 2.0 * SLACK * size, tolerance };
+        let found = self.integrate(&scene, a.sliced(&frame), Other::Wall)?;
+        match found.of {
+            [true, false] => Some(Overlap::whole(a.volume(), a.at.position, n)),
+            _ => frame.overlap(&found.sums, found.base, n),
+        }
+    }
+
+    fn integrate(&mut self, scene: &Scene, mut a: SlicedTube, mut b: Other) -> Option<Swept> {
+        let range = [a.low.max(b.limits()[0]), a.high.min(b.limits()[1])];
+        // Heights from the middle of those that both have.
+        let base = 0.5 * (range[0] + range[1]);
+        a.lift(-base);
+        b.lift(-base);
+        let range = [a.low.max(b.limits()[0]), a.high.min(b.limits()[1])];
+        if range[0].is_nan() || range[1].is_nan() || range[0] >= range[1] {
+            return None;
+        }
+        // A tube's slices end in a line.
+        let is_line = |h: f64| h == a.low || h == a.high || (b.is_tube() && b.limits().contains(&h));
+        let lines = range.map(is_line);
+        let arcs = a.is_round() || matches!(&b, Other::Tube(tube) if tube.is_round());
+        let Self { slices: [one, two], region, .. } = self;
+        (one.body, two.body) = (0, 1);
+        let mut at = |h: f64, one: &mut Slice, two: &mut Slice| {
+            a.slice(h, one);
+            match &mut b {
+                Other::Tube(tube) => tube.slice(h, two),
+                Other::Polyhedron(body) => body.slice(h, two),
+                Other::Wall => {}
+            }
+        };
+        let ends = heights::heights(range, 1e-4 * scene.tolerance.sqrt(), |h| {
+            at(h, one, two);
+            apart::gap(one, two)
+        })?;
+        let round = [0, 1].map(|i| arcs || (ends[i] == range[i] && lines[i]));
+        let (sums, of) = sweep::sweep(ends, round, arcs, scene.tolerance, |h| {
+            at(h, one, two);
+            region.section(one, two, scene.slack)
+        });
+        Some(Swept { sums, base, of })
+    }
+}
+
+/// How finely a pair is sliced.
+struct Scene {
+    slack: f64,
+    tolerance: f64,
+}
+
+/// Integrals with the heights counted from a base, and of which bodies pieces of the surface were met.
+struct Swept {
+    sums: Integrals,
+    base: f64,
+    of: [bool; 2],
+}
+
+/// The second body.
+enum Other<'a> {
+    Tube(SlicedTube),
+    Polyhedron(&'a mut SlicedPolyhedron),
+    /// Its slice is always the same.
+    Wall,
+}
+
+impl Other<'_> {
+    fn limits(&self) -> [f64; 2] {
+        match self {
+            Self::Tube(tube) => [tube.low, tube.high],
+            Self::Polyhedron(body) => [body.low, body.high],
+            Self::Wall => [f64::NEG_INFINITY, f64::INFINITY],
+        }
+    }
+    fn lift(&mut self, by: f64) {
+        match self {
+            Self::Tube(tube) => tube.lift(by),
+            Self::Polyhedron(body) => body.lift(by),
+            Self::Wall => {}
+        }
+    }
+    fn is_tube(&self) -> bool {
+        matches!(self, Self::Tube(_))
+    }
+}
+
+/// A sphere, capsule or cylinder.
+fn tube_of(form: &Form<'_>, at: &Pose) -> Option<Tube> {
+    let axis = at.orientation * Vector::z();
+    let (radius, half, ends) = match form {
+        Form::Sphere(s) => (s.radius(), 0.0, Ends::Round),
+        Form::Capsule(c) => (c.radius(), 0.5 * c.length(), Ends::Round),
+        Form::Cylinder(c) => (c.radius(), 0.5 * c.length(), Ends::Flat),
+        _ => return None,
+    };
+    Some(Tube { radius, half, ends, axis, at: *at })
+}

@@ -1,0 +1,103 @@
+//! Spheres, capsules and cylinders in slices along their axes.
+use super::frame::Frame;
+use super::slice::{Corner, Place, Slice};
+use interfaces::{Pose, Vector};
+use std::f64::consts::PI;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Ends {
+    Round,
+    Flat,
+}
+
+/// All within a radius of a straight line or point, or of a line without what lies beyond its ends: in slices along the
+/// line, at the height h above it, all within √(r² − h²) of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tube {
+    pub(super) radius: f64,
+    /// Half the line; zero for spheres.
+    pub(super) half: f64,
+    pub(super) ends: Ends,
+    /// Of the line, in the world.
+    pub(super) axis: Vector,
+    pub(super) at: Pose,
+}
+
+impl Tube {
+    /// The farthest reach along a unit vector from the middle.
+    pub(super) fn reach(&self, n: Vector) -> f64 {
+        let along = self.axis.dot(&n);
+        let round = match self.ends {
+            Ends::Round => 1.0,
+            Ends::Flat => (1.0 - along * along).max(0.0).sqrt(),
+        };
+        self.half * along.abs() + self.radius * round
+    }
+    /// Radius of a sphere around all.
+    pub(super) fn bound(&self) -> f64 {
+        match self.ends {
+            Ends::Round => self.half + self.radius,
+            Ends::Flat => self.half.hypot(self.radius),
+        }
+    }
+    pub(super) fn volume(&self) -> f64 {
+        let tube = PI * self.radius * self.radius * (2.0 * self.half);
+        match self.ends {
+            Ends::Round => tube + 4.0 / 3.0 * PI * self.radius.powi(3),
+            Ends::Flat => tube,
+        }
+    }
+    pub(super) fn sliced(&self, frame: &Frame) -> SlicedTube {
+        let (centre, axis) = (frame.place(self.at.position), frame.direction(self.axis));
+        SlicedTube {
+            centre: centre.xy(),
+            axis: axis.xy(),
+            half: self.half,
+            radius: self.radius,
+            ends: self.ends,
+            low: centre.z - self.radius,
+            high: centre.z + self.radius,
+        }
+    }
+}
+
+/// A tube as a frame's slices see it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SlicedTube {
+    centre: Place,
+    axis: Place,
+    half: f64,
+    radius: f64,
+    ends: Ends,
+    pub(super) low: f64,
+    pub(super) high: f64,
+}
+
+impl SlicedTube {
+    /// Whether its slices have arcs.
+    pub(super) fn is_round(&self) -> bool {
+        self.ends == Ends::Round
+    }
+    pub(super) fn lift(&mut self, by: f64) {
+        (self.low, self.high) = (self.high + by - 2.0 * self.radius, self.high + by);
+    }
+    pub(super) fn slice(&self, h: f64, slice: &mut Slice) {
+        let r = ((h - self.low) * (self.high - h)).max(0.0).sqrt();
+        // Finite where the slice is a line.
+        let slope = (h - 0.5 * (self.low + self.high)) / r.max(1e-100 * self.radius);
+        slice.corners.clear();
+        slice.sides.clear();
+        let (c, a) = (self.centre, self.axis * self.half);
+        if self.ends == Ends::Round {
+            (slice.radius, slice.slope) = (r, slope);
+            let still = |x| Corner { x, dx: Place::zeros() };
+            if self.half > 0.0 {
+                slice.corners.extend([still(c - a), still(c + a)]);
+            } else {
+                slice.corners.push(still(c));
+            }
+            return;
+        }
+        slice.rectangle(c, self.axis, [self.half, r], slope);
+    }
+}

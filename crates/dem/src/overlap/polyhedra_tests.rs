@@ -190,7 +190,8 @@ proptest! {
         prop_assert!((volume(&clipped) - volume(&crossed)).abs() < 1e-12 * least, "{:?} {:?}", clipped, crossed);
         prop_assert!(volume(&clipped) <= least * (1.0 + 1e-12));
         if let (Some(p), Some(q)) = (clipped.first(), crossed.first()) {
-            assert_relative_eq!(p.centroid, q.centroid, epsilon = 1e-10 / volume(&clipped).max(1e-6));
+            // Sums over whole bodies carry their round-off, however thin what is shared.
+            assert_relative_eq!(p.centroid, q.centroid, epsilon = 1e-10 + 1e-14 * least / volume(&clipped));
             // Where faces coincide the gradient has a jump; elsewhere both find the same.
             if how == 3 {
                 assert_relative_eq!(p.gradient, q.gradient, epsilon = 1e-11);

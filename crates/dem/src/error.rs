@@ -87,9 +87,17 @@ pub enum DemError {
         /// Angular velocity.
         angular: [f64; 3],
     },
+    /// A step would take too many sub-steps.
+    #[error("a step of {dt:.3e} s would take more than 1e8 sub-steps of {longest:.3e} s: give a shorter one, softer materials or slower bodies")]
+    SubSteps {
+        /// The step \[s\].
+        dt: f64,
+        /// The longest sub-step \[s\].
+        longest: f64,
+    },
     /// A body is too large for its periodic box.
     #[error(
-        "body {} is {size:.3e} m long along axis {axis}, more than half the period of {period:.3e} m, so it would touch itself or one neighbour twice: take a smaller body or a longer period", body.0
+        "body {} is {size:.3e} m long along axis {axis}, more than the period of {period:.3e} m, so it would overlap itself: take a smaller body or a longer period", body.0
     )]
     Period {
         /// The body.

@@ -21,6 +21,7 @@
 //! ```
 #![deny(missing_docs)]
 
+mod broad_phase;
 mod contact;
 mod error;
 mod material;
@@ -29,13 +30,13 @@ mod rigid_bodies;
 mod shapes;
 mod vtp;
 
-pub use contact::PairProperties;
+pub use contact::{Chen, ContactLaw, Means, Memory, PairProperties, Potential, Push, Rolling, Touch};
 pub use error::DemError;
 pub use material::Material;
 #[cfg(feature = "mesh")]
 pub use overlap::FacetIndex;
 pub use overlap::{BoxKind, CellOverlap, Normal, Overlap, OverlapSolver, Refinement, Route, SubBox, overlap};
-pub use rigid_bodies::{RigidBodies, Round};
+pub use rigid_bodies::{Contact, Partner, RigidBodies};
 #[cfg(feature = "mesh")]
 pub use shapes::{AdmissionReport, MeshError, Shell, Thinnest, TriangleMesh, TriangleSoup};
 pub use shapes::{

@@ -1,119 +1,157 @@
-//! The set of bodies; how they move is in `motion`.
-mod broad_phase;
+//! The set of bodies; how they move is in `advance`.
+mod advance;
+mod body;
 mod checkpoint;
-mod motion;
-mod round;
+mod contacts;
+mod near;
 #[cfg(test)]
 mod tests;
+mod time_step;
+mod turning;
 
-use crate::{DemError, HalfSpace, Material};
-pub use round::Round;
-
-use broad_phase::{BroadPhase, Listed};
+use crate::broad_phase::{NearPair, PairList};
+use crate::contact::{Chen, ContactLaw, Potential};
+use crate::{DemError, HalfSpace, Material, Overlap, OverlapSolver, PairProperties, Shape};
+use body::{Body, Constants, Kind};
+use contacts::{Chunk, Patch, Wall, shift};
 use interfaces::{
-    Bodies, BodyId, Freedom, Inertia, Kinematics, Load, Periods, Pose, Solid, Twist, Vector, Wrench,
+    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Load, Periods, Point, Pose, Solid, Twist, Vector, Wrench,
 };
+use near::Listed;
+use std::sync::Arc;
 
-/// Rigid bodies that touch one another and plane walls, in a box that may be periodic.
+/// Rigid bodies of any shape that touch one another and plane walls, in a box that may be periodic.
 ///
-/// [`advance`](interfaces::Dynamics::advance) moves them by the drift–kick–drift form of the leapfrog method
-/// (symplectic, second order), in one step while no bounding boxes can meet, else in steps of at most
-/// [`stable_dt`](interfaces::Dynamics::stable_dt). Damping and friction see the velocity at the start of a
-/// sub-step, so they are of first order. A warmed-up `advance` allocates nothing.
+/// [`advance`](interfaces::Dynamics::advance) moves them by the drift–kick–drift form of the leapfrog method (symplectic, second order;
+/// rotations of unequal moments by a symmetric splitting about the principal axes), in one step while no bounding boxes can meet,
+/// else in steps of at most [`stable_dt`](interfaces::Dynamics::stable_dt). Damping and friction see the velocity at the start of a
+/// sub-step, so they are of first order. `L` is the law of contact: [`Chen`] as in the literature, [`Potential`] where energy and
+/// restitution matter, either in [`Rolling`](crate::Rolling). A warmed-up `advance` on one thread allocates nothing; results do not depend on the number of threads.
 #[derive(Clone, Debug)]
-pub struct RigidBodies {
+pub struct RigidBodies<L: ContactLaw = Chen> {
+    law: L,
     periods: Periods,
+    gravity: Vector,
     bodies: Vec<Body>,
-    walls: Vec<(HalfSpace, Material)>,
-    /// L_c = `length_factor` · l_i l_j/(l_i + l_j).
-    length_factor: f64,
-    /// Elastic tangential forces of touching pairs, sorted by pair; and those of the sub-step before.
-    springs: Vec<Spring>,
-    last_springs: Vec<Spring>,
-    /// Pairs that may touch during this advance, sorted.
-    near: Vec<Pair>,
-    broad_phase: BroadPhase,
+    constants: Vec<Constants>,
+    loads: Vec<Load>,
+    /// Contact wrenches now, and their time integrals over the last advance.
+    contact: Vec<Wrench>,
+    impulse: Vec<Wrench>,
+    walls: Vec<Wall>,
+    materials: Vec<Material>,
+    /// Of every pair of materials.
+    properties: Vec<PairProperties>,
+    /// Where bodies were when pairs were listed, and the boxes that came of it.
+    listed: Vec<Listed>,
+    boxes: Vec<Aabb>,
+    movable: Vec<bool>,
+    pairs: PairList,
+    /// Pairs of bodies, then of bodies and (numbered from `n_bodies` on) walls, each in ascending order; and those listed before.
+    near: Vec<NearPair>,
+    last_near: Vec<NearPair>,
+    chunks: Vec<Chunk<L::Memory>>,
+    carried: Vec<Patch<L::Memory>>,
+    n_contacts: usize,
     contact_time: f64,
     overlap_calls: u64,
     /// Kept, because every advance asks for it.
     stable_dt: f64,
+    /// Largest stiffness over mass in the last sub-step \[1/s²\].
+    stiffest: f64,
+    /// Largest rate of approach by size when pairs were listed \[1/s\].
+    fastest: f64,
+    /// How far ahead pairs were listed \[s\].
+    listed_for: f64,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Body {
-    shape: Round,
-    material: Material,
-    inertia: Inertia,
-    pose: Pose,
-    twist: Twist,
-    freedom: Freedom,
-    load: Load,
-    /// Contact wrench now, and its time integral over the last advance.
-    contact: Wrench,
-    impulse: Wrench,
-    listed: Listed,
+/// A patch that two bodies share, and what it does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// The body that feels the force.
+    pub body: BodyId,
+    /// What it touches.
+    pub partner: Partner,
+    /// Volume that both share \[m³\].
+    pub volume: f64,
+    /// Its centroid, next to `body` \[m\].
+    pub point: Point,
+    /// Force on `body` at the centroid \[N\].
+    pub force: Vector,
+    /// Torque on it besides \[N m\].
+    pub couple: Vector,
 }
 
-/// Two bodies, the lower number first, or a body and (from `n_bodies` on) a wall.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Pair(usize, usize);
-
-/// The elastic tangential force on the first of a pair.
-#[derive(Clone, Copy, Debug)]
-struct Spring {
-    pair: Pair,
-    force: Vector,
+/// What a body touches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Partner {
+    /// Another body, or rather its image so many periods away.
+    Body(BodyId, [i32; 3]),
+    /// A wall, by its number.
+    Wall(usize),
 }
 
 impl RigidBodies {
-    /// No bodies yet, in space that repeats after `periods`.
+    /// No bodies yet, in space that repeats after `periods`; contacts by [`Chen`]'s law.
     pub fn new(periods: Periods) -> Self {
+        Self::with_law(periods, Chen::default())
+    }
+}
+
+impl<L: ContactLaw> RigidBodies<L> {
+    /// No bodies yet, in space that repeats after `periods`; contacts by `law`.
+    pub fn with_law(periods: Periods, law: L) -> Self {
         Self {
+            law,
             periods,
+            gravity: Vector::zeros(),
             bodies: Vec::new(),
+            constants: Vec::new(),
+            loads: Vec::new(),
+            contact: Vec::new(),
+            impulse: Vec::new(),
             walls: Vec::new(),
-            length_factor: 4.0,
-            springs: Vec::new(),
-            last_springs: Vec::new(),
+            materials: Vec::new(),
+            properties: Vec::new(),
+            listed: Vec::new(),
+            boxes: Vec::new(),
+            movable: Vec::new(),
+            pairs: PairList::new(periods),
             near: Vec::new(),
-            broad_phase: BroadPhase::default(),
+            last_near: Vec::new(),
+            chunks: Vec::new(),
+            carried: Vec::new(),
+            n_contacts: 0,
             contact_time: 0.0,
             overlap_calls: 0,
             stable_dt: f64::INFINITY,
+            stiffest: 0.0,
+            fastest: 0.0,
+            listed_for: 0.0,
         }
     }
-    /// Another factor c in L_c = c·l_i l_j/(l_i + l_j), positive; 4 unless told. [`add`](Self::add) refuses bodies
-    /// when it is not.
-    #[must_use]
-    pub fn with_length_factor(mut self, factor: f64) -> Self {
-        self.length_factor = factor;
-        self.stable_dt = self.least_stable_dt();
-        self
+
+    /// Weight: every body that can be moved is accelerated by `gravity` \[m/s²\], besides its load. None unless told.
+    pub fn set_gravity(&mut self, gravity: Vector) {
+        self.gravity = gravity;
     }
 
-    /// Adds a body.
+    /// Adds a body. Bodies may share a shape in an `Arc`.
     ///
     /// # Errors
-    /// [`DemError`] for a material, place, motion or size that makes no sense here, and for a disc among spheres
-    /// or a sphere among discs. Overlaps are left to [`check_overlaps`](Self::check_overlaps).
+    /// [`DemError`] for a law, material, place, motion or size that makes no sense here, and for a disc among solid bodies
+    /// or a solid body among discs. Overlaps are left to [`check_overlaps`](Self::check_overlaps).
     pub fn add(
         &mut self,
-        shape: impl Into<Round>,
+        shape: impl Shape + 'static,
         material: Material,
         pose: Pose,
         twist: Twist,
         freedom: Freedom,
     ) -> Result<BodyId, DemError> {
-        let (shape, body) = (shape.into(), BodyId(self.bodies.len()));
+        let body = BodyId(self.bodies.len());
         material.check()?;
-        if !(self.length_factor.is_finite() && self.length_factor > 0.0) {
-            return Err(DemError::LengthFactor { factor: self.length_factor });
-        }
-        if let Some(first) = self.bodies.first()
-            && first.shape.is_plane() != shape.is_plane()
-        {
-            return Err(DemError::Unsupported { a: first.shape.name(), b: shape.name() });
-        }
+        self.law.check()?;
         let place = pose.position.iter().chain(pose.orientation.coords.iter());
         if !place.into_iter().all(|x| x.is_finite()) {
             return Err(DemError::Start { body, position: pose.position.into() });
@@ -122,28 +160,39 @@ impl RigidBodies {
             let (linear, angular) = (twist.linear.into(), twist.angular.into());
             return Err(DemError::StartMotion { body, linear, angular });
         }
-        let extent = shape.solid().aabb().posed(&pose).extent();
+        let constants = Constants::new(Arc::new(shape), material.density, freedom);
+        let kind = constants.kind();
+        if !constants.inertia.mass.is_finite() {
+            return Err(DemError::Unsupported { a: constants.shape.name(), b: "body" });
+        }
+        if let (Some(first), Some(other)) = (self.bodies.first(), self.constants.first())
+            && first.is_plane() != (kind == Kind::Disc)
+        {
+            return Err(DemError::Unsupported { a: other.shape.name(), b: constants.shape.name() });
+        }
+        let extent = constants.shape.aabb().posed(&pose).extent();
         for axis in 0..3 {
             if let Some(period) = self.periods.along(axis)
-                && extent[axis] > 0.5 * period
+                && extent[axis] > period
             {
                 return Err(DemError::Period { body, axis, size: extent[axis], period });
             }
         }
-        let new = Body {
-            shape,
-            material,
-            inertia: shape.inertia(material.density),
+        let number = self.number_of(material);
+        self.bodies.push(Body {
             pose,
             twist,
-            freedom,
-            load: Load::default(),
-            contact: Wrench::default(),
-            impulse: Wrench::default(),
-            listed: Listed { centre: pose.position, margin: 0.0 },
-        };
-        self.stable_dt = self.stable_dt.min(self.stable_dt_of(&new));
-        self.bodies.push(new);
+            radius: constants.shape.bounding_radius(),
+            inverse_mass: if constants.pinned() { 0.0 } else { 1.0 / constants.inertia.mass },
+            material: number,
+            kind,
+        });
+        self.constants.push(constants);
+        self.loads.push(Load::default());
+        self.contact.push(Wrench::default());
+        self.impulse.push(Wrench::default());
+        self.listed.push(Listed::not_yet());
+        self.stable_dt = self.stable_dt.min(self.stable_dt_of(body.0));
         Ok(body)
     }
 
@@ -151,58 +200,100 @@ impl RigidBodies {
     ///
     /// # Errors
     /// [`DemError::Material`].
-    pub fn add_wall(&mut self, wall: HalfSpace, material: Material) -> Result<(), DemError> {
+    pub fn add_wall(&mut self, plane: HalfSpace, material: Material) -> Result<(), DemError> {
         material.check()?;
-        self.walls.push((wall, material));
+        let material = self.number_of(material);
+        self.walls.push(Wall { plane, material });
+        self.listed.iter_mut().for_each(|l| *l = Listed::not_yet());
         self.stable_dt = self.least_stable_dt();
         Ok(())
     }
 
-    /// Are all bodies clear of one another and of the walls?
+    /// The number of a material, a new one if it was not there; properties of pairs are brought up to date.
+    fn number_of(&mut self, material: Material) -> u32 {
+        if let Some(known) = self.materials.iter().position(|m| *m == material) {
+            return known as u32;
+        }
+        self.materials.push(material);
+        self.properties.clear();
+        for a in &self.materials {
+            self.properties.extend(self.materials.iter().map(|b| self.law.properties(a, b)));
+        }
+        (self.materials.len() - 1) as u32
+    }
+
+    fn pair_properties(&self, a: u32, b: u32) -> &PairProperties {
+        &self.properties[a as usize * self.materials.len() + b as usize]
+    }
+
+    /// Are all bodies clear of one another and of the walls? Bodies that cannot be moved are not compared with one another.
     ///
     /// # Errors
-    /// [`DemError::OverlappingStart`] or [`DemError::InWall`] for the first that are not.
-    pub fn check_overlaps(&self) -> Result<(), DemError> {
-        for (j, b) in self.bodies.iter().enumerate() {
-            for (i, a) in self.bodies[..j].iter().enumerate() {
-                let apart = self.periods.nearest(b.pose.position - a.pose.position);
-                let at_b = a.pose.position + apart;
-                if a.shape.overlap(a.pose.position, &b.shape, at_b)?.is_some() {
-                    let depth = a.shape.radius() + b.shape.radius() - apart.norm();
-                    return Err(DemError::OverlappingStart { a: BodyId(i), b: BodyId(j), depth });
-                }
+    /// [`DemError::OverlappingStart`] or [`DemError::InWall`] for the first that are not, and what the overlaps themselves answer.
+    pub fn check_overlaps(&mut self) -> Result<(), DemError> {
+        if self.listed.iter().any(|l| l.margin < 0.0) {
+            self.list(0.0);
+        }
+        let (mut solver, mut calls) = (OverlapSolver::new(), 0);
+        for pair in &self.near {
+            let mut depth = None;
+            let mut found = |patches: &[Overlap]| {
+                // Of a cap.
+                let of = |o: &Overlap| if o.area() > 0.0 { 2.0 * o.volume / o.area() } else { f64::INFINITY };
+                depth = patches.iter().map(of).reduce(f64::max);
+            };
+            self.view().overlaps(pair, &mut solver, &mut calls, &mut found)?;
+            let Some(depth) = depth else { continue };
+            let (a, b) = (pair.a as usize, pair.b as usize);
+            let body = &self.bodies[a];
+            if let Some(other) = self.bodies.get(b) {
+                let apart = other.pose.position + shift(&self.periods, pair.image) - body.pose.position;
+                let round = body.kind != Kind::Other && other.kind != Kind::Other;
+                let depth = if round { body.radius + other.radius - apart.norm() } else { depth };
+                return Err(DemError::OverlappingStart { a: BodyId(a), b: BodyId(b), depth });
             }
-            for (wall, (plane, _)) in self.walls.iter().enumerate() {
-                if b.shape.wall_overlap(b.pose.position, plane).is_some() {
-                    let depth = b.shape.radius() - plane.signed_distance(b.pose.position);
-                    return Err(DemError::InWall { body: BodyId(j), wall, depth });
-                }
-            }
+            let wall = b - self.bodies.len();
+            let gap = self.walls[wall].plane.signed_distance(body.pose.position) - body.radius;
+            let depth = if body.kind == Kind::Other { depth } else { -gap };
+            return Err(DemError::InWall { body: BodyId(a), wall, depth });
         }
         Ok(())
     }
 
     /// The smallest distance between any two surfaces \[m\], negative when they overlap; walls count. `None`
-    /// with one body and no walls. Looks at all pairs.
+    /// with one body and no walls. Bodies that are not round count as the spheres around them, so the true distance may be larger. Looks at all pairs.
     pub fn smallest_gap(&self) -> Option<f64> {
         let gaps = (0..self.bodies.len()).flat_map(|j| {
             let b = &self.bodies[j];
-            let radius = b.shape.radius();
             let pairs = self.bodies[..j].iter().map(move |a| {
                 let apart = self.periods.nearest(b.pose.position - a.pose.position);
-                apart.norm() - radius - a.shape.radius()
+                apart.norm() - b.radius - a.radius
             });
-            pairs.chain(self.walls.iter().map(move |(w, _)| w.signed_distance(b.pose.position) - radius))
+            let to_wall = |w: &Wall| w.plane.signed_distance(b.pose.position) - b.radius;
+            pairs.chain(self.walls.iter().map(to_wall))
         });
         gaps.reduce(f64::min)
+    }
+    /// All patches that bodies shared in the last sub-step, in a fixed order.
+    pub fn contacts(&self) -> impl Iterator<Item = Contact> {
+        self.chunks.iter().flat_map(|c| &c.patches).map(|p| {
+            let pair = &self.near[p.near as usize];
+            let b = pair.b as usize;
+            let partner = match b.checked_sub(self.bodies.len()) {
+                Some(wall) => Partner::Wall(wall),
+                None => Partner::Body(BodyId(b), pair.image),
+            };
+            let Patch { volume, point, force, couple, .. } = *p;
+            Contact { body: BodyId(pair.a as usize), partner, volume, point, force, couple }
+        })
     }
     /// Seconds so far in which anything touched anything.
     pub fn contact_time(&self) -> f64 {
         self.contact_time
     }
-    /// How many pairs touched in the last sub-step, those with walls included.
+    /// How many patches bodies shared in the last sub-step, those with walls included.
     pub fn n_contacts(&self) -> usize {
-        self.springs.len()
+        self.n_contacts
     }
     /// How many overlaps were computed in all steps so far; pairs whose boxes are apart cost none.
     pub fn overlap_calls(&self) -> u64 {
@@ -210,38 +301,51 @@ impl RigidBodies {
     }
     /// Σ ½mU² + ½ΩIΩ \[J\]; per metre of depth in a plane scene.
     pub fn kinetic_energy(&self) -> f64 {
-        let energy = |b: &Body| {
+        let energy = |(b, c): (&Body, &Constants)| {
             let turned = b.pose.orientation.inverse_transform_vector(&b.twist.angular);
-            0.5 * (b.inertia.mass * b.twist.linear.norm_squared() + turned.dot(&(b.inertia.tensor * turned)))
+            0.5 * (c.inertia.mass * b.twist.linear.norm_squared() + turned.dot(&(c.inertia.tensor * turned)))
         };
-        self.bodies.iter().map(energy).sum()
+        self.bodies.iter().zip(&self.constants).map(energy).sum()
     }
     /// The periods of space.
     pub fn periods(&self) -> Periods {
         self.periods
     }
     /// The shape of body `b`.
-    pub fn shape(&self, b: BodyId) -> &Round {
-        &self.bodies[b.0].shape
+    pub fn shape(&self, b: BodyId) -> &dyn Shape {
+        &*self.constants[b.0].shape
     }
 }
 
-impl Body {
-    /// How far the body may come from where its centre was listed, along any axis.
-    fn reach(&self) -> f64 {
-        self.shape.radius() + self.listed.margin
-    }
-    /// May its centre not be moved? Contacts then feel an infinite mass.
-    fn pinned(&self) -> bool {
-        self.freedom.linear == [false; 3]
-    }
-    /// Can forces change anything about it?
-    fn movable(&self) -> bool {
-        self.freedom != Freedom::NONE
+impl RigidBodies<Potential> {
+    /// ΣE(V) over all pairs that overlap now \[J\].
+    ///
+    /// # Errors
+    /// Those of the overlaps.
+    pub fn elastic_energy(&mut self) -> Result<f64, DemError> {
+        if self.strayed() {
+            self.list(0.0);
+        }
+        let (mut solver, mut calls, mut energy) = (OverlapSolver::new(), 0, 0.0);
+        for pair in &self.near {
+            let (a, b) = (pair.a as usize, pair.b as usize);
+            let (size, material) = match self.bodies.get(b) {
+                Some(body) => (self.constants[b].size, body.material),
+                None => (f64::INFINITY, self.walls[b - self.bodies.len()].material),
+            };
+            let properties = self.pair_properties(self.bodies[a].material, material);
+            let mut found = |patches: &[Overlap]| {
+                let volume = patches.iter().map(|o| o.volume).sum();
+                let sizes = [self.constants[a].size, size];
+                energy += self.law.energy(properties, sizes, volume, self.bodies[a].is_plane()).0;
+            };
+            self.view().overlaps(pair, &mut solver, &mut calls, &mut found)?;
+        }
+        Ok(energy)
     }
 }
 
-impl Kinematics for RigidBodies {
+impl<L: ContactLaw> Kinematics for RigidBodies<L> {
     fn n_bodies(&self) -> usize {
         self.bodies.len()
     }
@@ -253,14 +357,14 @@ impl Kinematics for RigidBodies {
     }
 }
 
-impl Bodies for RigidBodies {
+impl<L: ContactLaw> Bodies for RigidBodies<L> {
     fn solid(&self, b: BodyId) -> &dyn Solid {
-        self.bodies[b.0].shape.solid()
+        &self.constants[b.0].shape
     }
     fn inertia(&self, b: BodyId) -> Inertia {
-        self.bodies[b.0].inertia
+        self.constants[b.0].inertia
     }
     fn freedom(&self, b: BodyId) -> Freedom {
-        self.bodies[b.0].freedom
+        self.constants[b.0].freedom
     }
 }

@@ -47,6 +47,7 @@ pub use union::{Part, Union};
 #[cfg(feature = "mesh")]
 use crate::FacetIndex;
 use interfaces::{Inertia, Solid};
+use std::sync::Arc;
 
 /// A shape with mass, centre of mass at the origin of its frame.
 ///
@@ -68,6 +69,25 @@ pub trait Shape: Solid {
     #[cfg(feature = "mesh")]
     fn facet_index(&self) -> Option<&FacetIndex> {
         None
+    }
+}
+
+impl<T: Shape + ?Sized> Shape for Arc<T> {
+    fn name(&self) -> &'static str {
+        (**self).name()
+    }
+    fn inertia(&self, density: f64) -> Inertia {
+        (**self).inertia(density)
+    }
+    fn bounding_radius(&self) -> f64 {
+        (**self).bounding_radius()
+    }
+    fn form(&self) -> Form<'_> {
+        (**self).form()
+    }
+    #[cfg(feature = "mesh")]
+    fn facet_index(&self) -> Option<&FacetIndex> {
+        (**self).facet_index()
     }
 }
 

@@ -1,5 +1,5 @@
 //! Bodies for ParaView.
-use crate::{RigidBodies, Round};
+use crate::{ContactLaw, Form, RigidBodies};
 use interfaces::vtk::{self, DataArray};
 use interfaces::{BodyId, Kinematics, Point, Vector};
 use std::f64::consts::TAU;
@@ -8,7 +8,7 @@ use std::io::{self, Write};
 /// Corners of a drawn disc, and of a drawn sphere's equator.
 const CORNERS: usize = 64;
 
-impl RigidBodies {
+impl<L: ContactLaw> RigidBodies<L> {
     /// Writes the bodies as one `.vtp` file (VTK polygonal data): discs as polygons with a line from centre to
     /// rim that shows how far they have turned, spheres as three such circles. Periodic bodies are drawn at
     /// their image next after `corner`. Cell data: body number, velocity \[m/s\], angular velocity \[rad/s\].
@@ -22,10 +22,10 @@ impl RigidBodies {
             let pose = self.pose(BodyId(b));
             let centre = self.periods().wrap(pose.position, corner);
             let shape = self.shape(BodyId(b));
-            let r = shape.radius();
-            let planes: &[[Vector; 2]] = match shape {
-                Round::Disc(_) => &[[Vector::new(1.0, 0.0, 0.0), Vector::new(0.0, 1.0, 0.0)]],
-                Round::Sphere(_) => &[
+            let r = shape.bounding_radius();
+            let planes: &[[Vector; 2]] = match shape.form() {
+                Form::Disc(_) => &[[Vector::new(1.0, 0.0, 0.0), Vector::new(0.0, 1.0, 0.0)]],
+                _ => &[
                     [Vector::new(1.0, 0.0, 0.0), Vector::new(0.0, 1.0, 0.0)],
                     [Vector::new(0.0, 1.0, 0.0), Vector::new(0.0, 0.0, 1.0)],
                     [Vector::new(0.0, 0.0, 1.0), Vector::new(1.0, 0.0, 0.0)],

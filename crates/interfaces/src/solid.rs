@@ -80,3 +80,27 @@ pub trait Solid: Send + Sync {
         None
     }
 }
+
+impl<T: Solid + ?Sized> Solid for std::sync::Arc<T> {
+    fn signed_distance(&self, x: Point, band: f64) -> f64 {
+        (**self).signed_distance(x, band)
+    }
+    fn signed_distances(&self, points: &[Point], band: f64, out: &mut [f64]) {
+        (**self).signed_distances(points, band, out);
+    }
+    fn aabb(&self) -> Aabb {
+        (**self).aabb()
+    }
+    fn normal(&self, x: Point, band: f64) -> Vector {
+        (**self).normal(x, band)
+    }
+    fn curvature(&self, x: Point, band: f64) -> f64 {
+        (**self).curvature(x, band)
+    }
+    fn surface(&self, spacing: f64, offset: f64) -> Option<Vec<SurfaceElement>> {
+        (**self).surface(spacing, offset)
+    }
+    fn polyhedron(&self) -> Option<Polyhedron<'_>> {
+        (**self).polyhedron()
+    }
+}

@@ -1,64 +1,102 @@
 //! What a restart needs of the bodies.
-use super::{Pair, RigidBodies, Spring};
+use super::RigidBodies;
+use super::contacts::{CHUNK, Chunk, Patch};
+use super::near::Listed;
+use crate::contact::{ContactLaw, Memory};
 use interfaces::{Checkpoint, Load, Point, RestartError, Rotation, Vector, Wrench};
 
-/// Saved numbers per body and per touching pair.
-const BODY: usize = 27;
-const SPRING: usize = 5;
+/// Saved numbers per body, and per touching patch besides what the law keeps.
+const BODY: usize = 38;
+const PATCH: usize = 8;
 
-/// Poses, twists, loads, contact impulses and the elastic tangential forces of touching pairs. Shapes, materials
-/// and walls are not saved: the run that restores has to set up the same ones.
-impl Checkpoint for RigidBodies {
+/// Poses, twists, loads, contact impulses and what the contact law keeps of touching patches. Shapes, materials, walls and gravity are not saved:
+/// the run that restores has to set up the same ones.
+impl<L: ContactLaw> Checkpoint for RigidBodies<L> {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         let mut values = Vec::with_capacity(self.bodies.len() * BODY);
-        for b in &self.bodies {
-            let q = b.pose.orientation;
+        for (b, body) in self.bodies.iter().enumerate() {
+            let q = body.pose.orientation;
             values.extend([q.w, q.i, q.j, q.k]);
-            let Load { wrench, added_mass, added_moment } = b.load;
+            let Load { wrench, added_mass, added_moment } = self.loads[b];
+            let impulse = &self.impulse[b];
             for v in [
-                b.pose.position.coords,
-                b.twist.linear,
-                b.twist.angular,
+                body.pose.position.coords,
+                body.twist.linear,
+                body.twist.angular,
                 wrench.force,
                 wrench.torque,
-                b.impulse.force,
-                b.impulse.torque,
+                impulse.force,
+                impulse.torque,
             ] {
                 values.extend_from_slice(v.as_slice());
             }
             values.extend([added_mass, added_moment]);
+            // So that pairs are listed anew when they would have been.
+            let Listed { centre, orientation: q, margin } = self.listed[b];
+            values.extend([centre.x, centre.y, centre.z, q.w, q.i, q.j, q.k, margin]);
+            values.extend_from_slice(self.contact[b].force.as_slice());
         }
         sink("bodies", &values);
         values.clear();
-        for s in &self.springs {
-            values.extend([s.pair.0 as f64, s.pair.1 as f64, s.force.x, s.force.y, s.force.z]);
+        for patch in self.chunks.iter().flat_map(|c| &c.patches) {
+            let pair = &self.near[patch.near as usize];
+            values.extend([f64::from(pair.a), f64::from(pair.b)]);
+            values.extend(pair.image.map(f64::from));
+            values.extend_from_slice(patch.point.coords.as_slice());
+            patch.memory.save(&mut values);
         }
-        sink("n_springs", &[self.springs.len() as f64]);
-        sink("springs", &values);
-        sink("contact_time", &[self.contact_time, self.overlap_calls as f64]);
+        sink("n_patches", &[(values.len() / (PATCH + L::Memory::N)) as f64]);
+        sink("patches", &values);
+        let counters = [self.contact_time, self.overlap_calls as f64, self.stiffest, self.fastest, self.listed_for];
+        sink("contact_time", &counters);
     }
 
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         let values = RestartError::take(source, "bodies", self.bodies.len() * BODY)?;
-        for (b, v) in self.bodies.iter_mut().zip(values.chunks_exact(BODY)) {
+        for (b, v) in values.chunks_exact(BODY).enumerate() {
             let vector = |i: usize| Vector::new(v[4 + 3 * i], v[5 + 3 * i], v[6 + 3 * i]);
+            let body = &mut self.bodies[b];
             // As it was saved, to the last bit: no normalisation.
-            b.pose.orientation = Rotation::new_unchecked(nalgebra::Quaternion::new(v[0], v[1], v[2], v[3]));
-            b.pose.position = Point::from(vector(0));
-            (b.twist.linear, b.twist.angular) = (vector(1), vector(2));
+            body.pose.orientation = Rotation::new_unchecked(nalgebra::Quaternion::new(v[0], v[1], v[2], v[3]));
+            body.pose.position = Point::from(vector(0));
+            (body.twist.linear, body.twist.angular) = (vector(1), vector(2));
             let wrench = Wrench { force: vector(3), torque: vector(4) };
-            b.load = Load { wrench, added_mass: v[25], added_moment: v[26] };
-            b.impulse = Wrench { force: vector(5), torque: vector(6) };
+            self.loads[b] = Load { wrench, added_mass: v[25], added_moment: v[26] };
+            self.impulse[b] = Wrench { force: vector(5), torque: vector(6) };
+            let orientation = Rotation::new_unchecked(nalgebra::Quaternion::new(v[30], v[31], v[32], v[33]));
+            self.listed[b] = Listed { centre: Point::new(v[27], v[28], v[29]), orientation, margin: v[34] };
+            self.contact[b].force = Vector::new(v[35], v[36], v[37]);
         }
-        let n = RestartError::take(source, "n_springs", 1)?[0] as usize;
-        let springs = RestartError::take(source, "springs", SPRING * n)?;
-        self.springs.clear();
-        self.springs.extend(springs.chunks_exact(SPRING).map(|v| Spring {
-            pair: Pair(v[0] as usize, v[1] as usize),
-            force: Vector::new(v[2], v[3], v[4]),
-        }));
-        let counters = RestartError::take(source, "contact_time", 2)?;
+        let n = RestartError::take(source, "n_patches", 1)?[0] as usize;
+        let size = PATCH + L::Memory::N;
+        let patches = RestartError::take(source, "patches", size * n)?;
+        let counters = RestartError::take(source, "contact_time", 5)?;
         (self.contact_time, self.overlap_calls) = (counters[0], counters[1] as u64);
+        (self.stiffest, self.fastest, self.listed_for) = (counters[2], counters[3], counters[4]);
+        // Listed once with nothing remembered; then each patch goes to its pair.
+        self.chunks.iter_mut().for_each(|c| c.patches.clear());
+        self.list_again();
+        let n = self.bodies.len();
+        let key = |a: u32, b: u32, image: [i32; 3]| (b as usize >= n, a, b, image);
+        for v in patches.chunks_exact(size) {
+            let wanted = key(v[0] as u32, v[1] as u32, [v[2] as i32, v[3] as i32, v[4] as i32]);
+            if let Ok(at) = self.near.binary_search_by_key(&wanted, |p| key(p.a, p.b, p.image)) {
+                let chunk: &mut Chunk<L::Memory> = &mut self.chunks[at / CHUNK];
+                chunk.patches.push(Patch {
+                    near: at as u32,
+                    volume: 0.0,
+                    point: Point::new(v[5], v[6], v[7]),
+                    force: Vector::zeros(),
+                    couple: Vector::zeros(),
+                    memory: L::Memory::load(&v[PATCH..]),
+                });
+            }
+        }
+        self.n_contacts = n_patches(&self.chunks);
         Ok(())
     }
+}
+
+fn n_patches<M>(chunks: &[Chunk<M>]) -> usize {
+    chunks.iter().map(|c| c.patches.len()).sum()
 }

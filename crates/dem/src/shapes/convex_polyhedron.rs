@@ -146,6 +146,14 @@ impl ConvexPolyhedron {
     pub fn loops(&self) -> impl Iterator<Item = &[u32]> {
         self.starts.windows(2).map(|ends| &self.loops[ends[0]..ends[1]])
     }
+    /// The areas of the faces \[m²\].
+    pub fn face_areas(&self) -> impl Iterator<Item = f64> {
+        self.loops().map(|face| {
+            let corner = |i: usize| self.points[face[i % face.len()] as usize].coords;
+            let twice: Vector = (0..face.len()).map(|i| corner(i).cross(&corner(i + 1))).sum();
+            0.5 * twice.norm()
+        })
+    }
     /// How many faces there are.
     pub fn n_faces(&self) -> usize {
         self.planes.len()

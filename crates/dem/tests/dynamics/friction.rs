@@ -1,6 +1,6 @@
 //! Bodies on a wall: rest, rolling, sliding. Gravity is tilted instead of the wall.
 use super::*;
-use crate::HalfSpace;
+use dem::HalfSpace;
 use approx::assert_relative_eq;
 use interfaces::{Bodies, Dynamics, Point};
 
@@ -14,17 +14,22 @@ fn hard(friction: f64) -> Material {
 fn stiffness(m: &Material) -> f64 {
     m.youngs_modulus / (2.0 * (1.0 - m.poisson_ratio.powi(2)))
 }
+/// What the body at `at` shares with the floor.
+fn on_wall(shape: Ball, at: Point) -> dem::Overlap {
+    let pose = Pose { position: at, ..Pose::at([0.0; 3]) };
+    dem::overlap(&shape.shape(), &pose, &floor(), &Pose::at([0.0; 3])).unwrap()[0]
+}
 fn floor() -> HalfSpace {
     HalfSpace::new(Point::origin(), Vector::y()).unwrap()
 }
 
 /// The body with its weight on the floor y = 0, gravity turned by `angle` towards +x; it stands as deep as its
 /// weight presses it.
-fn on_floor(shape: Round, material: Material, angle: f64, speed: f64) -> RigidBodies {
-    let weight = shape.inertia(material.density).mass * G;
+fn on_floor(shape: Ball, material: Material, angle: f64, speed: f64) -> RigidBodies {
+    let weight = shape.mass(&material) * G;
     let force = |depth: f64| {
         let at = Point::new(0.0, R - depth, 0.0);
-        let o = shape.wall_overlap(at, &floor()).unwrap();
+        let o = on_wall(shape, at);
         stiffness(&material) * o.volume / (4.0 * (o.centroid - at).norm())
     };
     let (mut low, mut high) = (1e-12 * R, 0.5 * R);
@@ -87,7 +92,7 @@ fn a_block_sticks_or_slides() {
         let block = Freedom { angular: [false; 3], ..Freedom::PLANAR };
         let free = on_floor(disc(), hard(friction), angle, 0.0);
         let mut bodies = RigidBodies::new(Periods::default());
-        bodies.add(disc(), hard(friction), free.pose(BodyId(0)), Twist::default(), block).unwrap();
+        bodies.add(disc().shape(), hard(friction), free.pose(BodyId(0)), Twist::default(), block).unwrap();
         bodies.add_wall(floor(), hard(friction)).unwrap();
         let weight = bodies.inertia(BodyId(0)).mass * G;
         bodies.apply(BodyId(0), push(weight * Vector::new(angle.sin(), -angle.cos(), 0.0)));
@@ -106,18 +111,46 @@ fn a_block_sticks_or_slides() {
 fn at_rest_the_contact_bears_the_weight() {
     for shape in [disc(), sphere()] {
         let material = Material { youngs_modulus: 1e5, damping: 20.0, ..Material::default() };
-        let weight = shape.inertia(material.density).mass * G;
+        let weight = shape.mass(&material) * G;
         let mut bodies = scene(shape, material, &[([0.0, 1.01 * R, 0.0], Twist::default())]);
         bodies.add_wall(floor(), material).unwrap();
         bodies.apply(BodyId(0), push(Vector::new(0.0, -weight, 0.0)));
         bodies.advance(3.0).unwrap();
         assert!(bodies.twist(BodyId(0)).linear.norm() < 1e-9);
         let at = bodies.pose(BodyId(0)).position;
-        let o = shape.wall_overlap(at, &floor()).unwrap();
+        let o = on_wall(shape, at);
         let length = 4.0 * (o.centroid - at).norm();
         assert_relative_eq!(stiffness(&material) * o.volume / length, weight, max_relative = 1e-9);
         // Standing, what the wall gives over a step is the weight's impulse.
         bodies.advance(0.01).unwrap();
         assert_relative_eq!(bodies.contact_impulse(BodyId(0)).force.y, 0.01 * weight, max_relative = 1e-8);
+    }
+}
+
+/// Ten cubes on one another, and ten spheres: at rest contact k bears the weight of what is above it.
+#[test]
+fn a_stack_of_ten() {
+    use dem::{Cuboid, Shape};
+    let cube: std::sync::Arc<dyn Shape> = std::sync::Arc::new(Cuboid::new([2.0 * R; 3]).unwrap());
+    for (shape, drop) in [(cube, 0.001), (sphere().shape(), 0.0)] {
+        let mut bodies = RigidBodies::new(Periods::default());
+        let material = Material { damping: 5.0, youngs_modulus: 1e7, ..Material::default() };
+        bodies.add_wall(floor(), material).unwrap();
+        bodies.set_gravity(Vector::new(0.0, -G, 0.0));
+        for k in 0..10 {
+            let y = R * (1.0 + (2.0 + drop) * f64::from(k));
+            bodies.add(shape.clone(), material, Pose::at([0.0, y, 0.0]), Twist::default(), Freedom::FREE).unwrap();
+        }
+        bodies.advance(3.0).unwrap();
+        let weight = bodies.inertia(BodyId(0)).mass * G;
+        let fastest = bodies.ids().map(|b| bodies.twist(b).linear.norm()).fold(0.0, f64::max);
+        println!("{}: fastest {fastest:.2e} m/s", shape.name());
+        assert!(fastest < 1e-6);
+        let mut carried: Vec<_> = bodies.contacts().map(|c| (c.point.y, c.force.y.abs())).collect();
+        carried.sort_by(|p, q| p.0.total_cmp(&q.0));
+        assert_eq!(carried.len(), 10);
+        for (k, (_, force)) in carried.iter().enumerate() {
+            assert_relative_eq!(*force, weight * (10 - k) as f64, max_relative = 1e-6);
+        }
     }
 }

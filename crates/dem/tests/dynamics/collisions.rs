@@ -1,6 +1,6 @@
 //! Two bodies that hit each other.
 use super::*;
-use crate::HalfSpace;
+use dem::HalfSpace;
 use approx::{assert_relative_eq, assert_ulps_eq};
 use interfaces::{Bodies, Dynamics, Point};
 use std::f64::consts::PI;
@@ -38,7 +38,7 @@ impl Motion {
     }
 }
 fn mass() -> f64 {
-    sphere().inertia(Material::default().density).mass
+    sphere().mass(&Material::default())
 }
 
 /// Steps of `dt` until the first two bodies have touched and are apart again; answers the greatest depth.
@@ -58,7 +58,7 @@ fn collide(bodies: &mut RigidBodies, dt: f64) -> f64 {
 
 /// Largest |ΔE|/E of collisions at `n` to `n` + 1 steps per `unit` of time, over 40 phases of the first touch
 /// within a step; whole numbers of steps alone would profit from symmetry in time.
-fn energy_error(shape: Round, speed: f64, unit: f64, n: f64) -> f64 {
+fn energy_error(shape: Ball, speed: f64, unit: f64, n: f64) -> f64 {
     let mut worst = 0.0_f64;
     for share in 0..16 {
         let dt = unit / (n + f64::from(share) / 16.0);
@@ -151,7 +151,7 @@ fn restitution_at_immovable_partners() {
             let (x, u, freedom) =
                 if b == fixed { (0.0, 0.0, Freedom::NONE) } else { (-2.001 * R, speed, Freedom::FREE) };
             let twist = moving([u, 0.0, 0.0], [0.0; 3]);
-            bodies.add(sphere(), material, Pose::at([x, 0.0, 0.0]), twist, freedom).unwrap();
+            bodies.add(sphere().shape(), material, Pose::at([x, 0.0, 0.0]), twist, freedom).unwrap();
         }
         let dt = bodies.stable_dt();
         collide(&mut bodies, dt);
@@ -272,7 +272,7 @@ fn through_a_periodic_corner_as_in_the_middle() {
             let two = std::array::from_fn(|a| two[a] + images[a] * length);
             let motions = [moving([0.3, 0.4, z(0.2)], [0.0, 0.0, 20.0]), moving([-0.2, -0.1, 0.0], [0.0; 3])];
             for (place, motion) in [one, two].into_iter().zip(motions) {
-                bodies.add(shape, Material::default(), Pose::at(place), motion, freedom(shape)).unwrap();
+                bodies.add(shape.shape(), Material::default(), Pose::at(place), motion, freedom(shape)).unwrap();
             }
             assert!(bodies.check_overlaps().is_ok());
             for _ in 0..60 {

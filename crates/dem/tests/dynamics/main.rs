@@ -3,18 +3,41 @@ mod bad_input;
 mod collisions;
 mod friction;
 mod near;
+mod potential;
+mod rotation;
 mod state;
 
-use crate::{Disc, Material, RigidBodies, Round, Sphere};
-use interfaces::{BodyId, Freedom, Kinematics, Load, Periods, Pose, Twist, Vector, Wrench};
+use dem::{Disc, Material, RigidBodies, Shape, Sphere};
+use interfaces::{Bodies, BodyId, Freedom, Kinematics, Load, Periods, Pose, Twist, Vector, Wrench};
+use std::sync::Arc;
 
 pub(crate) const R: f64 = 0.01;
 
-pub(crate) fn disc() -> Round {
-    Disc::new(R).unwrap().into()
+/// A disc or a sphere.
+#[derive(Clone, Copy)]
+pub(crate) enum Ball {
+    Disc(Disc),
+    Sphere(Sphere),
 }
-pub(crate) fn sphere() -> Round {
-    Sphere::new(R).unwrap().into()
+impl Ball {
+    pub(crate) fn is_plane(self) -> bool {
+        matches!(self, Self::Disc(_))
+    }
+    pub(crate) fn shape(self) -> Arc<dyn Shape> {
+        match self {
+            Self::Disc(s) => Arc::new(s),
+            Self::Sphere(s) => Arc::new(s),
+        }
+    }
+    pub(crate) fn mass(self, material: &Material) -> f64 {
+        self.shape().inertia(material.density).mass
+    }
+}
+pub(crate) fn disc() -> Ball {
+    Ball::Disc(Disc::new(R).unwrap())
+}
+pub(crate) fn sphere() -> Ball {
+    Ball::Sphere(Sphere::new(R).unwrap())
 }
 /// Neither damping nor friction.
 pub(crate) fn elastic() -> Material {
@@ -23,22 +46,22 @@ pub(crate) fn elastic() -> Material {
 pub(crate) fn moving(linear: [f64; 3], angular: [f64; 3]) -> Twist {
     Twist { linear: linear.into(), angular: angular.into() }
 }
-pub(crate) fn freedom(shape: Round) -> Freedom {
+pub(crate) fn freedom(shape: Ball) -> Freedom {
     if shape.is_plane() { Freedom::PLANAR } else { Freedom::FREE }
 }
 pub(crate) fn push(force: Vector) -> Load {
     Load { wrench: Wrench { force, torque: Vector::zeros() }, ..Load::default() }
 }
 /// Bodies of one shape and material in free space.
-pub(crate) fn scene(shape: Round, material: Material, bodies: &[([f64; 3], Twist)]) -> RigidBodies {
+pub(crate) fn scene(shape: Ball, material: Material, bodies: &[([f64; 3], Twist)]) -> RigidBodies {
     let mut all = RigidBodies::new(Periods::default());
     for (place, twist) in bodies {
-        all.add(shape, material, Pose::at(*place), *twist, freedom(shape)).unwrap();
+        all.add(shape.shape(), material, Pose::at(*place), *twist, freedom(shape)).unwrap();
     }
     all
 }
 /// Two equal bodies, `gap` apart along x, that approach each other at `speed`.
-pub(crate) fn head_on(shape: Round, material: Material, gap: f64, speed: f64) -> RigidBodies {
+pub(crate) fn head_on(shape: Ball, material: Material, gap: f64, speed: f64) -> RigidBodies {
     let x = R + 0.5 * gap;
     let bodies = [
         ([-x, 0.0, 0.0], moving([0.5 * speed, 0.0, 0.0], [0.0; 3])),
@@ -51,8 +74,7 @@ pub(crate) fn distance(bodies: &RigidBodies) -> f64 {
     (bodies.pose(BodyId(1)).position - bodies.pose(BodyId(0)).position).norm()
 }
 /// Momentum and angular momentum about the origin.
-pub(crate) fn momenta(bodies: &RigidBodies) -> (Vector, Vector) {
-    use interfaces::Bodies;
+pub(crate) fn momenta<L: dem::ContactLaw>(bodies: &RigidBodies<L>) -> (Vector, Vector) {
     bodies.ids().fold((Vector::zeros(), Vector::zeros()), |(p, l), b| {
         let (inertia, pose, twist) = (bodies.inertia(b), bodies.pose(b), bodies.twist(b));
         let q = pose.orientation;

@@ -1,0 +1,109 @@
+//! Equation (4).
+use super::friction::Friction;
+use super::law::{ContactLaw, Push, Touch};
+use super::properties::{Means, PairProperties};
+use crate::{DemError, Material};
+use interfaces::Vector;
+
+/// The viscoelastic volume law (Chen 2012; Isoz et al. 2023, equation 4, with dV/dt outside the root, as its dimension asks):
+///
+/// ```text
+/// F_n = [Y V/L_c + γ √(Y M/L_c³) dV/dt] n,   L_c = c l_i l_j/(l_i + l_j),   M = m_i m_j/(m_i + m_j)
+/// ```
+///
+/// l from the contact to the centre of mass (infinite for a wall), M the other one's mass where one cannot be moved; no tension unless asked for.
+/// Along the surface a spring that grows with the sliding and a dashpot, both `tangential` times the normal ones (Y A/L_c per length,
+/// γ√(YM/L_c³) A per velocity, A = |∂V/∂x|), together at most μ|F_n|. In a plane scene V is an area, all forces are per metre of
+/// depth, and M is the mass of a slice as deep as L_c.
+///
+/// The force has no potential but for spheres and discs, so bodies with edges gain or lose some per cent of their energy in an elastic rebound, and
+/// restitution depends on the speed of impact: take [`Potential`](crate::Potential) where either matters, this one to compute as the
+/// literature does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chen {
+    factor: f64,
+    means: Means,
+    adhesion: bool,
+}
+
+impl Default for Chen {
+    /// c = 4, springs in series, no tension.
+    fn default() -> Self {
+        Self { factor: 4.0, means: Means::Series, adhesion: false }
+    }
+}
+
+impl Chen {
+    /// Another factor c in L_c, positive.
+    #[must_use]
+    pub fn with_length_factor(self, factor: f64) -> Self {
+        Self { factor, ..self }
+    }
+    /// Other means of the two bodies' properties.
+    #[must_use]
+    pub fn with_means(self, means: Means) -> Self {
+        Self { means, ..self }
+    }
+    /// The dashpot may pull bodies that part while they overlap.
+    #[must_use]
+    pub fn with_adhesion(self, adhesion: bool) -> Self {
+        Self { adhesion, ..self }
+    }
+}
+
+impl ContactLaw for Chen {
+    type Memory = Vector;
+
+    fn properties(&self, a: &Material, b: &Material) -> PairProperties {
+        PairProperties::by(self.means, a, b)
+    }
+
+    fn length(&self, arms: [f64; 2]) -> f64 {
+        self.factor * self.means.of(arms[0], arms[1])
+    }
+
+    #[inline]
+    fn push(&self, p: &PairProperties, t: &Touch<'_>, spring: &mut Vector) -> Push {
+        let length = self.length(t.arms);
+        let (n, area) = (t.overlap.normal, t.overlap.area());
+        // A contact at a body's very centre has no length to divide by, and no way to push.
+        if length <= 0.0 {
+            return Push { force: Vector::zeros(), couple: Vector::zeros(), stiffness: 0.0 };
+        }
+        let [wa, wb] = t.inverse_masses;
+        let mut mass = 1.0 / (wa + wb);
+        if self.means == Means::Literal && wa > 0.0 && wb > 0.0 {
+            mass *= 2.0;
+        }
+        if t.plane {
+            mass *= length;
+        }
+        let per_length = 1.0 / length;
+        let elastic = p.stiffness * per_length;
+        let dashpot = p.damping * (elastic * mass).sqrt() * per_length;
+        let pressure = elastic * t.overlap.volume + dashpot * t.overlap.rate(t.velocity, t.spin);
+        let pressure = if self.adhesion { pressure } else { pressure.max(0.0) };
+        let stiffness = elastic * area;
+        let viscosity = dashpot * area;
+        let along = Friction {
+            normal: n,
+            velocity: t.velocity,
+            stiffness: p.tangential * stiffness,
+            viscosity: p.tangential * viscosity,
+            limit: p.friction * pressure.abs(),
+            dt: t.dt,
+        }
+        .force(spring);
+        // (√k + c√(1/m))²: as stiff as the dashpot makes it in effect.
+        let stiffness = stiffness + viscosity * viscosity * (wa + wb);
+        Push { force: n * pressure + along, couple: Vector::zeros(), stiffness }
+    }
+
+    fn check(&self) -> Result<(), DemError> {
+        if self.factor.is_finite() && self.factor > 0.0 {
+            Ok(())
+        } else {
+            Err(DemError::LengthFactor { factor: self.factor })
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! What a contact law is asked, and what it answers.
+use crate::{DemError, Overlap, PairProperties};
+use interfaces::Vector;
+use std::fmt::Debug;
+
+/// The force between two bodies that overlap.
+pub trait ContactLaw: Clone + Debug + Send + Sync {
+    /// What is kept per patch from one sub-step to the next.
+    type Memory: Memory;
+
+    /// The properties of a pair of materials.
+    fn properties(&self, a: &crate::Material, b: &crate::Material) -> PairProperties {
+        PairProperties::new(a, b)
+    }
+
+    /// What the first body of a pair feels at the centroid of a patch.
+    fn push(&self, p: &PairProperties, touch: &Touch<'_>, memory: &mut Self::Memory) -> Push;
+
+    /// L_c \[m\] of bodies whose centres are `arms` away from the contact.
+    fn length(&self, arms: [f64; 2]) -> f64;
+
+    /// Do forces take dV/dt from `Touch::mobility`?
+    const MOBILITY: bool = false;
+
+    /// Are its own numbers in order?
+    ///
+    /// # Errors
+    /// [`DemError::LengthFactor`].
+    fn check(&self) -> Result<(), DemError>;
+}
+
+/// Where and how two bodies touch at one instant: one patch of their overlap.
+#[derive(Clone, Copy, Debug)]
+pub struct Touch<'a> {
+    /// The patch.
+    pub overlap: &'a Overlap,
+    /// Volume of all patches of the two \[m³\].
+    pub volume: f64,
+    /// Velocity of the first body against the second at the centroid \[m/s\].
+    pub velocity: Vector,
+    /// Angular velocity of the first body against the second \[rad/s\].
+    pub spin: Vector,
+    /// 1/m of both \[1/kg\]; 0 of what cannot be moved.
+    pub inverse_masses: [f64; 2],
+    /// Distances from the bodies' centres of mass to the centroid \[m\]; infinite for a wall.
+    pub arms: [f64; 2],
+    /// Radii of spheres (in a plane scene discs) as large as the bodies \[m\]; infinite for a wall.
+    pub sizes: [f64; 2],
+    /// By how much a force −∇V of 1 per m³ changes dV/dt per second: ∇V·m⁻¹∇V over all of both bodies' motions \[m⁴/kg\]. NaN for laws
+    /// that do not ask for it.
+    pub mobility: f64,
+    /// May flat faces meet, so that the area of contact is there at once?
+    pub flat: bool,
+    /// Are volumes areas, and forces per metre of depth?
+    pub plane: bool,
+    /// The sub-step \[s\].
+    pub dt: f64,
+}
+
+/// What the first body of a pair feels; the second feels the opposite.
+#[derive(Clone, Copy, Debug)]
+pub struct Push {
+    /// Force at the centroid \[N\].
+    pub force: Vector,
+    /// Torque besides \[N m\].
+    pub couple: Vector,
+    /// Force per depth, raised by what damping adds to it \[N/m\]: what the time step is chosen by.
+    pub stiffness: f64,
+}
+
+/// What is kept per patch, as numbers for restarts.
+pub trait Memory: Copy + Default + Debug + Send + Sync {
+    /// How many numbers.
+    const N: usize;
+    /// Appends them.
+    fn save(&self, out: &mut Vec<f64>);
+    /// Reads them back.
+    fn load(from: &[f64]) -> Self;
+}
+
+/// The elastic tangential force on the first body.
+impl Memory for Vector {
+    const N: usize = 3;
+    fn save(&self, out: &mut Vec<f64>) {
+        out.extend_from_slice(self.as_slice());
+    }
+    fn load(from: &[f64]) -> Self {
+        Self::new(from[0], from[1], from[2])
+    }
+}
+
+impl<A: Memory, B: Memory> Memory for (A, B) {
+    const N: usize = A::N + B::N;
+    fn save(&self, out: &mut Vec<f64>) {
+        self.0.save(out);
+        self.1.save(out);
+    }
+    fn load(from: &[f64]) -> Self {
+        (A::load(&from[..A::N]), B::load(&from[A::N..]))
+    }
+}

@@ -1,0 +1,128 @@
+//! One body.
+use super::turning::{Turning, turn};
+use crate::{Form, Shape};
+use interfaces::{Freedom, Inertia, Load, Point, Pose, Rotation, Twist, Wrench};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// What contacts read of a body: two cache lines.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(super) struct Body {
+    pub(super) pose: Pose,
+    pub(super) twist: Twist,
+    /// Of the sphere around it.
+    pub(super) radius: f64,
+    /// 0 if it cannot be moved.
+    pub(super) inverse_mass: f64,
+    pub(super) material: u32,
+    pub(super) kind: Kind,
+}
+
+/// Bodies whose overlaps need neither an orientation nor a solver, and others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Ball,
+    Disc,
+    Other,
+}
+
+/// What does not change.
+#[derive(Clone)]
+pub(super) struct Constants {
+    pub(super) shape: Arc<dyn Shape>,
+    pub(super) inertia: Inertia,
+    pub(super) freedom: Freedom,
+    pub(super) turning: Turning,
+    /// Radius of a sphere (in a plane scene a disc) as large as the body.
+    pub(super) size: f64,
+    /// Radius of a sphere around the centre of mass that is within the body; `size` if the centre is not.
+    pub(super) inner: f64,
+    /// Area of its largest flat face.
+    pub(super) flat: f64,
+}
+
+impl std::fmt::Debug for Constants {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Constants").field("shape", &self.shape.name()).field("inertia", &self.inertia).finish()
+    }
+}
+
+impl Constants {
+    pub(super) fn new(shape: Arc<dyn Shape>, density: f64, freedom: Freedom) -> Self {
+        let inertia = shape.inertia(density);
+        let plane = matches!(shape.form(), Form::Disc(_));
+        let size = if plane { (inertia.volume / PI).sqrt() } else { (0.75 * inertia.volume / PI).cbrt() };
+        let depth = -shape.signed_distance(Point::origin(), shape.bounding_radius());
+        let flat = match shape.form() {
+            Form::Hull(hull) => hull.face_areas().fold(0.0, f64::max),
+            Form::Cylinder(c) => PI * c.radius() * c.radius(),
+            _ => 0.0,
+        };
+        let turning = Turning::new(&inertia.tensor, freedom.angular);
+        Self { inertia, freedom, turning, size, inner: if depth > 0.0 { depth } else { size }, flat, shape }
+    }
+    pub(super) fn kind(&self) -> Kind {
+        match self.shape.form() {
+            Form::Sphere(_) => Kind::Ball,
+            Form::Disc(_) => Kind::Disc,
+            _ => Kind::Other,
+        }
+    }
+    /// May its centre not be moved? Contacts then feel an infinite mass.
+    pub(super) fn pinned(&self) -> bool {
+        self.freedom.linear == [false; 3]
+    }
+    /// Can forces change anything about it?
+    pub(super) fn movable(&self) -> bool {
+        self.freedom != Freedom::NONE
+    }
+}
+
+impl Body {
+    pub(super) fn is_plane(&self) -> bool {
+        self.kind == Kind::Disc
+    }
+
+    /// Moves along with the twist for half a step before forces are known. Round bodies turn afterwards, at once.
+    #[inline]
+    pub(super) fn before(&mut self, constants: &Constants, load: &Load, half: f64) {
+        self.pose.position += self.twist.linear * half;
+        if self.kind == Kind::Other {
+            let Self { pose, twist, .. } = self;
+            constants.turning.drift(&mut pose.orientation, &mut twist.angular, load.added_moment, half);
+        }
+    }
+
+    /// Changes the twist by `total` over the step, and moves along for the other half.
+    #[inline]
+    pub(super) fn after(&mut self, constants: &Constants, load: &Load, total: &Wrench, half: f64) {
+        let Self { pose, twist, .. } = self;
+        let spin = twist.angular;
+        if constants.movable() {
+            let accelerate = total.force / (constants.inertia.mass + load.added_mass);
+            for i in 0..3 {
+                if constants.freedom.linear[i] {
+                    twist.linear[i] += 2.0 * half * accelerate[i];
+                }
+            }
+            let q = &pose.orientation;
+            constants.turning.kick(q, &mut twist.angular, &total.torque, load.added_moment, 2.0 * half);
+        }
+        pose.position += twist.linear * half;
+        if self.kind == Kind::Other {
+            constants.turning.drift(&mut pose.orientation, &mut twist.angular, load.added_moment, half);
+        } else {
+            turned(&mut pose.orientation, (spin + twist.angular) * half);
+        }
+    }
+}
+
+/// Turns `q` by the small rotation vector `by`.
+#[inline]
+fn turned(q: &mut Rotation, by: interfaces::Vector) {
+    if by != interfaces::Vector::zeros() {
+        *q = turn(by) * *q;
+        q.renormalize_fast();
+    }
+}

@@ -1,0 +1,163 @@
+//! Which pairs are near, for how long.
+use super::RigidBodies;
+use super::body::{Body, Constants, Kind};
+use super::contacts::{CHUNK, Chunk};
+use crate::broad_phase::NearPair;
+use crate::contact::ContactLaw;
+use interfaces::{Aabb, Load, Point, Pose, Rotation, Vector, Wrench};
+
+/// Sub-steps for which pairs are listed.
+const HORIZON: f64 = 40.0;
+/// Radii by which bodies may go astray besides, having been pushed.
+const SKIN: f64 = 0.02;
+
+/// Where a body was when pairs were listed, and how far its surface may go before they have to be listed anew.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Listed {
+    pub(super) centre: Point,
+    pub(super) orientation: Rotation,
+    pub(super) margin: f64,
+}
+
+impl Listed {
+    /// Nowhere yet.
+    pub(super) fn not_yet() -> Self {
+        Self { centre: Point::origin(), orientation: Rotation::identity(), margin: -1.0 }
+    }
+
+    /// Of a body that is foreseen to move for `dt`.
+    fn new(body: &Body, constants: &Constants, pull: &Pull<'_>, dt: f64) -> Self {
+        let at_rest = !constants.movable() && body.twist == Default::default();
+        let skin = if at_rest { 0.0 } else { SKIN * constants.size };
+        let margin = skin + path(body, constants, pull, dt);
+        Self { centre: body.pose.position, orientation: body.pose.orientation, margin }
+    }
+
+    /// How far the surface has gone at most.
+    #[inline]
+    fn gone(&self, body: &Body) -> f64 {
+        let moved = (body.pose.position - self.centre).norm();
+        if body.kind == Kind::Other {
+            // |q − p| is at least 0.9 times half the angle between them, up to a right angle; the other sign is the same turn.
+            let (p, q) = (&self.orientation.coords, &body.pose.orientation.coords);
+            let half = (q - p).norm_squared().min((q + p).norm_squared()).sqrt();
+            moved + 2.3 * half * body.radius
+        } else {
+            moved
+        }
+    }
+}
+
+/// What pulls at a body.
+struct Pull<'a> {
+    load: &'a Load,
+    contact: &'a Wrench,
+    gravity: &'a Vector,
+}
+
+/// How far the surface goes within `dt` if nothing but load and weight changes its velocity; where contacts bear these, not even they.
+fn path(body: &Body, constants: &Constants, pull: &Pull<'_>, dt: f64) -> f64 {
+    let mut speed = body.twist.linear.norm();
+    if !constants.pinned() {
+        let mass = constants.inertia.mass;
+        let pulled = pull.load.wrench.force + pull.gravity * mass;
+        let force = pulled.norm().min((pulled + pull.contact.force).norm());
+        speed += 0.5 * dt * force / (mass + pull.load.added_mass);
+    }
+    if body.kind == Kind::Other {
+        speed += body.twist.angular.norm() * body.radius;
+    }
+    dt * speed
+}
+
+impl<L: ContactLaw> RigidBodies<L> {
+    /// May a body leave what was listed for it within `dt`?
+    pub(super) fn may_stray(&self, dt: f64) -> bool {
+        self.bodies.iter().zip(&self.listed).enumerate().any(|(b, (body, listed))| {
+            listed.gone(body) + path(body, &self.constants[b], &self.pull(b), dt) > listed.margin
+        })
+    }
+
+    /// For how long pairs are listed when the next step is `dt` long.
+    pub(super) fn horizon(&self, dt: f64) -> f64 {
+        if self.stable_dt.is_finite() { dt.max(HORIZON * self.stable_dt) } else { dt }
+    }
+
+    fn pull(&self, b: usize) -> Pull<'_> {
+        Pull { load: &self.loads[b], contact: &self.contact[b], gravity: &self.gravity }
+    }
+
+    /// Has a body gone farther than foreseen?
+    pub(super) fn strayed(&self) -> bool {
+        self.bodies.iter().zip(&self.listed).any(|(body, listed)| listed.gone(body) > listed.margin)
+    }
+
+    /// Lists the pairs whose boxes may meet within `dt`, or within some sub-steps.
+    pub(super) fn list(&mut self, dt: f64) {
+        let dt = self.horizon(dt);
+        self.listed_for = dt;
+        for (b, body) in self.bodies.iter().enumerate() {
+            self.listed[b] = Listed::new(body, &self.constants[b], &self.pull(b), dt);
+        }
+        self.list_again();
+        self.fastest = self.fastest_approach();
+    }
+
+    /// Lists the pairs by where bodies are listed to be.
+    pub(super) fn list_again(&mut self) {
+        self.boxes.clear();
+        self.movable.clear();
+        for ((body, constants), listed) in self.bodies.iter().zip(&self.constants).zip(&self.listed) {
+            let r = body.radius;
+            let own = match body.kind {
+                Kind::Ball => Aabb::around(listed.centre, Vector::new(r, r, r)),
+                Kind::Disc => Aabb::around(listed.centre, Vector::new(r, r, 0.0)),
+                Kind::Other => {
+                    constants.shape.aabb().posed(&Pose { position: listed.centre, orientation: listed.orientation })
+                }
+            };
+            self.boxes.push(own.grown(listed.margin));
+            self.movable.push(constants.movable());
+        }
+        self.pairs.list(&self.boxes, &self.movable);
+        std::mem::swap(&mut self.near, &mut self.last_near);
+        self.near.clear();
+        self.near.extend_from_slice(self.pairs.pairs());
+        let n = self.bodies.len();
+        for (w, wall) in self.walls.iter().enumerate() {
+            for (b, listed) in self.listed.iter().enumerate() {
+                let reach = self.bodies[b].radius + listed.margin;
+                if self.movable[b] && wall.plane.signed_distance(listed.centre) <= reach {
+                    self.near.push(NearPair { a: b as u32, b: (n + w) as u32, image: [0; 3] });
+                }
+            }
+        }
+        let pairs = self.pairs.pairs().len();
+        self.near[pairs..].sort_unstable();
+        self.carry_over();
+    }
+
+    /// Gives the patches of the last list to the pairs of the new one.
+    fn carry_over(&mut self) {
+        let n = self.bodies.len();
+        let key = |p: &NearPair| (p.b as usize >= n, *p);
+        self.carried.clear();
+        for chunk in &mut self.chunks {
+            self.carried.append(&mut chunk.patches);
+        }
+        let wanted = self.near.len().div_ceil(CHUNK);
+        while self.chunks.len() < wanted {
+            self.chunks.push(Chunk::default());
+        }
+        let mut at = 0;
+        for patch in &self.carried {
+            let pair = self.last_near[patch.near as usize];
+            while at < self.near.len() && key(&self.near[at]) < key(&pair) {
+                at += 1;
+            }
+            if self.near.get(at) == Some(&pair) {
+                self.chunks[at / CHUNK].patches.push(super::contacts::Patch { near: at as u32, ..*patch });
+            }
+        }
+    }
+}

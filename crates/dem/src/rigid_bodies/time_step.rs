@@ -1,0 +1,120 @@
+//! How long a sub-step may be.
+use super::RigidBodies;
+use super::body::{Constants, Kind};
+use crate::contact::{ContactLaw, Push, Touch};
+use crate::overlap::Overlap;
+use crate::{DemError, PairProperties};
+use interfaces::{Point, Vector};
+use std::f64::consts::PI;
+
+/// Sub-steps per half period of the stiffest contact foreseen.
+const STEPS_PER_CONTACT: f64 = 33.0;
+/// Sub-steps per half period of contacts that are stiffer than was foreseen, and what is still accepted.
+const LEAST_STEPS: f64 = 28.0;
+const FEWEST_STEPS: f64 = 22.0;
+/// Overlap, in radii of the smaller body, up to which that stiffness is foreseen.
+const FORESEEN_DEPTH: f64 = 0.05;
+/// Share of both bodies' inner radii by which they may come nearer in a sub-step.
+const TRAVEL: f64 = 0.05;
+/// More sub-steps than this within one advance are an error.
+const MOST: f64 = 1e8;
+
+impl<L: ContactLaw> RigidBodies<L> {
+    /// The longest stable step, over all bodies.
+    pub(super) fn least_stable_dt(&self) -> f64 {
+        (0..self.bodies.len()).map(|b| self.stable_dt_of(b)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The longest stable step for `b` against its own kind and against the walls.
+    pub(super) fn stable_dt_of(&self, b: usize) -> f64 {
+        let (body, constants) = (&self.bodies[b], &self.constants[b]);
+        if !constants.movable() {
+            return f64::INFINITY;
+        }
+        let with = |material: u32, wall: bool| {
+            self.half_period(constants, body.is_plane(), self.pair_properties(body.material, material), wall)
+        };
+        let own = with(body.material, false);
+        self.walls.iter().map(|w| with(w.material, true)).fold(own, f64::min) / STEPS_PER_CONTACT
+    }
+
+    /// π√(m/k) of a contact at the foreseen depth, with a wall or the body's like; k as the law answers for a cap, or for the largest flat
+    /// face.
+    fn half_period(&self, c: &Constants, plane: bool, properties: &PairProperties, wall: bool) -> f64 {
+        let r = c.size;
+        let depth = FORESEEN_DEPTH * r * if wall { 1.0 } else { 0.5 };
+        let chord = (depth * (2.0 * r - depth)).sqrt();
+        let (area, volume) = if plane {
+            (2.0 * chord, 4.0 / 3.0 * chord * depth)
+        } else {
+            (PI * chord * chord, PI * depth * depth * r)
+        };
+        let least_mass = 1.0 / c.inertia.mass;
+        let of = |area: f64, volume: f64, arm: f64| {
+            let overlap = Overlap {
+                volume,
+                centroid: Point::origin(),
+                normal: Vector::x(),
+                gradient: -area * Vector::x(),
+                moment: Vector::zeros(),
+            };
+            let touch = Touch {
+                overlap: &overlap,
+                volume,
+                velocity: Vector::zeros(),
+                spin: Vector::zeros(),
+                inverse_masses: [least_mass, if wall { 0.0 } else { least_mass }],
+                arms: [arm, if wall { f64::INFINITY } else { arm }],
+                sizes: [r, if wall { f64::INFINITY } else { r }],
+                mobility: 0.0,
+                flat: false,
+                plane,
+                dt: f64::MIN_POSITIVE,
+            };
+            let Push { stiffness, .. } = self.law.push(properties, &touch, &mut L::Memory::default());
+            PI / (stiffness * (touch.inverse_masses[0] + touch.inverse_masses[1])).sqrt()
+        };
+        let cap = of(area, volume, r);
+        if c.flat > area { cap.min(of(c.flat, c.flat * depth, c.inner)) } else { cap }
+    }
+
+    /// The longest sub-step as things stand: what was foreseen, what the stiffest contact asks for, and what keeps bodies from
+    /// passing through one another.
+    pub(super) fn longest_step(&self) -> f64 {
+        let contact = PI / (LEAST_STEPS * self.stiffest.sqrt());
+        let travel = TRAVEL / self.fastest;
+        self.stable_dt.min(contact).min(travel)
+    }
+
+    /// Was a sub-step longer than the contacts that it met allow?
+    pub(super) fn is_too_long(&self, dt: f64) -> bool {
+        dt * self.stiffest.sqrt() * FEWEST_STEPS > PI
+    }
+
+    /// Into how many sub-steps `dt` is divided.
+    pub(super) fn n_steps(&self, dt: f64) -> Result<f64, DemError> {
+        let longest = self.longest_step();
+        let steps = (dt / longest).ceil().max(1.0);
+        // Not a number fails, too.
+        if steps <= MOST { Ok(steps) } else { Err(DemError::SubSteps { dt, longest }) }
+    }
+
+    /// The largest rate at which near bodies may come nearer to one another, by their inner radii \[1/s\].
+    pub(super) fn fastest_approach(&self) -> f64 {
+        let motion = |b: usize| {
+            let body = &self.bodies[b];
+            let tip = if body.kind == Kind::Other { body.twist.angular.norm() * body.radius } else { 0.0 };
+            (body.twist.linear, tip, self.constants[b].inner)
+        };
+        let rate = |pair: &crate::broad_phase::NearPair| {
+            let (u, tip, inner) = motion(pair.a as usize);
+            if (pair.b as usize) < self.bodies.len() {
+                let (v, other, within) = motion(pair.b as usize);
+                ((u - v).norm() + tip + other) / (inner + within)
+            } else {
+                (u.norm() + tip) / inner
+            }
+        };
+        self.near.iter().map(rate).fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,156 @@
+//! The law with a potential: energy, restitution, rest.
+use super::*;
+use dem::{ConvexPolyhedron, Cuboid, HalfSpace, Potential};
+use interfaces::{Dynamics, Point, Rotation};
+
+type Conservative = RigidBodies<Potential>;
+
+fn material(restitution: f64) -> Material {
+    Material { restitution, friction: 0.0, youngs_modulus: 1e7, ..Material::default() }
+}
+fn cube() -> Arc<dyn Shape> {
+    Arc::new(Cuboid::new([2.0 * R; 3]).unwrap())
+}
+fn octahedron() -> Arc<dyn Shape> {
+    let points = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let points: Vec<_> = points.iter().flat_map(|p| [p.map(|x| x * R), p.map(|x| -x * R)]).collect();
+    Arc::new(ConvexPolyhedron::from_points(&points).unwrap())
+}
+/// The turn that brings the body's direction `d` to −x.
+fn facing(d: [f64; 3]) -> Rotation {
+    Rotation::rotation_between(&Vector::from(d), &-Vector::x())
+        .unwrap_or(Rotation::from_axis_angle(&Vector::z_axis(), std::f64::consts::PI))
+}
+fn run_until_apart(bodies: &mut Conservative, dt: f64, gap: impl Fn(&Conservative) -> f64) {
+    let mut touched = false;
+    for _ in 0..2_000_000 {
+        bodies.advance(dt).unwrap();
+        touched |= bodies.n_contacts() > 0;
+        if touched && bodies.n_contacts() == 0 && gap(bodies) > 0.0 {
+            return;
+        }
+    }
+    panic!("they did not part");
+}
+
+/// What is asked for is delivered, whatever the shape, the speed and the partner, at the automatic step: free, immovable, a wall.
+#[test]
+fn restitution_is_what_was_asked_for() {
+    let ball: Arc<dyn Shape> = sphere().shape();
+    // A shape, and the direction in which it meets its partner: face, edge, corner first.
+    let cases = [
+        ("sphere", ball, [1.0, 0.0, 0.0]),
+        ("cube's face", cube(), [1.0, 0.0, 0.0]),
+        ("cube's edge", cube(), [1.0, 1.0, 0.0]),
+        ("cube's corner", cube(), [1.0, 1.0, 1.0]),
+        ("octahedron's face", octahedron(), [1.0, 1.0, 1.0]),
+        ("octahedron's corner", octahedron(), [0.0, 0.0, 1.0]),
+    ];
+    let mut worst = 0.0_f64;
+    for (name, shape, direction) in &cases {
+        for e in [0.06, 0.2, 0.5, 0.8, 0.95] {
+            for speed in [0.01, 0.1] {
+                for partner in ["free", "immovable", "wall"] {
+                    let reach = shape.bounding_radius();
+                    let mut bodies = Conservative::with_law(Periods::default(), Potential::default());
+                    let at = |x: f64| Pose { position: Point::new(x, 0.0, 0.0), orientation: facing(*direction) };
+                    let towards = moving([-speed, 0.0, 0.0], [0.0; 3]);
+                    let m = material(e);
+                    let b = bodies.add(shape.clone(), m, at(2.001 * reach), towards, Freedom::FREE).unwrap();
+                    match partner {
+                        "wall" => {
+                            bodies.add_wall(HalfSpace::new(Point::origin(), Vector::x()).unwrap(), m).unwrap();
+                        }
+                        _ => {
+                            let freedom = if partner == "free" { Freedom::FREE } else { Freedom::NONE };
+                            // All these shapes are the same seen from the other side.
+                            let other = Pose { position: Point::origin(), ..at(0.0) };
+                            bodies.add(shape.clone(), m, other, Twist::default(), freedom).unwrap();
+                        }
+                    }
+                    let dt = bodies.stable_dt();
+                    run_until_apart(&mut bodies, dt, |_| 1.0);
+                    // Energetic: the centre of mass keeps its quarter of the energy of two equal bodies, twice; corners may begin to turn.
+                    let mass = bodies.inertia(b).mass;
+                    let kept = if partner == "free" { 0.25 * mass * speed * speed } else { 0.0 };
+                    let before = 0.5 * mass * speed * speed - kept;
+                    let delivered = ((bodies.kinetic_energy() - kept) / before).sqrt();
+                    let off = delivered / e - 1.0;
+                    worst = worst.max(off.abs());
+                    if off.abs() >= 5e-3 {
+                        println!("{name} at {speed} m/s, {partner}: e {delivered:.5} for {e}");
+                    }
+                }
+            }
+        }
+    }
+    println!("largest error of restitution: {worst:.2e}");
+    assert!(worst < 5e-3);
+}
+
+/// Cubes that meet anyhow keep their energy; so little is lost that it is the time step's error, of high order.
+#[test]
+fn cubes_keep_energy() {
+    let rebound = |seed: u32, parts: f64| {
+        let number = |k: u32| f64::from((seed * 7919 + k * 104_729) % 1000) / 1000.0 - 0.5;
+        let mut bodies = Conservative::with_law(Periods::default(), Potential::default());
+        let m = material(1.0);
+        for (k, side) in [(0, -1.0), (10, 1.0)] {
+            let turned = Vector::new(number(k), number(k + 1), number(k + 2)) * 6.0;
+            let pose = Pose {
+                position: Point::new(side * 1.75 * R, side * 0.3 * R * number(k + 3), 0.0),
+                orientation: Rotation::from_scaled_axis(turned),
+            };
+            let spin = [number(k + 4) * 20.0, number(k + 5) * 20.0, number(k + 6) * 20.0];
+            bodies.add(cube(), m, pose, moving([-0.5 * side, 0.0, 0.0], spin), Freedom::FREE).unwrap();
+        }
+        let before = bodies.kinetic_energy();
+        let (p0, l0) = momenta(&bodies);
+        let dt = bodies.stable_dt() / parts;
+        run_until_apart(&mut bodies, dt, |b| (b.pose(BodyId(1)).position - b.pose(BodyId(0)).position).norm() - 3.0 * R);
+        let (p1, l1) = momenta(&bodies);
+        let mass = bodies.inertia(BodyId(0)).mass;
+        assert!((p1 - p0).norm() < 1e-11 * mass && (l1 - l0).norm() < 1e-10 * mass * R, "{}", (l1 - l0).norm() / (mass * R));
+        (bodies.kinetic_energy() / before - 1.0).abs()
+    };
+    for parts in [1.0, 4.0, 16.0, 64.0] {
+        let worst = (0..12).map(|seed| rebound(seed, parts)).fold(0.0, f64::max);
+        println!("automatic step / {parts}: largest |dE|/E {worst:.2e}");
+        assert!(parts < 64.0 || worst < 1e-8);
+    }
+}
+
+/// A gas of a thousand elastic spheres in a periodic box keeps its energy and momentum.
+#[test]
+fn a_gas_keeps_energy() {
+    let n = 6;
+    let spacing = 3.0 * R;
+    let mut bodies = Conservative::with_law(Periods::new([Some(f64::from(n) * spacing); 3]), Potential::default());
+    let mut seed = 12345_u64;
+    let mut number = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    for i in 0..n * n * n {
+        let place = [i % n, i / n % n, i / (n * n)].map(|k| f64::from(k) * spacing);
+        let twist = moving([number(), number(), number()], [0.0; 3]);
+        bodies.add(sphere().shape(), material(1.0), Pose::at(place), twist, Freedom::FREE).unwrap();
+    }
+    let start = bodies.kinetic_energy();
+    let (p0, _) = momenta(&bodies);
+    let dt = bodies.stable_dt();
+    // Means over some time: at every instant it is off by what the leapfrog's energy is off within contacts.
+    let mut worst = 0.0_f64;
+    for _ in 0..10 {
+        let mut mean = 0.0;
+        for _ in 0..300 {
+            bodies.advance(dt).unwrap();
+            mean += (bodies.kinetic_energy() + bodies.elastic_energy().unwrap()) / 300.0;
+        }
+        worst = worst.max((mean / start - 1.0).abs());
+    }
+    let (p1, _) = momenta(&bodies);
+    let total: f64 = bodies.ids().map(|b| bodies.inertia(b).mass * bodies.twist(b).linear.norm()).sum();
+    println!("largest |dE|/E {worst:.2e}, momentum {:.1e} of all", (p1 - p0).norm() / total);
+    assert!(worst < 1e-4 && (p1 - p0).norm() < 1e-13 * total);
+}

@@ -21,6 +21,7 @@
 //! ```
 #![deny(missing_docs)]
 
+mod broad_phase;
 mod contact;
 mod error;
 mod material;
@@ -29,6 +30,9 @@ mod rigid_bodies;
 mod shapes;
 mod vtp;
 
+pub use broad_phase::{
+    Automatic, BroadPhase, HierarchicalGrid, LinkedCells, NearPair, PairList, PairListError, RTree, Sweep,
+};
 pub use contact::PairProperties;
 pub use error::DemError;
 pub use material::Material;

@@ -87,8 +87,13 @@ pub enum DemError {
         /// Angular velocity.
         angular: [f64; 3],
     },
+    /// Near pairs could not be listed.
+    #[error(transparent)]
+    Pairs(#[from] crate::PairListError),
     /// A step would take too many sub-steps.
-    #[error("a step of {dt:.3e} s would take more than 1e8 sub-steps of {longest:.3e} s: give a shorter one, softer materials or slower bodies")]
+    #[error(
+        "a step of {dt:.3e} s would take more than 1e8 sub-steps of {longest:.3e} s: give a shorter one, softer materials or slower bodies"
+    )]
     SubSteps {
         /// The step \[s\].
         dt: f64,

@@ -30,6 +30,9 @@ mod rigid_bodies;
 mod shapes;
 mod vtp;
 
+pub use broad_phase::{
+    Automatic, BroadPhase, HierarchicalGrid, LinkedCells, NearPair, PairList, PairListError, RTree, Sweep,
+};
 pub use contact::{Chen, ContactLaw, Means, Memory, PairProperties, Potential, Push, Rolling, Touch};
 pub use error::DemError;
 pub use material::Material;

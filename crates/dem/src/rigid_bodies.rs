@@ -4,8 +4,6 @@ mod body;
 mod checkpoint;
 mod contacts;
 mod near;
-#[cfg(test)]
-mod tests;
 mod time_step;
 mod turning;
 
@@ -15,7 +13,8 @@ use crate::{DemError, HalfSpace, Material, Overlap, OverlapSolver, PairPropertie
 use body::{Body, Constants, Kind};
 use contacts::{Chunk, Patch, Wall, shift};
 use interfaces::{
-    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Load, Periods, Point, Pose, Solid, Twist, Vector, Wrench,
+    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Load, Periods, Point, Pose, Solid, Twist, Vector,
+    Wrench,
 };
 use near::Listed;
 use std::sync::Arc;
@@ -232,7 +231,7 @@ impl<L: ContactLaw> RigidBodies<L> {
     /// [`DemError::OverlappingStart`] or [`DemError::InWall`] for the first that are not, and what the overlaps themselves answer.
     pub fn check_overlaps(&mut self) -> Result<(), DemError> {
         if self.listed.iter().any(|l| l.margin < 0.0) {
-            self.list(0.0);
+            self.list(0.0)?;
         }
         let (mut solver, mut calls) = (OverlapSolver::new(), 0);
         for pair in &self.near {
@@ -324,7 +323,7 @@ impl RigidBodies<Potential> {
     /// Those of the overlaps.
     pub fn elastic_energy(&mut self) -> Result<f64, DemError> {
         if self.strayed() {
-            self.list(0.0);
+            self.list(0.0)?;
         }
         let (mut solver, mut calls, mut energy) = (OverlapSolver::new(), 0, 0.0);
         for pair in &self.near {

@@ -141,6 +141,7 @@ impl ContactLaw for Potential {
         let size = share * slope;
         // dF/dδ = E″A² + E′dA/dδ: of a shallow sphere Y A/L_c; of a face half of it.
         let stiffness = steepest * area * area / most * (1.0 + FINER / least.max(0.001));
+        let stiffness = if t.flat { 2.0 * stiffness } else { stiffness };
         let mut force = o.gradient * -size;
         if p.friction > 0.0 {
             let [wa, wb] = t.inverse_masses;

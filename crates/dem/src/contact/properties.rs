@@ -72,7 +72,8 @@ mod tests {
 
     #[test]
     fn means() {
-        let hard = Material { youngs_modulus: 3.0, poisson_ratio: 0.5, restitution: 0.8, ..Material::default() };
+        let hard =
+            Material { youngs_modulus: 3.0, poisson_ratio: 0.5, restitution: 0.8, ..Material::default() };
         let soft = Material { restitution: 0.4, ..Material::default() };
         let p = PairProperties::new(&hard, &soft);
         assert!((p.stiffness - 1.0 / (0.75 / 3.0 + 0.91 / 1e6)).abs() < 1e-12);

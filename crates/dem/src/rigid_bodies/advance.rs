@@ -31,7 +31,7 @@ impl<L: ContactLaw> RigidBodies<L> {
         let half = 0.5 * dt;
         self.drift(half);
         if self.strayed() {
-            self.list(left);
+            self.list(left)?;
         }
         self.push(dt)?;
         if self.is_too_long(dt) {
@@ -121,7 +121,7 @@ impl<L: ContactLaw> Dynamics for RigidBodies<L> {
         // For a long step all pairs that may meet within it are listed; after one, fewer are again enough.
         let foreseen = self.horizon(dt);
         if (dt > self.longest_step() && self.may_stray(dt)) || self.listed_for > 2.0 * foreseen {
-            self.list(dt);
+            self.list(dt)?;
         }
         // Without near pairs there is nothing but loads, constant over the step.
         let alone = self.near.is_empty() && !self.may_stray(dt);
@@ -137,7 +137,6 @@ impl<L: ContactLaw> Dynamics for RigidBodies<L> {
                 break;
             }
             left -= sub;
-            steps -= 1.0;
             // Contacts may be stiffer, or softer again.
             steps = self.n_steps(left)?;
         }

@@ -44,7 +44,10 @@ pub(super) struct Constants {
 
 impl std::fmt::Debug for Constants {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Constants").field("shape", &self.shape.name()).field("inertia", &self.inertia).finish()
+        f.debug_struct("Constants")
+            .field("shape", &self.shape.name())
+            .field("inertia", &self.inertia)
+            .finish()
     }
 }
 

@@ -47,7 +47,8 @@ impl<L: ContactLaw> Checkpoint for RigidBodies<L> {
         }
         sink("n_patches", &[(values.len() / (PATCH + L::Memory::N)) as f64]);
         sink("patches", &values);
-        let counters = [self.contact_time, self.overlap_calls as f64, self.stiffest, self.fastest, self.listed_for];
+        let counters =
+            [self.contact_time, self.overlap_calls as f64, self.stiffest, self.fastest, self.listed_for];
         sink("contact_time", &counters);
     }
 
@@ -57,7 +58,8 @@ impl<L: ContactLaw> Checkpoint for RigidBodies<L> {
             let vector = |i: usize| Vector::new(v[4 + 3 * i], v[5 + 3 * i], v[6 + 3 * i]);
             let body = &mut self.bodies[b];
             // As it was saved, to the last bit: no normalisation.
-            body.pose.orientation = Rotation::new_unchecked(nalgebra::Quaternion::new(v[0], v[1], v[2], v[3]));
+            body.pose.orientation =
+                Rotation::new_unchecked(nalgebra::Quaternion::new(v[0], v[1], v[2], v[3]));
             body.pose.position = Point::from(vector(0));
             (body.twist.linear, body.twist.angular) = (vector(1), vector(2));
             let wrench = Wrench { force: vector(3), torque: vector(4) };
@@ -75,7 +77,7 @@ impl<L: ContactLaw> Checkpoint for RigidBodies<L> {
         (self.stiffest, self.fastest, self.listed_for) = (counters[2], counters[3], counters[4]);
         // Listed once with nothing remembered; then each patch goes to its pair.
         self.chunks.iter_mut().for_each(|c| c.patches.clear());
-        self.list_again();
+        self.list_again().map_err(|_| RestartError::Differs("bodies".into()))?;
         let n = self.bodies.len();
         let key = |a: u32, b: u32, image: [i32; 3]| (b as usize >= n, a, b, image);
         for v in patches.chunks_exact(size) {

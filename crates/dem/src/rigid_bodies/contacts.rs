@@ -142,9 +142,7 @@ impl<L: ContactLaw> View<'_, L> {
                         let pose = Pose { position: *at_b, ..b.pose };
                         solver.solve(shape, &a.pose, &*constants.shape, &pose)?
                     }
-                    Other::Wall(wall) => {
-                        solver.solve(shape, &a.pose, &wall.plane, &Pose::at([0.0; 3]))?
-                    }
+                    Other::Wall(wall) => solver.solve(shape, &a.pose, &wall.plane, &Pose::at([0.0; 3]))?,
                 };
                 if !patches.is_empty() {
                     found(patches);
@@ -284,10 +282,10 @@ fn remembered<M: Copy + Default>(before: &[Patch<M>], now: &[Overlap], patch: &O
         ([only], [_]) => only.memory,
         _ => {
             let away = |p: &Patch<M>, o: &Overlap| (p.point - o.centroid).norm_squared();
-            let nearest =
-                before.iter().min_by(|p, q| away(p, patch).total_cmp(&away(q, patch))).filter(|p| {
-                    now.iter().all(|o| std::ptr::eq(o, patch) || away(p, o) > away(p, patch))
-                });
+            let nearest = before
+                .iter()
+                .min_by(|p, q| away(p, patch).total_cmp(&away(q, patch)))
+                .filter(|p| now.iter().all(|o| std::ptr::eq(o, patch) || away(p, o) > away(p, patch)));
             nearest.map_or_else(M::default, |p| p.memory)
         }
     }

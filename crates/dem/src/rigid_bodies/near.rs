@@ -2,9 +2,10 @@
 use super::RigidBodies;
 use super::body::{Body, Constants, Kind};
 use super::contacts::{CHUNK, Chunk};
-use crate::broad_phase::NearPair;
+use crate::DemError;
+use crate::broad_phase::{NearPair, PairListError};
 use crate::contact::ContactLaw;
-use interfaces::{Aabb, Load, Point, Pose, Rotation, Vector, Wrench};
+use interfaces::{Aabb, BodyId, Load, Point, Pose, Rotation, Vector, Wrench};
 
 /// Sub-steps for which pairs are listed.
 const HORIZON: f64 = 40.0;
@@ -93,18 +94,19 @@ impl<L: ContactLaw> RigidBodies<L> {
     }
 
     /// Lists the pairs whose boxes may meet within `dt`, or within some sub-steps.
-    pub(super) fn list(&mut self, dt: f64) {
+    pub(super) fn list(&mut self, dt: f64) -> Result<(), DemError> {
         let dt = self.horizon(dt);
         self.listed_for = dt;
         for (b, body) in self.bodies.iter().enumerate() {
             self.listed[b] = Listed::new(body, &self.constants[b], &self.pull(b), dt);
         }
-        self.list_again();
+        self.list_again()?;
         self.fastest = self.fastest_approach();
+        Ok(())
     }
 
     /// Lists the pairs by where bodies are listed to be.
-    pub(super) fn list_again(&mut self) {
+    pub(super) fn list_again(&mut self) -> Result<(), DemError> {
         self.boxes.clear();
         self.movable.clear();
         for ((body, constants), listed) in self.bodies.iter().zip(&self.constants).zip(&self.listed) {
@@ -112,14 +114,21 @@ impl<L: ContactLaw> RigidBodies<L> {
             let own = match body.kind {
                 Kind::Ball => Aabb::around(listed.centre, Vector::new(r, r, r)),
                 Kind::Disc => Aabb::around(listed.centre, Vector::new(r, r, 0.0)),
-                Kind::Other => {
-                    constants.shape.aabb().posed(&Pose { position: listed.centre, orientation: listed.orientation })
-                }
+                Kind::Other => constants
+                    .shape
+                    .aabb()
+                    .posed(&Pose { position: listed.centre, orientation: listed.orientation }),
             };
             self.boxes.push(own.grown(listed.margin));
             self.movable.push(constants.movable());
         }
-        self.pairs.list(&self.boxes, &self.movable);
+        self.pairs.list(&self.boxes, &self.movable).map_err(|error| match error {
+            // Where bodies are to start was checked.
+            PairListError::Box { body, .. } => {
+                DemError::Diverged { body: BodyId(body), velocity: self.bodies[body].twist.linear.into() }
+            }
+            other => other.into(),
+        })?;
         std::mem::swap(&mut self.near, &mut self.last_near);
         self.near.clear();
         self.near.extend_from_slice(self.pairs.pairs());
@@ -135,6 +144,7 @@ impl<L: ContactLaw> RigidBodies<L> {
         let pairs = self.pairs.pairs().len();
         self.near[pairs..].sort_unstable();
         self.carry_over();
+        Ok(())
     }
 
     /// Gives the patches of the last list to the pairs of the new one.

@@ -74,7 +74,8 @@ fn starts() {
     says(&error, &["body 0", "2.000e-2", "1.900e-2", "axis 1"]);
 
     let mut bodies = scene(disc(), elastic(), &[([0.0; 3], still)]);
-    let error = bodies.add(sphere().shape(), elastic(), Pose::at([1.0, 0.0, 0.0]), still, Freedom::FREE).unwrap_err();
+    let error =
+        bodies.add(sphere().shape(), elastic(), Pose::at([1.0, 0.0, 0.0]), still, Freedom::FREE).unwrap_err();
     says(&error, &["disc", "sphere", "dimension"]);
     let at = Pose::at([0.0; 3]);
     assert_eq!(dem::overlap(&disc().shape(), &at, &sphere().shape(), &at), Err(error));

@@ -1,7 +1,7 @@
 //! Two bodies that hit each other.
 use super::*;
-use dem::HalfSpace;
 use approx::{assert_relative_eq, assert_ulps_eq};
+use dem::HalfSpace;
 use interfaces::{Bodies, Dynamics, Point};
 use std::f64::consts::PI;
 
@@ -272,7 +272,9 @@ fn through_a_periodic_corner_as_in_the_middle() {
             let two = std::array::from_fn(|a| two[a] + images[a] * length);
             let motions = [moving([0.3, 0.4, z(0.2)], [0.0, 0.0, 20.0]), moving([-0.2, -0.1, 0.0], [0.0; 3])];
             for (place, motion) in [one, two].into_iter().zip(motions) {
-                bodies.add(shape.shape(), Material::default(), Pose::at(place), motion, freedom(shape)).unwrap();
+                bodies
+                    .add(shape.shape(), Material::default(), Pose::at(place), motion, freedom(shape))
+                    .unwrap();
             }
             assert!(bodies.check_overlaps().is_ok());
             for _ in 0..60 {

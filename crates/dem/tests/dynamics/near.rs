@@ -63,7 +63,13 @@ fn settling(n: usize) -> RigidBodies {
             1.05 * R + 2.05 * R * (i / 10) as f64,
             0.0,
         ];
-        let b = bodies.add(disc().shape(), Material::default(), Pose::at(place), Twist::default(), Freedom::PLANAR);
+        let b = bodies.add(
+            disc().shape(),
+            Material::default(),
+            Pose::at(place),
+            Twist::default(),
+            Freedom::PLANAR,
+        );
         let weight = 1000.0 * std::f64::consts::PI * R * R * 9.81;
         bodies.apply(b.unwrap(), push(Vector::new(0.0, -weight, 0.0)));
     }

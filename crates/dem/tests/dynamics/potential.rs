@@ -53,13 +53,16 @@ fn restitution_is_what_was_asked_for() {
                 for partner in ["free", "immovable", "wall"] {
                     let reach = shape.bounding_radius();
                     let mut bodies = Conservative::with_law(Periods::default(), Potential::default());
-                    let at = |x: f64| Pose { position: Point::new(x, 0.0, 0.0), orientation: facing(*direction) };
+                    let at =
+                        |x: f64| Pose { position: Point::new(x, 0.0, 0.0), orientation: facing(*direction) };
                     let towards = moving([-speed, 0.0, 0.0], [0.0; 3]);
                     let m = material(e);
                     let b = bodies.add(shape.clone(), m, at(2.001 * reach), towards, Freedom::FREE).unwrap();
                     match partner {
                         "wall" => {
-                            bodies.add_wall(HalfSpace::new(Point::origin(), Vector::x()).unwrap(), m).unwrap();
+                            bodies
+                                .add_wall(HalfSpace::new(Point::origin(), Vector::x()).unwrap(), m)
+                                .unwrap();
                         }
                         _ => {
                             let freedom = if partner == "free" { Freedom::FREE } else { Freedom::NONE };
@@ -107,10 +110,16 @@ fn cubes_keep_energy() {
         let before = bodies.kinetic_energy();
         let (p0, l0) = momenta(&bodies);
         let dt = bodies.stable_dt() / parts;
-        run_until_apart(&mut bodies, dt, |b| (b.pose(BodyId(1)).position - b.pose(BodyId(0)).position).norm() - 3.0 * R);
+        run_until_apart(&mut bodies, dt, |b| {
+            (b.pose(BodyId(1)).position - b.pose(BodyId(0)).position).norm() - 3.0 * R
+        });
         let (p1, l1) = momenta(&bodies);
         let mass = bodies.inertia(BodyId(0)).mass;
-        assert!((p1 - p0).norm() < 1e-11 * mass && (l1 - l0).norm() < 1e-10 * mass * R, "{}", (l1 - l0).norm() / (mass * R));
+        assert!(
+            (p1 - p0).norm() < 1e-11 * mass && (l1 - l0).norm() < 1e-10 * mass * R,
+            "{}",
+            (l1 - l0).norm() / (mass * R)
+        );
         (bodies.kinetic_energy() / before - 1.0).abs()
     };
     for parts in [1.0, 4.0, 16.0, 64.0] {
@@ -125,7 +134,8 @@ fn cubes_keep_energy() {
 fn a_gas_keeps_energy() {
     let n = 6;
     let spacing = 3.0 * R;
-    let mut bodies = Conservative::with_law(Periods::new([Some(f64::from(n) * spacing); 3]), Potential::default());
+    let mut bodies =
+        Conservative::with_law(Periods::new([Some(f64::from(n) * spacing); 3]), Potential::default());
     let mut seed = 12345_u64;
     let mut number = || {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

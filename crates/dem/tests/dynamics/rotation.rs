@@ -22,7 +22,8 @@ fn top(turned: Rotation) -> RigidBodies {
 fn a_torque_free_top_tumbles() {
     const PERIOD: f64 = 22.996_262_94;
     let turned = Rotation::from_euler_angles(0.3, -1.1, 2.0);
-    let in_body = |b: &RigidBodies| b.pose(BodyId(0)).orientation.inverse_transform_vector(&b.twist(BodyId(0)).angular);
+    let in_body =
+        |b: &RigidBodies| b.pose(BodyId(0)).orientation.inverse_transform_vector(&b.twist(BodyId(0)).angular);
     let off_after_a_period = |steps: u32| {
         let mut bodies = top(turned);
         let start = in_body(&bodies);
@@ -49,5 +50,8 @@ fn a_torque_free_top_tumbles() {
     println!("ten flips: |dE|/E {drift:.2e}, |dL|/L {:.2e}", (after - momentum).norm() / momentum.norm());
     assert!(drift < 1e-6);
     // Round-off of every step.
-    assert!((after - momentum).norm() < 1e-15 * f64::from(10 * steps) * momentum.norm(), "direction and size");
+    assert!(
+        (after - momentum).norm() < 1e-15 * f64::from(10 * steps) * momentum.norm(),
+        "direction and size"
+    );
 }

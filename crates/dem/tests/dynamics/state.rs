@@ -1,7 +1,7 @@
 //! Free motion, loads, and what a restart needs.
 use super::*;
-use dem::HalfSpace;
 use approx::assert_relative_eq;
+use dem::HalfSpace;
 use interfaces::{Bodies, Checkpoint, Dynamics, Point, RestartError};
 
 /// Under a constant load drift–kick–drift is exact, added mass and moment included.

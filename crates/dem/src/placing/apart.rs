@@ -26,26 +26,39 @@ impl Apart {
         if half.min() < 0.0 {
             return true;
         }
+        let middle = bounds.min + half;
+        let d = depth(middle, half.norm());
+        if d < 0.0 {
+            return false;
+        }
         self.boxes.clear();
-        self.boxes.push((bounds.min + half, half));
+        if d < half.norm() {
+            self.boxes.push((middle, half));
+        }
         let mut seen = 0;
         while let Some((centre, half)) = self.boxes.pop() {
-            let reach = half.norm();
-            let d = depth(centre, reach);
-            if d >= reach {
-                continue;
-            }
             seen += 1;
-            if d < 0.0 || reach < finest || seen > MOST {
+            if half.norm() < finest || seen > MOST {
                 return false;
             }
             let axis = half.imax();
             let mut inner = half;
             inner[axis] *= 0.5;
-            for side in [-1.0, 1.0] {
+            let reach = inner.norm();
+            let halves = [-1.0, 1.0].map(|side| {
                 let mut middle = centre;
                 middle[axis] += side * inner[axis];
-                self.boxes.push((middle, inner));
+                (depth(middle, reach), middle)
+            });
+            // The half that seems deeper is the next one.
+            let deeper = usize::from(halves[1].0 < halves[0].0);
+            for (d, middle) in [halves[1 - deeper], halves[deeper]] {
+                if d < 0.0 {
+                    return false;
+                }
+                if d < reach {
+                    self.boxes.push((middle, inner));
+                }
             }
         }
         true

@@ -122,7 +122,7 @@ pub enum PlacingError {
 }
 
 /// What random addition came to before there was no more room.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[error(
     "{} of {asked} bodies are placed, a volume fraction of {fraction:.4}, and {attempts} attempts found no place for body {body}; ask for fewer (spheres of one size jam near 0.38, discs near 0.547), a smaller gap, more attempts, or tight placing if they are not round", .placed.len()
 )]
@@ -137,6 +137,13 @@ pub struct Jammed {
     pub attempts: usize,
     /// Share of the region that the placed bodies fill.
     pub fraction: f64,
+}
+
+impl std::fmt::Debug for Jammed {
+    /// Without the poses, which may be very many.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Jammed({self})")
+    }
 }
 
 /// A finite number above zero, or what to say.

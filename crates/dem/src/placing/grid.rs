@@ -111,9 +111,11 @@ impl Grid {
             if cells > level.balls.len() as f64 {
                 return level.balls.iter().any(&mut test);
             }
-            for k in ranges[2].0..=ranges[2].1 {
-                for j in ranges[1].0..=ranges[1].1 {
-                    for i in ranges[0].0..=ranges[0].1 {
+            // From the place's own cell outwards: in a crowd, whoever is in the way is most often there.
+            let x = place - self.low;
+            for k in outward(x.z / level.width.z, ranges[2]) {
+                for j in outward(x.y / level.width.y, ranges[1]) {
+                    for i in outward(x.x / level.width.x, ranges[0]) {
                         let [nx, ny, nz] = level.counts;
                         let cell = [turned(i, nx), turned(j, ny), turned(k, nz)];
                         let mut at = level.heads[level.slot(cell)];
@@ -147,6 +149,15 @@ impl Level {
 /// The cell of a place; far outside it is as if it were at the border of numbers.
 fn index(x: f64, width: f64) -> i64 {
     if width > 0.0 { (x / width).floor().clamp(-1e9, 1e9) as i64 } else { 0 }
+}
+/// All of a range, from where `x` is outwards, the nearer side first.
+fn outward(x: f64, (from, to): (i64, i64)) -> impl Iterator<Item = i64> {
+    let (own, up) = (x.floor(), x - x.floor() >= 0.5);
+    // A plane grid has no width along z, and x is not a number then.
+    let own = (own as i64).clamp(from, to);
+    let most = 2 * (own - from).max(to - own);
+    let step = move |t: i64| if (t & 1 == 1) == up { (t + 1) / 2 } else { -((t + 1) / 2) };
+    (0..=most).map(move |t| own + step(t)).filter(move |i| (from..=to).contains(i))
 }
 /// A cell's number once it is turned back into the box; only a period away at most.
 fn turned(i: i64, count: i64) -> i64 {

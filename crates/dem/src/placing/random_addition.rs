@@ -16,10 +16,10 @@ use interfaces::{Aabb, Point, Pose, Solid, Vector};
 /// ```
 /// use dem::placing::{PlacingError, RandomAddition, Region};
 /// use dem::{HalfSpace, Shape, Sphere};
-/// use interfaces::{Pose, Vector};
+/// use interfaces::{Point, Pose, Vector};
 ///
 /// let ball = Sphere::new(0.01)?;
-/// let floor = HalfSpace::new(Vector::z())?;
+/// let floor = HalfSpace::new(Point::origin(), Vector::z())?;
 /// let drum = Region::cylinder(0.05, 0.2, Pose::at([0.0; 3]))?;
 /// let adding = RandomAddition::new(drum).with_gap(1e-3)?.with_obstacle(&floor, Pose::at([0.0; 3]));
 /// let poses = adding.place(&[&ball as &dyn Shape; 20], 7)?;
@@ -257,15 +257,20 @@ impl<'r, 's> Scene<'r, 's> {
         if tight {
             pose.orientation = turns.draw(source);
         }
-        if tight || !region.is_box() {
-            let d = region.signed_distance(position, body.outer + gap);
-            if d > -keeps || (d > -(body.outer + gap) && !contained(apart, region, body, &pose, gap)) {
-                return None;
-            }
+        if (tight || !region.is_box()) && region.signed_distance(position, body.outer + gap) > -keeps {
+            return None;
         }
         let reach = body.outer + gap;
-        let blocked = endless.iter().any(|(solid, at)| near(apart, body, &pose, *solid, at, gap, tight))
-            || grid.any(position, reach, |ball| {
+        // What is easily told comes first for all neighbours: in a crowd, most attempts end there.
+        let mut blocked = |thorough: bool, apart: &mut Apart| {
+            let near = |solid: &dyn Solid, at: &Pose, pose: &Pose, apart: &mut Apart| {
+                let told = sphere_near(body, pose, solid, at, gap, tight);
+                told.unwrap_or_else(|| thorough && !separate(apart, body, pose, solid, at, gap))
+            };
+            if endless.iter().any(|(solid, at)| near(*solid, at, &pose, apart)) {
+                return true;
+            }
+            grid.any(position, reach, |ball| {
                 let distance = reach + ball.radius;
                 let away = nearest(position - ball.centre, periods);
                 if away.norm_squared() >= distance * distance {
@@ -279,15 +284,21 @@ impl<'r, 's> Scene<'r, 's> {
                     // The image of the body that is near this ball.
                     let pose = Pose { position: ball.centre + away, ..pose };
                     match id.checked_sub(*most_bodies) {
-                        Some(i) => near(apart, body, &pose, obstacles[i].0, &obstacles[i].1, gap, tight),
+                        Some(i) => near(obstacles[i].0, &obstacles[i].1, &pose, apart),
                         None => {
                             let (other, at) = &placed[id];
-                            touch(solver, apart, (body, &pose), (other, at), gap)
+                            match spheres_near(body, &pose, other, at, gap) {
+                                Some(near) => near,
+                                None => thorough && touch(solver, apart, (body, &pose), (other, at), gap),
+                            }
                         }
                     }
                 })
-            });
-        if blocked {
+            })
+        };
+        if blocked(false, apart)
+            || (tight && (!contained(apart, region, body, &pose, gap) || blocked(true, apart)))
+        {
             return None;
         }
         if !tight {
@@ -338,19 +349,29 @@ fn contained(apart: &mut Apart, region: &Region<'_>, body: &Candidate<'_>, pose:
         body.shape.signed_distance(pose.to_body(x), band).max(wall)
     })
 }
-/// Whether a body, or the sphere around it unless that is to be `tight`, is nearer than `gap` to something.
-fn near(
-    apart: &mut Apart,
+/// Whether a body is nearer than `gap` to something, if the spheres in and around it tell; the sphere around it does unless all is to be
+/// `tight`.
+fn sphere_near(
     body: &Candidate<'_>,
     pose: &Pose,
     other: &dyn Solid,
     at: &Pose,
     gap: f64,
     tight: bool,
-) -> bool {
+) -> Option<bool> {
     let reach = body.outer + gap;
     let d = other.signed_distance(at.to_body(pose.position), reach);
-    d < reach && (!tight || d < body.inner + gap || !separate(apart, body, pose, other, at, gap))
+    if d >= reach {
+        Some(false)
+    } else if !tight || d < body.inner + gap {
+        Some(true)
+    } else {
+        None
+    }
+}
+/// The same of two bodies, of each the spheres against the other.
+fn spheres_near(a: &Candidate<'_>, at_a: &Pose, b: &Candidate<'_>, at_b: &Pose, gap: f64) -> Option<bool> {
+    sphere_near(a, at_a, b.shape, at_b, gap, true).or_else(|| sphere_near(b, at_b, a.shape, at_a, gap, true))
 }
 /// Whether signed distances show that two bodies are `gap` apart.
 fn separate(
@@ -369,7 +390,7 @@ fn separate(
         d.max(other.signed_distance(at.to_body(x), band + half)) - half
     })
 }
-/// Whether two bodies whose spheres are nearer than `gap` are so themselves.
+/// Whether two bodies are nearer than `gap`.
 fn touch(
     solver: &mut OverlapSolver,
     apart: &mut Apart,
@@ -377,16 +398,6 @@ fn touch(
     (b, at_b): (&Candidate<'_>, &Pose),
     gap: f64,
 ) -> bool {
-    // Of each body the spheres inside and around it, against the other one.
-    for ((p, at_p), (q, at_q)) in [((a, at_a), (b, at_b)), ((b, at_b), (a, at_a))] {
-        let d = q.shape.signed_distance(at_q.to_body(at_p.position), p.outer + gap);
-        if d >= p.outer + gap {
-            return false;
-        }
-        if d < p.inner + gap {
-            return true;
-        }
-    }
     let by_distance = |c: &Candidate<'_>| matches!(c.shape.form(), Form::Distance);
     if gap == 0.0
         && !(by_distance(a) || by_distance(b))

@@ -81,7 +81,10 @@ fn a_box_holds_all_that_fits_and_nothing_else() {
             let points = lattice.in_box(&bounds, 0.05).unwrap();
             let axes = if plane(kind) { 2 } else { 3 };
             for p in &points {
-                assert!((0..axes).all(|a| p[a] - bounds.min[a] > 0.05 - 1e-12 && bounds.max[a] - p[a] > 0.05 - 1e-12));
+                assert!(
+                    (0..axes)
+                        .all(|a| p[a] - bounds.min[a] > 0.05 - 1e-12 && bounds.max[a] - p[a] > 0.05 - 1e-12)
+                );
                 assert!(axes == 3 || p.z == 0.0);
             }
             // By counting over a far larger block.

@@ -19,11 +19,16 @@ fn vector() -> impl Strategy<Value = Vector> {
 fn row() -> impl Strategy<Value = BodyRow> {
     let twist = proptest::option::of((vector(), vector()));
     let size = proptest::option::of(finite().prop_map(f64::abs).prop_filter("positive", |v| *v > 0.0));
-    (vector(), any::<u64>(), twist, size, any::<String>()).prop_map(|(place, seed, twist, size, kind)| BodyRow {
-        pose: Pose { position: Point::from(place), orientation: Orientations::Random.of(seed).next().unwrap() },
-        twist: twist.map(|(linear, angular)| Twist { linear, angular }),
-        size,
-        kind,
+    (vector(), any::<u64>(), twist, size, any::<String>()).prop_map(|(place, seed, twist, size, kind)| {
+        BodyRow {
+            pose: Pose {
+                position: Point::from(place),
+                orientation: Orientations::Random.of(seed).next().unwrap(),
+            },
+            twist: twist.map(|(linear, angular)| Twist { linear, angular }),
+            size,
+            kind,
+        }
     })
 }
 
@@ -99,7 +104,9 @@ fn what_is_wrong_is_told_with_its_line() {
     assert!(matches!(read("\n\nx,y,z,qw\n"), Err(E::Missing { line: 3, name: "qx" })));
     assert!(matches!(read("x,y,z,wz\n"), Err(E::Missing { name: "vx", .. })));
     assert!(matches!(read("x,y,z,x\n"), Err(E::Column { line: 1, number: 4, problem: "there twice", .. })));
-    let Err(E::Column { number: 2, name, problem: "not known", .. }) = read("x,radius,y,z\n") else { panic!() };
+    let Err(E::Column { number: 2, name, problem: "not known", .. }) = read("x,radius,y,z\n") else {
+        panic!()
+    };
     assert_eq!(name, "radius");
     assert!(matches!(line("0,0,0"), E::Width { line: 5, expected: 7, found: 3 }));
     assert!(matches!(line("0,0,inf,1,0,0,0"), E::Field { line: 5, column: "z", .. }));

@@ -159,8 +159,9 @@ impl<'a> RandomAddition<'a> {
                     (false, false) => 2.0 * (outer + self.gap),
                 };
                 let room = extent[axis];
+                let fits = size <= room * (1.0 + 1e-14);
                 // Not a number is too large as well.
-                if !(size <= room * (1.0 + 1e-14)) {
+                if !fits {
                     return Err(PlacingError::TooLarge { body, axis, size, room });
                 }
             }
@@ -212,7 +213,8 @@ impl<'r, 's> Scene<'r, 's> {
             }
             let around = solid.aabb();
             let radius = 0.5 * around.extent().norm();
-            if !(radius <= EVERYWHERE * bounds.extent().norm()) {
+            let local = radius <= EVERYWHERE * bounds.extent().norm();
+            if !local {
                 endless.push((solid, at));
                 continue;
             }

@@ -163,7 +163,8 @@ impl SizeDistribution {
         // 1 − exp(−(t_high − t_low)): of what is above the lower bound, the share below the upper one.
         let share = -libm::expm1(start - power(high));
         let held = libm::exp(-start) * share;
-        if !(held > 1e-100) {
+        let some = held > 1e-100;
+        if !some {
             let remedy = "the distribution has nothing there; move the bounds towards its scale";
             return Err(PlacingError::Sizes { low, high, remedy });
         }

@@ -23,11 +23,11 @@ fn points(shape: &dyn Shape) -> Vec<Point> {
         let v = |i: u32| surface.vertices[i as usize];
         let along = |f: &[u32; 3]| {
             let pairs = [(f[0], f[1]), (f[1], f[2]), (f[2], f[0])];
-            pairs.map(|(a, b)| (0..=20).map(move |k| v(a) + (v(b) - v(a)) * (f64::from(k) / 20.0)))
+            pairs.map(|(a, b)| (0..=10).map(move |k| v(a) + (v(b) - v(a)) * (f64::from(k) / 10.0)))
         };
         return surface.faces.iter().flat_map(along).flatten().collect();
     }
-    let surface = shape.surface(0.03 * r, 0.0).unwrap();
+    let surface = shape.surface(0.06 * r, 0.0).unwrap();
     surface.into_iter().map(|e| e.point).collect()
 }
 /// Smallest distance of the points of one body's surface to another body, over all images, and to the box's walls; and how many pairs
@@ -120,7 +120,6 @@ fn bodies_of_all_kinds_interlock_without_overlap() {
         assert_eq!(poses, place().unwrap());
         assert!(!overlapping(&bodies, &poses, space.extent(), periodic));
         let (least, tight) = least_gap(&bodies, &poses, &space, periodic);
-        println!("{periodic:?} {gap}: {least}, {tight}");
         assert!(least > gap - 1e-6 && least < gap + 0.01, "{periodic:?} {gap}: {least}");
         assert!(tight > 100, "{tight}");
     }
@@ -164,7 +163,6 @@ fn rings_by_their_distance_only() {
                 within += usize::from(d.norm() < bodies[j].bounding_radius() && !std::ptr::eq(p, q));
             }
         }
-        println!("{gap} {least} {within}");
         assert!(least > gap - 1e-9 && within > 0, "{gap} {least} {within}");
     }
 }

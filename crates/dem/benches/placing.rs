@@ -3,7 +3,6 @@ use cpu_time::ProcessTime;
 use dem::placing::{PlacingError, RandomAddition, Region, SizeDistribution};
 use dem::{Capsule, Cuboid, Ellipsoid, Shape, Sphere};
 use interfaces::{Aabb, Vector};
-use std::f64::consts::PI;
 
 /// A periodic cube in which this volume is this share.
 fn cube(volume: f64, share: f64) -> Region<'static> {

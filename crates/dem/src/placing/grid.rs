@@ -146,6 +146,32 @@ impl Level {
     }
 }
 
+/// The shortest of a vector's images.
+pub(super) fn nearest(v: Vector, periods: &Vector) -> Vector {
+    v.zip_map(periods, |x, l| if l > 0.0 { x - l * (x / l).round() } else { x })
+}
+/// Whether `test` is true of any image of a vector that is shorter than `reach`.
+pub(super) fn images(
+    shortest: Vector,
+    periods: &Vector,
+    reach: f64,
+    mut test: impl FnMut(Vector) -> bool,
+) -> bool {
+    let most = periods.map(|l| if l > 0.0 { (reach / l + 0.5).floor() } else { 0.0 });
+    let range = |a: usize| -(most[a] as i64)..=most[a] as i64;
+    for k in range(2) {
+        for j in range(1) {
+            for i in range(0) {
+                let v = shortest + Vector::new(i as f64, j as f64, k as f64).component_mul(periods);
+                if v.norm_squared() < reach * reach && test(v) {
+                    return true;
+                }
+            }
+        }
+    }
+    false
+}
+
 /// The cell of a place; far outside it is as if it were at the border of numbers.
 fn index(x: f64, width: f64) -> i64 {
     if width > 0.0 { (x / width).floor().clamp(-1e9, 1e9) as i64 } else { 0 }

@@ -1,7 +1,7 @@
 //! Places at random, without overlap.
 use super::apart::Apart;
 use super::error::{Jammed, PlacingError, not_negative};
-use super::grid::{Ball, Grid};
+use super::grid::{Ball, Grid, images, nearest};
 use super::{Orientations, Region, source::Source};
 use crate::{Form, OverlapSolver, Shape};
 use interfaces::{Aabb, Point, Pose, Solid, Vector};
@@ -117,8 +117,10 @@ impl<'a> RandomAddition<'a> {
             let found =
                 (0..self.attempts).find_map(|_| scene.attempt(&bodies[body], &orientations, &mut source));
             let Some(pose) = found else {
-                let volume: f64 =
-                    placed.iter().map(|&(i, _): &(usize, Pose)| bodies[i].shape.inertia(1.0).volume).sum();
+                let volume: f64 = placed
+                    .iter()
+                    .map(|&(i, _): &(usize, Pose)| bodies[i].shape.inertia(1.0).volume)
+                    .fold(0.0, |sum, v| sum + v);
                 let (asked, attempts) = (bodies.len(), self.attempts);
                 return Err(Jammed {
                     placed,
@@ -308,27 +310,6 @@ impl<'r, 's> Scene<'r, 's> {
         }
         Some(pose)
     }
-}
-
-/// The shortest of a vector's images.
-fn nearest(v: Vector, periods: &Vector) -> Vector {
-    v.zip_map(periods, |x, l| if l > 0.0 { x - l * (x / l).round() } else { x })
-}
-/// Whether `test` is true of any image of a vector that is shorter than `reach`.
-fn images(shortest: Vector, periods: &Vector, reach: f64, mut test: impl FnMut(Vector) -> bool) -> bool {
-    let most = periods.map(|l| if l > 0.0 { (reach / l + 0.5).floor() } else { 0.0 });
-    let range = |a: usize| -(most[a] as i64)..=most[a] as i64;
-    for k in range(2) {
-        for j in range(1) {
-            for i in range(0) {
-                let v = shortest + Vector::new(i as f64, j as f64, k as f64).component_mul(periods);
-                if v.norm_squared() < reach * reach && test(v) {
-                    return true;
-                }
-            }
-        }
-    }
-    false
 }
 
 /// How exactly distances to a body have to be known \[m\].

@@ -79,8 +79,8 @@ fn very_different_sizes() {
     let region = Region::cuboid(space, [true; 3]).unwrap();
     // Small ones that were there before.
     let dust = Sphere::new(1e-3).unwrap();
-    let before: Vec<Pose> = (0..200)
-        .map(|i| Pose::at([0.37 * f64::from(i) % 1.0, 0.61 * f64::from(i) % 1.0, 5e-3 * f64::from(i)]))
+    let before: Vec<Pose> = (0..30)
+        .map(|i| Pose::at([0.37 * f64::from(i) % 1.0, 0.61 * f64::from(i) % 1.0, 0.033 * f64::from(i)]))
         .collect();
     let adding =
         before.iter().fold(RandomAddition::new(region), |adding, at| adding.with_obstacle(&dust, *at));

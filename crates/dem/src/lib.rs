@@ -26,6 +26,8 @@ mod contact;
 mod error;
 mod material;
 mod overlap;
+#[cfg(feature = "placing")]
+pub mod placing;
 mod rigid_bodies;
 mod shapes;
 mod vtp;

@@ -102,6 +102,21 @@ proptest! {
     }
 }
 
+/// A ball of which a larger one holds all but a cap: as deep as the balls go, the largest of both distances is the smaller one's.
+#[test]
+fn all_but_a_cap() {
+    let r = 1.869_690_249_513_634_5;
+    let [a, b] = [Sphere::new(1.0).unwrap(), Sphere::new(r).unwrap()];
+    let distance = (r - 1.0) + 0.124_264_641_945_743_52 * 2.0;
+    let (here, there) = (Pose::at([0.0; 3]), Pose::at([0.0, 0.0, -distance]));
+    let exact = by(Route::ClosedForm, &a, &here, &b, &there).unwrap();
+    let mut solver = OverlapSolver::new().with_route(Some(Route::Tree));
+    let found = solver.solve(&a, &here, &b, &there).unwrap();
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!((found[0].volume / exact.volume - 1.0).abs() < 1e-3, "{found:?} {exact:?}");
+    assert!((found[0].gradient - exact.gradient).norm() < 2e-2, "{found:?} {exact:?}");
+}
+
 /// Bodies of 1e-9 m on the face of one of 1e6 m: half of each lies in it, to the last digits.
 #[test]
 fn a_speck_on_a_mountain() {

@@ -1,7 +1,9 @@
-//! Everything with a signed distance or facets: lenses where contacts are simple, adaptive trees of boxes where they are not.
+//! Everything with a signed distance or facets: polyhedra around convex regions with edges, lenses where contacts are smooth,
+//! adaptive trees of boxes where they are neither.
 //!
-//! `scan.rs` looks for places where both bodies are, `deepest.rs` goes down from them. What is like a lens there, between two
-//! pieces of surface that meet at one rim, is summed along lines (`lens.rs`); all else is left to the trees.
+//! `scan.rs` looks for places where both bodies are, `deepest.rs` goes down from them. Convex regions with edges are enclosed by
+//! planes that touch the bodies (`convex.rs`); what is like a lens, between two pieces of surface that meet at one rim, is summed
+//! along lines (`lens.rs`); all else is left to the trees.
 //!
 //! A box outside either body is dropped, one inside both is added, one that a surface cuts is divided into eight or, in
 //! the end, closed: the distance of each body is taken to second order, c + g·ξ + ½ ξᵀHξ from fifteen points of the box,
@@ -9,6 +11,7 @@
 //! alike, and what is left out is of third order in the box's size.
 mod around;
 pub(crate) mod columns;
+mod convex;
 mod cut;
 mod deepest;
 #[cfg(feature = "mesh")]
@@ -32,15 +35,16 @@ use super::Overlap;
 use crate::{DemError, Shape};
 pub(crate) use around::Oriented;
 use columns::Sums;
+use convex::{Circumscribed, Which};
 pub(crate) use cut::Surfaces;
-use deepest::Search;
+use deepest::{Deepest, Search};
 pub(crate) use grow::Exhausted;
 use grow::{Goal, Tree};
 use interfaces::{Point, Pose, Rotation, Vector};
 use lens::Lenses;
 use nalgebra::{Matrix3, SymmetricEigen};
 use patches::Patches;
-use roots::{Root, merge};
+use roots::{Region, Root, merge};
 use scan::Scan;
 use seen::{Seen, shared};
 
@@ -51,14 +55,14 @@ pub enum Refinement {
     /// a surface cuts are divided, this many times, 1 to 8.
     Levels(u8),
     /// To a relative error of the volume of about this, from 1e-8 to 1. A region between two pieces of surface that meet at one rim
-    /// is summed along lines and has no boxes; any other one is divided into boxes along the contact, those with the largest
-    /// errors first.
+    /// is summed along lines, a convex one with edges is enclosed by planes that touch the bodies, exactly if their faces are flat;
+    /// neither has boxes. Any other one is divided into boxes along the contact, those with the largest errors first.
     ///
     /// Regions are looked for in boxes, down to a 32nd of what the bodies' own boxes share along each axis. A box is left out where a
     /// distance is larger than it reaches, which is a proof as distances change by no more than the way gone, or where
     /// weighted means of both distances, linear but for what nine points in the box tell, are positive all over it, which is none: a
     /// bump that all nine points miss may be missed. So may regions smaller than the last boxes, and those as near as this to
-    /// another one.
+    /// another one. Between convex bodies one is found however small.
     Tolerance(f64),
 }
 
@@ -94,7 +98,7 @@ pub enum Normal {
     PlaneFit,
 }
 
-/// Computes overlaps by lenses and trees and keeps the memory of it.
+/// Computes overlaps by planes, lenses and trees and keeps the memory of it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct AdaptiveTree {
     pub(crate) refinement: Refinement,
@@ -102,6 +106,7 @@ pub(crate) struct AdaptiveTree {
     scan: Scan,
     starts: Vec<Vector>,
     lenses: Lenses,
+    convex: Circumscribed,
     roots: Vec<Root>,
     /// Of the last pair, one tree per root.
     trees: Vec<Tree>,
@@ -140,6 +145,7 @@ impl AdaptiveTree {
         out: &mut Vec<Overlap>,
     ) -> Result<(), Exhausted> {
         self.roots.clear();
+        self.convex.planes.clear();
         // Around the first body, so that places far from the world's origin lose no digits.
         let apart = at_b.position - at_a.position;
         match self.refinement {
@@ -169,8 +175,8 @@ impl AdaptiveTree {
         }
         let between = (-apart).try_normalize(0.0).unwrap_or(Vector::x());
         for number in 0..self.roots.len() {
-            match &self.roots[number].lens {
-                Some(lens) => out.push(lens.overlap(self.origin, between)),
+            match &self.roots[number].region {
+                Some(region) => out.push(region.overlap(self.origin, between)),
                 None => self.collect(number, between, out),
             }
         }
@@ -212,26 +218,53 @@ impl AdaptiveTree {
         }
         // Regions that no start led to.
         loop {
-            let roots = &self.roots;
-            let known = |x: Vector, reach: f64, last| roots.iter().any(|root| root.knows(x, reach, last));
+            let (roots, planes) = (&self.roots, &self.convex.planes);
+            let known =
+                |x: Vector, reach: f64, last| roots.iter().any(|root| root.knows(x, reach, last, planes));
             let Some(start) = self.scan.next(search, known) else { break };
             self.look(search, start, step, tolerance);
+        }
+        if self.roots.is_empty()
+            && let Some(deepest) = self.convex.seek(search)
+        {
+            self.add(search, &deepest, tolerance);
         }
         self.grow(search, tolerance)
     }
 
     /// A root for the region that `start` leads to, if it is a new one.
     fn look(&mut self, search: &Search<'_>, start: Vector, step: f64, tolerance: f64) {
-        let known = |x: Vector| self.roots.iter().any(|root| root.holds(x) || root.sees(search, x));
+        let planes = &self.convex.planes;
+        let known = |x: Vector| self.roots.iter().any(|root| root.holds(x, planes) || root.sees(search, x));
         if self.roots.len() == MOST_ROOTS || known(start) {
             return;
         }
         let Some(deepest) = search.descend(start, step).filter(|deepest| !known(deepest.at)) else { return };
-        let lens = match self.normal {
-            Normal::Gradient => self.lenses.measure(search, &deepest, tolerance),
+        self.add(search, &deepest, tolerance);
+    }
+
+    /// A root for the region around a deepest place.
+    fn add(&mut self, search: &Search<'_>, deepest: &Deepest, tolerance: f64) {
+        let region = match self.normal {
+            Normal::Gradient => {
+                // Lenses are for what is smooth.
+                let convex = self.convex.measure(search, deepest, tolerance, Which::WithEdges);
+                let lens = || self.lenses.measure(search, deepest, tolerance).map(Region::Lens);
+                let mut found = convex.map(Region::Convex).or_else(lens);
+                if found.is_none() {
+                    let mut round = |d: &Deepest| self.convex.measure(search, d, tolerance, Which::All);
+                    found = round(deepest).map(Region::Convex);
+                }
+                if found.is_none() && self.roots.is_empty() {
+                    let other = self.convex.seek(search);
+                    let other = other.and_then(|o| self.convex.measure(search, &o, tolerance, Which::All));
+                    found = other.map(Region::Convex);
+                }
+                found
+            }
             Normal::PlaneFit => None,
         };
-        self.roots.push(lens.map_or_else(|| Root::boxed(search.around(&deepest), deepest.at), Root::of));
+        self.roots.push(region.map_or_else(|| Root::boxed(search.around(deepest), deepest.at), Root::of));
     }
 
     /// Grows a tree in every root that is not a lens, and roots where what they hold comes to their sides.
@@ -298,7 +331,7 @@ impl AdaptiveTree {
 
     /// The boxes of the last pair.
     pub(crate) fn boxes(&self) -> impl Iterator<Item = SubBox> + '_ {
-        let trees = self.roots.iter().zip(&self.trees).filter(|(root, _)| root.lens.is_none());
+        let trees = self.roots.iter().zip(&self.trees).filter(|(root, _)| root.region.is_none());
         trees.flat_map(move |(root, tree)| {
             let kept = tree.nodes.iter().filter(|n| n.leaf != grow::NONE);
             kept.map(move |node| SubBox::new(node, tree, &root.bounds, self.origin))

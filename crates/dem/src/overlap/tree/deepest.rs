@@ -34,12 +34,14 @@ impl Search<'_> {
         // Far enough for any place in the box to be told from any other.
         self.bodies.map(|b| b.distance(y, 4.0 * self.size()))
     }
-    fn slopes(&self, x: Vector, d: [f64; 2], step: f64) -> [Vector; 2] {
+    /// Of one body's distance, which is `d` at `x`.
+    pub(crate) fn slope(&self, body: usize, x: Vector, d: f64, step: f64) -> Vector {
         let places = [Vector::x(), Vector::y(), Vector::z()].map(|e| x + step * e);
-        [0, 1].map(|i| {
-            let there = self.bodies[i].distances(&places, 4.0 * self.size());
-            Vector::from(there.map(|f| (f - d[i]) / step))
-        })
+        let there = self.bodies[body].distances(&places, 4.0 * self.size());
+        Vector::from(there.map(|f| (f - d) / step))
+    }
+    fn slopes(&self, x: Vector, d: [f64; 2], step: f64) -> [Vector; 2] {
+        [0, 1].map(|i| self.slope(i, x, d[i], step))
     }
 
     /// Down from `x` in steps of about `t` at first: the least of the larger of two functions by proximal steps,

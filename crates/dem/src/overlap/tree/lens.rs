@@ -17,6 +17,8 @@ use rim::{Rim, Sight};
 
 /// Half-planes at first.
 const FIRST: usize = 8;
+/// Where a surface is farther out than this, as a share of where it was guessed, few lines may agree by chance.
+const ODD: f64 = 1.3;
 /// And at most.
 const FINEST: usize = 64;
 
@@ -250,6 +252,9 @@ impl Lenses {
         let mut sums = Totals { volume: coarse.volume + fine.volume, first: coarse.first + fine.first };
         let mut rims = [self.around(frame, FIRST / 2), self.around(frame, FIRST)];
         let mut last = None;
+        // Of the half-planes that came last, and of those before.
+        let mut newest = [f64::NAN, 2.0 * fine.volume / FIRST as f64];
+        let odd = (0..FIRST).any(|k| self.meridians[k * step].beyond() > ODD);
         loop {
             let per = std::f64::consts::TAU / n as f64 * sight.wide[0] * sight.wide[1];
             let volume = per * sums.volume;
@@ -257,16 +262,21 @@ impl Lenses {
                 (2.0 * coarse.volume / sums.volume - 1.0).abs() / (0.5 * tolerance),
                 (rims[0].0 - rims[1].0).norm() / rims[1].0.norm() / (5.0 * tolerance),
             ];
-            let change = change[0].max(change[1]);
+            let mut change = change[0].max(change[1]);
+            if odd {
+                // Each time with more lines.
+                change = change.max((newest[0] / newest[1] - 1.0).abs() / (0.5 * tolerance));
+            }
+            let odd_at_first = odd && n == FIRST;
             // Errors fall by this much at every doubling; slowly where so many are needed.
             let least = if n <= 2 * FIRST { 0.3 } else { 0.6 };
             let rate = last.map_or(0.5, |last: f64| (change / last).clamp(least, 0.9));
-            if !(change.is_finite() && volume > 0.0) {
+            if !((change.is_finite() || odd_at_first) && volume > 0.0) {
                 return None;
             }
             // Sums over few half-planes may agree by chance; smooth ones are far below the tolerance by then.
             let margin = if n == FIRST { 10.0 } else { 4.0 };
-            if margin * change * rate / (1.0 - rate) <= 1.0 {
+            if !odd_at_first && margin * change * rate / (1.0 - rate) <= 1.0 {
                 let first = (per / volume) * sums.first;
                 let centroid = Vector::new(first.x * sight.wide[0], first.y * sight.wide[1], first.z);
                 return Some(self.lens(frame, poles, n, volume, centroid, rims[1]));
@@ -274,7 +284,7 @@ impl Lenses {
             if n == FINEST {
                 return None;
             }
-            last = Some(change);
+            last = Some(change).filter(|c| c.is_finite());
             let stage = (n / FIRST).ilog2() as usize;
             let lines = (few + 1 + stage).min(MOST);
             coarse = sums;
@@ -287,6 +297,7 @@ impl Lenses {
                 sums.add(&new.wedge(poles), azimuth);
                 self.meridians[at] = new;
             }
+            newest = [newest[1], (sums.volume - coarse.volume) / n as f64];
             n *= 2;
             rims = [rims[1], self.around(frame, n)];
         }

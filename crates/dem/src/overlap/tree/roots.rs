@@ -1,9 +1,11 @@
 //! Where regions are.
 use super::around::Oriented;
+use super::convex::{Convex, Plane};
 use super::deepest::Search;
 use super::grow::Tree;
 use super::lens::Lens;
-use interfaces::Vector;
+use crate::Overlap;
+use interfaces::{Point, Vector};
 use nalgebra::Matrix3;
 
 /// A box that one or more regions are in.
@@ -12,40 +14,79 @@ pub(crate) struct Root {
     pub(crate) bounds: Oriented,
     /// A place in a region.
     at: Vector,
-    /// What is in it, if it is a lens.
-    pub(crate) lens: Option<Lens>,
+    /// What is in it, if no boxes are needed to tell.
+    pub(crate) region: Option<Region>,
     /// Is it measured?
     pub(crate) done: bool,
 }
 
+/// A region that is known as a whole.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Region {
+    Lens(Lens),
+    Convex(Convex),
+}
+
+impl Region {
+    fn turn(&mut self, axes: &Matrix3<f64>) {
+        match self {
+            Self::Lens(lens) => lens.turn(axes),
+            Self::Convex(convex) => convex.turn(axes),
+        }
+    }
+    pub(crate) fn overlap(&self, origin: Point, between: Vector) -> Overlap {
+        match self {
+            Self::Lens(lens) => lens.overlap(origin, between),
+            Self::Convex(convex) => convex.overlap(origin, between),
+        }
+    }
+    /// How far a place is from it, about; negative within.
+    fn outside(&self, x: Vector, planes: &[Plane]) -> f64 {
+        match self {
+            Self::Lens(lens) => lens.outside(x),
+            Self::Convex(convex) => convex.outside(x, planes),
+        }
+    }
+}
+
 impl Root {
     pub(crate) fn boxed(bounds: Oriented, at: Vector) -> Self {
-        Self { bounds, at, lens: None, done: false }
+        Self { bounds, at, region: None, done: false }
     }
-    pub(crate) fn of(lens: Lens) -> Self {
-        Self { bounds: lens.root, at: lens.centre, lens: Some(lens), done: true }
+    pub(crate) fn of(region: Region) -> Self {
+        let (bounds, at) = match &region {
+            Region::Lens(lens) => (lens.root, lens.centre),
+            Region::Convex(convex) => (convex.root, convex.centre),
+        };
+        Self { bounds, at, region: Some(region), done: true }
     }
     /// As a frame sees it in which this one's axes are the columns of `axes`.
     pub(crate) fn turn(&mut self, axes: &Matrix3<f64>) {
         self.bounds.centre = axes * self.bounds.centre;
         self.bounds.axes = axes * self.bounds.axes;
-        if let Some(lens) = &mut self.lens {
-            lens.turn(axes);
+        if let Some(region) = &mut self.region {
+            region.turn(axes);
         }
     }
     /// Is `x` in a region that is measured here?
-    pub(crate) fn holds(&self, x: Vector) -> bool {
-        match &self.lens {
-            Some(lens) => lens.outside(x) <= 0.0,
+    pub(crate) fn holds(&self, x: Vector, planes: &[Plane]) -> bool {
+        match &self.region {
+            Some(region) => region.outside(x, planes) <= 0.0,
             None => self.bounds.holds(x),
         }
     }
     /// Is all that is within `reach` of `x`? Or, with the `last` boxes that are looked at, at least what hangs together with it.
-    pub(crate) fn knows(&self, x: Vector, reach: f64, last: bool) -> bool {
-        match &self.lens {
-            Some(lens) => lens.outside(x) <= if last { reach } else { -reach },
+    pub(crate) fn knows(&self, x: Vector, reach: f64, last: bool, planes: &[Plane]) -> bool {
+        match &self.region {
+            Some(region) => region.outside(x, planes) <= if last { reach } else { -reach },
             None => self.bounds.holds_ball(x, reach),
         }
+    }
+    /// May what is said of both count something twice? What is convex holds nothing else.
+    fn must_be_one_with(&self, o: &Self) -> bool {
+        let apart = [self, o].iter().all(|r| r.region.is_some())
+            && [self, o].iter().any(|r| matches!(r.region, Some(Region::Convex(_))));
+        !apart && self.bounds.may_meet(&o.bounds)
     }
     /// Is the straight way to `x` within both bodies?
     pub(crate) fn sees(&self, search: &Search<'_>, x: Vector) -> bool {
@@ -61,7 +102,7 @@ pub(crate) fn merge(roots: &mut Vec<Root>, trees: &mut [Tree]) {
     'again: loop {
         for j in 1..roots.len() {
             for i in 0..j {
-                if roots[i].bounds.may_meet(&roots[j].bounds) {
+                if roots[i].must_be_one_with(&roots[j]) {
                     trees.swap(j, roots.len() - 1);
                     let other = roots.swap_remove(j).bounds;
                     let mut bounds = roots[i].bounds;

@@ -33,6 +33,7 @@ impl Shape for Given {
     }
 }
 
+mod convex;
 #[cfg(feature = "mesh")]
 mod facets;
 mod regions;
@@ -277,7 +278,9 @@ fn no_memory_is_asked_for_again() {
         let mut solver = solver(refinement);
         let mut step = |i: usize| {
             let b = turned(at(1.5, 0.01 * (i % 5) as f64, 0.2), [0.1 * (i % 5) as f64, 0.2, 0.3]);
-            solver.solve(&TORUS, &at(0.0, 0.0, 0.0), &TORUS, &b).unwrap().len()
+            let near = turned(at(0.6, 0.3, 0.2), [0.1 * (i % 5) as f64, 0.2, 0.3]);
+            let cubes = solver.solve(&CUBE, &at(0.0, 0.0, 0.0), &CUBE, &near).unwrap().len();
+            cubes * solver.solve(&TORUS, &at(0.0, 0.0, 0.0), &TORUS, &b).unwrap().len()
         };
         (0..5).for_each(|i| assert!(step(i) > 0));
         let used = allocation_counter::measure(|| (0..5).for_each(|i| assert!(step(i) > 0)));

@@ -127,8 +127,18 @@ fn small_regions_are_found() {
 /// A tolerance that takes too many boxes is an error that says so, not a number.
 #[test]
 fn boxes_run_out_loudly() {
-    let b = turned(at(0.7, 0.4, 0.3), [0.3, 0.2, 0.5]);
-    let error = tolerance(1e-8).solve(&CUBE, &at(0.0, 0.0, 0.0), &CUBE, &b).unwrap_err();
+    // A cube with a groove: neither convex nor smooth.
+    const GROOVED: Given = Given {
+        distance: |x| {
+            let q = x.abs() - Vector::repeat(0.5);
+            let cube = q.map(|q| q.max(0.0)).norm() + q.max().min(0.0);
+            let groove = (x.x.abs() - 0.1).max(0.2 - x.z);
+            cube.max(-groove)
+        },
+        half: [0.5; 3],
+    };
+    let b = turned(at(0.2, 0.1, 0.8), [0.3, 0.2, 0.5]);
+    let error = tolerance(1e-8).solve(&GROOVED, &at(0.0, 0.0, 0.0), &CUBE, &b).unwrap_err();
     let DemError::Boxes { boxes, error, .. } = error else { panic!("{error:?}") };
     assert!(boxes > 50_000 && error > 1e-8 && error < 1e-3, "{boxes} {error}");
 }

@@ -1,7 +1,7 @@
 //! A point of two ellipsoids, or the proof that there is none.
 use super::Posed;
 use interfaces::Vector;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, SymmetricEigen, U3};
 
 /// Newton steps at most.
 const STEPS: usize = 60;
@@ -84,8 +84,8 @@ pub(super) enum Nearer {
     /// It has one sign: this body is the nearer one everywhere, so within the other.
     Always(usize),
     /// It has both; axes from which the curve D = 0 may be seen best: where D is least and largest, and the eigenvectors
-    /// of C.
-    Either([Vector; 5]),
+    /// of C, which are given as well.
+    Either { axes: [Vector; 5], eigen: SymmetricEigen<f64, U3> },
 }
 
 /// The least value of D is the largest one of ν − β²Σnᵢ²/(cᵢ − ν) for ν below all eigenvalues cᵢ of C (strong duality of the
@@ -93,7 +93,7 @@ pub(super) enum Nearer {
 pub(super) fn nearer(lean: f64, quadric: &Matrix3<f64>) -> Nearer {
     let eigen = quadric.symmetric_eigen();
     let parts = eigen.eigenvectors.row(2).transpose() * lean;
-    let (values, vectors) = (eigen.eigenvalues, eigen.eigenvectors);
+    let (values, vectors) = (eigen.eigenvalues, &eigen.eigenvectors);
     let least = |c: Vector| {
         // Parts that are zero do not count, however near the pole.
         let over =
@@ -112,7 +112,7 @@ pub(super) fn nearer(lean: f64, quadric: &Matrix3<f64>) -> Nearer {
         Nearer::Always(1)
     } else {
         let [x, y, z] = [0, 1, 2].map(|i| vectors.column(i).into_owned());
-        Nearer::Either([at_lowest, at_highest, x, y, z])
+        Nearer::Either { axes: [at_lowest, at_highest, x, y, z], eigen }
     }
 }
 

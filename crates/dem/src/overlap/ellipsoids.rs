@@ -68,19 +68,20 @@ pub(super) fn overlap(a: Posed, b: Posed, tolerance: f64) -> Found {
         Meeting::At(common) => common,
     };
     // Where D rises on all meridians there is one curve, about the pole.
-    if common.quadric.norm() < std::env::var("X").map_or(1.0, |x| x.parse().unwrap()) * common.lean
+    if common.quadric.norm() < common.lean
         && let Some(found) = Around::new(a, b, &common, Vector::z()).integrate(tolerance)
     {
         return Found::Overlap(found);
     }
     let upwards = common.axes.column(2).normalize();
-    match nearer(common.lean, &common.quadric) {
+    let eigen = common.quadric.symmetric_eigen();
+    if let Some(found) = Loops::new(a, b, &common, &eigen).integrate(tolerance) {
+        return Found::Overlap(found);
+    }
+    match nearer(common.lean, &eigen) {
         Nearer::Always(0) => Found::Overlap(Some(a.whole(-upwards))),
         Nearer::Always(_) => Found::Overlap(Some(b.whole(-upwards))),
-        Nearer::Either { axes, eigen } => {
-            if let Some(found) = Loops::new(a, b, &common, eigen).integrate(tolerance) {
-                return Found::Overlap(found);
-            }
+        Nearer::Either(axes) => {
             for axis in axes {
                 if let Some(found) = Around::new(a, b, &common, axis).integrate(tolerance) {
                     return Found::Overlap(found);

@@ -84,14 +84,13 @@ pub(super) enum Nearer {
     /// It has one sign: this body is the nearer one everywhere, so within the other.
     Always(usize),
     /// It has both; axes from which the curve D = 0 may be seen best: where D is least and largest, and the eigenvectors
-    /// of C, which are given as well.
-    Either { axes: [Vector; 5], eigen: SymmetricEigen<f64, U3> },
+    /// of C.
+    Either([Vector; 5]),
 }
 
 /// The least value of D is the largest one of ν − β²Σnᵢ²/(cᵢ − ν) for ν below all eigenvalues cᵢ of C (strong duality of the
 /// trust-region problem), nᵢ the parts of the third axis along the eigenvectors; there wᵢ = −βnᵢ/(cᵢ − ν).
-pub(super) fn nearer(lean: f64, quadric: &Matrix3<f64>) -> Nearer {
-    let eigen = quadric.symmetric_eigen();
+pub(super) fn nearer(lean: f64, eigen: &SymmetricEigen<f64, U3>) -> Nearer {
     let parts = eigen.eigenvectors.row(2).transpose() * lean;
     let (values, vectors) = (eigen.eigenvalues, &eigen.eigenvectors);
     let least = |c: Vector| {
@@ -112,7 +111,7 @@ pub(super) fn nearer(lean: f64, quadric: &Matrix3<f64>) -> Nearer {
         Nearer::Always(1)
     } else {
         let [x, y, z] = [0, 1, 2].map(|i| vectors.column(i).into_owned());
-        Nearer::Either { axes: [at_lowest, at_highest, x, y, z], eigen }
+        Nearer::Either([at_lowest, at_highest, x, y, z])
     }
 }
 

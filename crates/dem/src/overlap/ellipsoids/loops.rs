@@ -11,6 +11,8 @@ use std::f64::consts::TAU;
 /// Places on each piece to begin with, and at most.
 const FIRST: usize = 16;
 const MOST: usize = 2048;
+/// Pieces that are smooth enough, as `Pieces::smooth` says.
+const SMOOTH: f64 = 0.2;
 /// The first place, in steps of the first ring: in finer ones none is nearer to an end of the lines than a third of their steps.
 const OFFSET: f64 = 1.0 / 3.0;
 
@@ -24,7 +26,7 @@ pub(super) struct Loops {
 }
 
 impl Loops {
-    pub(super) fn new(a: Posed, b: Posed, common: &CommonPoint, eigen: SymmetricEigen<f64, U3>) -> Self {
+    pub(super) fn new(a: Posed, b: Posed, common: &CommonPoint, eigen: &SymmetricEigen<f64, U3>) -> Self {
         let mut turn = eigen.eigenvectors;
         if turn.determinant() < 0.0 {
             turn.neg_mut();
@@ -34,12 +36,16 @@ impl Loops {
     }
     /// The integrals by the trapezoidal rule, its places doubled until the volume has settled; `None` where they do not.
     pub(super) fn integrate(mut self, tolerance: f64) -> Option<Option<Overlap>> {
-        let cones = [0, 1].map(|first| {
+        let cone = |first| {
             let cone = Cone::new(self.values, self.lean, first)?;
             Some((cone, cone.pieces()?))
-        });
-        let smoothest = cones.into_iter().flatten().max_by(|p, q| p.1.smooth.total_cmp(&q.1.smooth));
-        let (cone, pieces) = smoothest?;
+        };
+        // The smoother one, unless the first will do.
+        let (cone, pieces) = match cone(0) {
+            Some(first) if first.1.smooth > SMOOTH => first,
+            Some(first) => cone(1).filter(|second| second.1.smooth > first.1.smooth).unwrap_or(first),
+            None => cone(1)?,
+        };
         let mut doubling = Doubling::new(tolerance);
         let mut around = FIRST;
         loop {

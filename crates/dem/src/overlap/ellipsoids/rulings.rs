@@ -1,17 +1,17 @@
 //! A cone on which the curve lies, and its lines.
 use interfaces::Vector;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// Lines at which it is looked whether they meet the sphere.
 const LOOKS: usize = 32;
 /// Halvings at most.
 const HALVINGS: usize = 100;
-/// A step of Newton's method that is nearly the last.
+/// A step of Newton's method that is nearly the last one.
 const CLOSE: f64 = 1e-9;
 /// Farther away, in radii of the sphere, a vertex leads to lines whose places are rounded too much.
 const FARTHEST: f64 = 1e4;
 /// Eigenvalues less than this share of all apart make a cone too flat.
-const FLATTEST: f64 = 1e-7;
+const FLATTEST: f64 = 1e-6;
 
 /// A cone with its vertex v and the lines v + s d(t), d = (1, r cos t, r' sin t) in the order of axes that is its own.
 ///
@@ -55,19 +55,21 @@ impl Cone {
     pub(super) fn new(c: Vector, b: Vector, first: usize) -> Option<Self> {
         let mut order = [0, 1, 2];
         order.sort_by(|i, j| c[*i].total_cmp(&c[*j]));
-        let [mut low, mut high] = [c[order[first]], c[order[first + 1]]];
-        let (size, least) = (c.amax() + b.amax(), FLATTEST * (c.amax() + b.amax()));
-        for _ in 0..HALVINGS {
-            let mu = 0.5 * (low + high);
-            if mu <= low || mu >= high {
-                break;
-            }
-            let falls = mu - (0..3).map(|i| b[i] * b[i] / (c[i] - mu)).sum::<f64>();
-            if falls > 0.0 { low = mu } else { high = mu }
-        }
-        let mu = 0.5 * (low + high);
+        let ends = [c[order[first]], c[order[first + 1]]];
+        let size = c.amax() + b.amax();
+        let squares = b.component_mul(&b);
+        // Times the product of all cᵢ − μ.
+        let equation = |mu: f64| {
+            let [p, q, r] = [c.x - mu, c.y - mu, c.z - mu];
+            let [x, y, z] = [squares.x, squares.y, squares.z];
+            [
+                mu * p * q * r - x * q * r - y * p * r - z * p * q,
+                p * q * r - mu * (q * r + p * r + p * q) + x * (q + r) + y * (p + r) + z * (p + q),
+            ]
+        };
+        let mu = zero(ends, first == 1, CLOSE * size, equation);
         let gaps = c.map(|c| c - mu);
-        if !(gaps.map(f64::abs).min() > least && size.is_finite()) {
+        if !(gaps.map(f64::abs).min() > FLATTEST * size && size.is_finite()) {
             return None;
         }
         // The eigenvalue alone on its side of μ is the axis.
@@ -82,76 +84,60 @@ impl Cone {
         let moments = directions.map(|d| vertex.cross(&d));
         (vertex.norm() < FARTHEST).then_some(Self { vertex, directions, moments })
     }
-    /// The square of half a line's length within the sphere, times that of |d|², as |d|² − |m|², which cancels least; its
-    /// change with t and that of this.
-    fn chord(&self, t: f64) -> [f64; 3] {
+    /// The square of half a line's length within the sphere, times that of |d|², and its change with t.
+    fn chord(&self, t: f64) -> [f64; 2] {
         let (sin, cos) = t.sin_cos();
         let [[d, dd], [m, dm]] = [&self.directions, &self.moments].map(|x| around(x, sin, cos));
-        let bend = |x: &Vector, dx: &Vector, still: &Vector| dx.norm_squared() + x.dot(&(still - x));
-        [
-            d.norm_squared() - m.norm_squared(),
-            2.0 * (d.dot(&dd) - m.dot(&dm)),
-            2.0 * (bend(&d, &dd, &self.directions[0]) - bend(&m, &dm, &self.moments[0])),
-        ]
+        [d.norm_squared() - m.norm_squared(), 2.0 * (d.dot(&dd) - m.dot(&dm))]
     }
     /// The pieces of the curve; `None` where there are none or too many.
     pub(super) fn pieces(&self) -> Option<Pieces> {
-        let mut looks = [(0.0, [0.0; 3]); 2 * LOOKS];
-        let mut n = 0;
-        let mut last = (0.0, self.chord(0.0));
-        for k in 1..=LOOKS {
+        let chords = Chords::new(self);
+        let (mut looks, mut n) = ([[0.0; 3]; 2 * LOOKS], 0);
+        let (step_sin, step_cos) = (TAU / LOOKS as f64).sin_cos();
+        let (mut sin, mut cos, mut last) = (0.0, 1.0, [0.0; 3]);
+        for k in 0..=LOOKS {
             let t = TAU * k as f64 / LOOKS as f64;
-            let now = (t, self.chord(t));
-            looks[n] = last;
-            n += 1;
+            let [f, df] = chords.at(sin, cos);
             // An extreme place in between may have the other sign.
-            let ([f, df, _], [g, dg, _]) = (last.1, now.1);
-            if (f > 0.0) == (g > 0.0) && (df > 0.0) != (dg > 0.0) && (df < 0.0) == (f > 0.0) {
-                let at = zero([last.0, t], |t| {
-                    let [_, slope, bend] = self.chord(t);
-                    [slope, bend]
-                });
-                looks[n] = (at, self.chord(at));
+            let [_, g, dg] = last;
+            if k > 0 && (f > 0.0) == (g > 0.0) && (df > 0.0) != (dg > 0.0) && (df > 0.0) == (f > 0.0) {
+                let at = zero([last[0], t], dg > 0.0, CLOSE, |t| chords.slope(t));
+                let [f, df] = chords.at(at.sin(), at.cos());
+                looks[n] = [at, f, df];
                 n += 1;
             }
-            last = now;
+            last = [t, f, df];
+            looks[n] = last;
+            n += 1;
+            (sin, cos) = (sin * step_cos + cos * step_sin, cos * step_cos - sin * step_sin);
         }
         let looks = &looks[..n];
-        let most = looks.iter().map(|l| l.1[0]).fold(0.0, f64::max);
-        // Where the sign changes, from the first change upwards.
-        let (mut ends, mut number, mut first) = ([0.0; 4], 0, 0);
-        for (i, look) in looks.iter().enumerate() {
-            let next = if i + 1 == n { (TAU, looks[0].1) } else { looks[i + 1] };
-            if (look.1[0] > 0.0) != (next.1[0] > 0.0) {
-                if number == ends.len() {
-                    return None;
-                }
-                if number == 0 && look.1[0] > 0.0 {
-                    first = 1;
-                }
-                ends[number] = zero([look.0, next.0], |t| {
-                    let [chord, slope, _] = self.chord(t);
-                    [chord, slope]
-                });
+        let (mut ends, mut number) = ([0.0; 4], 0);
+        for pair in looks.windows(2) {
+            let [[t, f, _], [u, g, _]] = [pair[0], pair[1]];
+            if (f > 0.0) != (g > 0.0) {
+                *ends.get_mut(number)? = zero([t, u], f > 0.0, CLOSE, |t| self.chord(t));
                 number += 1;
             }
         }
         if number == 0 {
-            let least = looks.iter().map(|l| l.1[0]).fold(f64::INFINITY, f64::min);
+            let range = looks.iter().map(|l| l[1]);
+            let (least, most) =
+                range.fold((f64::INFINITY, 0.0), |(low, high), x| (f64::min(low, x), f64::max(high, x)));
             let found = [Piece::Round(1.0), Piece::Round(-1.0)];
             return (least > 0.0).then_some(Pieces { found, number: 2, smooth: least / most });
         }
-        let mut found = [Piece::Round(0.0); 2];
-        let mut smooth = f64::INFINITY;
+        let first = usize::from(looks[0][1] > 0.0);
+        let (mut found, mut smooth) = ([Piece::Round(0.0); 2], f64::INFINITY);
         for (k, piece) in found.iter_mut().take(number / 2).enumerate() {
-            let low = ends[(2 * k + first) % number];
-            let next = ends[(2 * k + first + 1) % number];
+            let [low, next] = [first, first + 1].map(|i| ends[(2 * k + i) % number]);
             let high = if next > low { next } else { next + TAU };
             let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
             *piece = Piece::Between { middle, half };
-            let shares = (0..LOOKS / 2).map(|k| {
-                let (sin, cos) = (PI * ((k as f64 + 0.5) / (LOOKS / 2) as f64 - 0.5)).sin_cos();
-                self.chord(middle + half * sin)[0] / (cos * cos)
+            let shares = SHARES.iter().map(|(sin, cos)| {
+                let (sin, along) = (middle + half * sin).sin_cos();
+                chords.at(sin, along)[0] / (cos * cos)
             });
             let (least, most) =
                 shares.fold((f64::INFINITY, 0.0), |(low, high), x| (f64::min(low, x), f64::max(high, x)));
@@ -188,11 +174,49 @@ fn around([x, y, z]: &[Vector; 3], sin: f64, cos: f64) -> [Vector; 2] {
     [x + y * cos + z * sin, z * cos - y * sin]
 }
 
-/// Where a function that is given with its slope changes its sign between `ends`: Newton's method between brackets, until two steps
-/// are so small that the second is rounding.
-fn zero([mut low, mut high]: [f64; 2], f: impl Fn(f64) -> [f64; 2]) -> f64 {
-    let positive = f(low)[0] > 0.0;
-    let (mut t, mut close) = (0.5 * (low + high), false);
+/// [`Cone::chord`] as q₀ + q₁ cos t + q₂ sin t + q₃ cos² t + q₄ sin² t + q₅ cos t sin t: fewer steps, but digits are lost where the
+/// vertex is far.
+struct Chords([f64; 6]);
+
+impl Chords {
+    fn new(cone: &Cone) -> Self {
+        let product = |i: usize, j: usize| {
+            cone.directions[i].dot(&cone.directions[j]) - cone.moments[i].dot(&cone.moments[j])
+        };
+        let twice = |i, j| 2.0 * product(i, j);
+        Self([product(0, 0), twice(0, 1), twice(0, 2), product(1, 1), product(2, 2), twice(1, 2)])
+    }
+    #[inline]
+    fn at(&self, sin: f64, cos: f64) -> [f64; 2] {
+        let [q0, q1, q2, q3, q4, q5] = self.0;
+        [
+            q0 + cos * (q1 + q3 * cos + q5 * sin) + sin * (q2 + q4 * sin),
+            q2 * cos - q1 * sin + 2.0 * (q4 - q3) * sin * cos + q5 * (cos * cos - sin * sin),
+        ]
+    }
+    /// The change of the chord and that of this.
+    fn slope(&self, t: f64) -> [f64; 2] {
+        let [_, q1, q2, q3, q4, q5] = self.0;
+        let (sin, cos) = t.sin_cos();
+        let [_, slope] = self.at(sin, cos);
+        let squares = cos * cos - sin * sin;
+        [slope, 2.0 * (q4 - q3) * squares - q1 * cos - q2 * sin - 4.0 * q5 * sin * cos]
+    }
+}
+
+/// Sines and cosines at places where pieces are looked at.
+#[rustfmt::skip]
+const SHARES: [(f64, f64); 8] = [
+    (-0.9807852804032304, 0.19509032201612828), (-0.8314696123025452, 0.5555702330196022),
+    (-0.5555702330196022, 0.8314696123025452), (-0.19509032201612828, 0.9807852804032304),
+    (0.19509032201612828, 0.9807852804032304), (0.5555702330196022, 0.8314696123025452),
+    (0.8314696123025452, 0.5555702330196022), (0.9807852804032304, 0.19509032201612828),
+];
+
+/// Where a function that is given with its slope changes its sign between `ends`, being `positive` before: Newton's method between
+/// brackets, until two steps are so small that the second is rounding.
+fn zero([mut low, mut high]: [f64; 2], positive: bool, close: f64, f: impl Fn(f64) -> [f64; 2]) -> f64 {
+    let (mut t, mut nearly) = (0.5 * (low + high), false);
     for _ in 0..HALVINGS {
         let [value, slope] = f(t);
         if (value > 0.0) == positive {
@@ -202,12 +226,12 @@ fn zero([mut low, mut high]: [f64; 2], f: impl Fn(f64) -> [f64; 2]) -> f64 {
         }
         let step = value / slope;
         let next = t - step;
-        let small = step.abs() < CLOSE;
+        let small = step.abs() < close;
         t = if small || (next > low && next < high) { next } else { 0.5 * (low + high) };
-        if small && close {
+        if small && nearly {
             break;
         }
-        close = small;
+        nearly = small;
     }
     t
 }

@@ -1,5 +1,6 @@
 //! Capsules and cylinders with one another, with spheres and with convex polyhedra: integrals over parallel slices.
 mod apart;
+mod ends;
 mod frame;
 mod heights;
 mod outline;
@@ -70,6 +71,9 @@ impl Slices {
         if apart.norm_squared() >= reach * reach {
             return None;
         }
+        if let Some(found) = ends::overlap(a, b) {
+            return Some(found);
+        }
         let axis = if a.half > 0.0 { a.axis } else { b.axis };
         let both = if a.half > 0.0 && b.half > 0.0 { a.axis.cross(&b.axis) } else { Vector::zeros() };
         // Across both axes or, where there is but one direction, across that and the way to the other centre.
@@ -135,6 +139,9 @@ impl Slices {
         }
         if distance <= -reach {
             return Some(Overlap::whole(a.volume(), a.at.position, n));
+        }
+        if let Some(found) = ends::wall(a, n, distance) {
+            return Some(found);
         }
         let frame = Frame::new(a.at.position, a.axis, a.axis.cross(&n));
         let size = 2.0 * a.bound();

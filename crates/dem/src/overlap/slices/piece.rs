@@ -13,13 +13,14 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    pub(super) fn halves(self) -> [Self; 2] {
+    /// Both halves, knowing what was in the `middle`.
+    pub(super) fn halves(self, middle: (f64, u64)) -> [Self; 2] {
         let [from, to] = self.part;
         let between = 0.5 * (from + to);
         let [low, high] = self.near;
         [
-            Self { part: [from, between], near: [low, None], ..self },
-            Self { part: [between, to], near: [None, high], ..self },
+            Self { part: [from, between], near: [low, Some(middle)], ..self },
+            Self { part: [between, to], near: [Some(middle), high], ..self },
         ]
     }
     /// The height at a place of a rule, and its change with that.

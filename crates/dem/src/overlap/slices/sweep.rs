@@ -146,7 +146,8 @@ impl<F: FnMut(f64) -> Section> Sweep<F> {
             return self.split_at_breaks(&piece, &looked.found, &marks);
         }
         if !self.fifteen(&piece, &looked, breaks == 0) {
-            let [low, high] = piece.halves();
+            let (h, middle) = looked.found[3];
+            let [low, high] = piece.halves((h, middle.mark));
             self.push(low);
             self.push(high);
         }

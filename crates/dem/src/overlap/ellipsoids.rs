@@ -58,7 +58,7 @@ pub(super) enum Found {
 /// The point p where max(f_A, f_B) is least (Perram & Wertheim 1985, J. Comput. Phys. 58, 409) minimises some
 /// G = λf_A + (1 − λ)f_B as well. So the curve, where both are zero, lies on the ellipsoid G = 0 about p, which is made the
 /// unit sphere; on it A is the nearer body where D = f_A − f_B > 0. Volume and first moment are sums over both bodies of
-/// what lies between p and the nearer one's surface, each an integral along the curve ([`Cap`]) that loses no digits in shallow
+/// what lies between p and the nearer one's surface, each an integral along the curve (`Cap`) that loses no digits in shallow
 /// overlaps; S = ½∮x × dx, and the moment is −½∮|x|²dx. Where each meridian about some axis crosses the curve equally often it is
 /// followed by azimuths ([`Around`]), else by the lines of a cone on which it lies ([`Loops`]).
 pub(super) fn overlap(a: Posed, b: Posed, tolerance: f64) -> Found {

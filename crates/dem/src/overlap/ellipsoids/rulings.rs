@@ -2,8 +2,8 @@
 use interfaces::Vector;
 use std::f64::consts::TAU;
 
-/// Lines at which it is looked whether they meet the sphere.
-const LOOKS: usize = 32;
+/// Lines at which it is looked how much of them is within the sphere.
+const LOOKS: usize = 16;
 /// Halvings at most.
 const HALVINGS: usize = 100;
 /// A step of Newton's method that is nearly the last one.
@@ -90,60 +90,70 @@ impl Cone {
         let [[d, dd], [m, dm]] = [&self.directions, &self.moments].map(|x| around(x, sin, cos));
         [d.norm_squared() - m.norm_squared(), 2.0 * (d.dot(&dd) - m.dot(&dm))]
     }
-    /// The pieces of the curve; `None` where there are none or too many.
+    /// The pieces of the curve; `None` where there are none.
     pub(super) fn pieces(&self) -> Option<Pieces> {
         let chords = Chords::new(self);
-        let (mut looks, mut n) = ([[0.0; 3]; 2 * LOOKS], 0);
         let (step_sin, step_cos) = (TAU / LOOKS as f64).sin_cos();
-        let (mut sin, mut cos, mut last) = (0.0, 1.0, [0.0; 3]);
-        for k in 0..=LOOKS {
-            let t = TAU * k as f64 / LOOKS as f64;
-            let [f, df] = chords.at(sin, cos);
-            // An extreme place in between may have the other sign.
-            let [_, g, dg] = last;
-            if k > 0 && (f > 0.0) == (g > 0.0) && (df > 0.0) != (dg > 0.0) && (df > 0.0) == (f > 0.0) {
-                let at = zero([last[0], t], dg > 0.0, CLOSE, |t| chords.slope(t));
-                let [f, df] = chords.at(at.sin(), at.cos());
-                looks[n] = [at, f, df];
-                n += 1;
+        let (mut sin, mut cos) = (0.0, 1.0);
+        let (mut least, mut most, mut largest) = (f64::INFINITY, 0.0_f64, (0.0, 0.0));
+        for k in 0..LOOKS {
+            let chord = chords.at(sin, cos);
+            (least, most) = (least.min(chord), most.max(chord));
+            if chord.abs() > largest.0 {
+                largest = (chord.abs(), TAU * k as f64 / LOOKS as f64);
             }
-            last = [t, f, df];
-            looks[n] = last;
-            n += 1;
             (sin, cos) = (sin * step_cos + cos * step_sin, cos * step_cos - sin * step_sin);
         }
-        let looks = &looks[..n];
-        let (mut ends, mut number) = ([0.0; 4], 0);
-        for pair in looks.windows(2) {
-            let [[t, f, _], [u, g, _]] = [pair[0], pair[1]];
-            if (f > 0.0) != (g > 0.0) {
-                *ends.get_mut(number)? = zero([t, u], f > 0.0, CLOSE, |t| self.chord(t));
-                number += 1;
-            }
-        }
+        // From where no end is near, half a circle to either side.
+        let from = largest.1 - 0.5 * TAU;
+        let quartic = self.turned(from).quartic();
+        let (roots, number) = roots(&quartic);
+        let positive = quartic[4] > 0.0;
         if number == 0 {
-            let range = looks.iter().map(|l| l[1]);
-            let (least, most) =
-                range.fold((f64::INFINITY, 0.0), |(low, high), x| (f64::min(low, x), f64::max(high, x)));
             let found = [Piece::Round(1.0), Piece::Round(-1.0)];
-            return (least > 0.0).then_some(Pieces { found, number: 2, smooth: least / most });
+            return (positive && least > 0.0).then_some(Pieces { found, number: 2, smooth: least / most });
         }
-        let first = usize::from(looks[0][1] > 0.0);
+        if number % 2 == 1 {
+            return None;
+        }
+        let ends = roots.map(|u| self.polished(from + 2.0 * u.atan()));
         let (mut found, mut smooth) = ([Piece::Round(0.0); 2], f64::INFINITY);
         for (k, piece) in found.iter_mut().take(number / 2).enumerate() {
+            let first = usize::from(positive);
             let [low, next] = [first, first + 1].map(|i| ends[(2 * k + i) % number]);
             let high = if next > low { next } else { next + TAU };
             let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
             *piece = Piece::Between { middle, half };
             let shares = SHARES.iter().map(|(sin, cos)| {
                 let (sin, along) = (middle + half * sin).sin_cos();
-                chords.at(sin, along)[0] / (cos * cos)
+                chords.at(sin, along) / (cos * cos)
             });
             let (least, most) =
                 shares.fold((f64::INFINITY, 0.0), |(low, high), x| (f64::min(low, x), f64::max(high, x)));
             smooth = smooth.min(least / most);
         }
         (smooth > 0.0).then_some(Pieces { found, number: number / 2, smooth })
+    }
+    /// The chord as a function of the line's place after `from`.
+    fn turned(&self, from: f64) -> Chords {
+        let (sin, cos) = from.sin_cos();
+        let turn = |[x, y, z]: &[Vector; 3]| [*x, y * cos + z * sin, z * cos - y * sin];
+        Chords::new(&Self {
+            vertex: self.vertex,
+            directions: turn(&self.directions),
+            moments: turn(&self.moments),
+        })
+    }
+    /// An end of a piece, by Newton's method with all digits.
+    fn polished(&self, mut t: f64) -> f64 {
+        for _ in 0..3 {
+            let [chord, slope] = self.chord(t);
+            let step = chord / slope;
+            if step.abs() < 1e-4 {
+                t -= step;
+            }
+        }
+        t
     }
     /// The place on the sphere at s of a period of a piece, and its change with s. Between two ends t is
     /// `middle` + `half` sin s and half a line's length a smooth function of s times cos s.
@@ -187,21 +197,47 @@ impl Chords {
         Self([product(0, 0), twice(0, 1), twice(0, 2), product(1, 1), product(2, 2), twice(1, 2)])
     }
     #[inline]
-    fn at(&self, sin: f64, cos: f64) -> [f64; 2] {
+    fn at(&self, sin: f64, cos: f64) -> f64 {
         let [q0, q1, q2, q3, q4, q5] = self.0;
-        [
-            q0 + cos * (q1 + q3 * cos + q5 * sin) + sin * (q2 + q4 * sin),
-            q2 * cos - q1 * sin + 2.0 * (q4 - q3) * sin * cos + q5 * (cos * cos - sin * sin),
-        ]
+        q0 + cos * (q1 + q3 * cos + q5 * sin) + sin * (q2 + q4 * sin)
     }
-    /// The change of the chord and that of this.
-    fn slope(&self, t: f64) -> [f64; 2] {
-        let [_, q1, q2, q3, q4, q5] = self.0;
-        let (sin, cos) = t.sin_cos();
-        let [_, slope] = self.at(sin, cos);
-        let squares = cos * cos - sin * sin;
-        [slope, 2.0 * (q4 - q3) * squares - q1 * cos - q2 * sin - 4.0 * q5 * sin * cos]
+    /// Times (1 + u²)² with u = tan ½t, from the constant to u⁴.
+    fn quartic(&self) -> [f64; 5] {
+        let [q0, q1, q2, q3, q4, q5] = self.0;
+        [q0 + q1 + q3, 2.0 * (q2 + q5), 2.0 * (q0 - q3) + 4.0 * q4, 2.0 * (q2 - q5), q0 - q1 + q3]
     }
+}
+
+/// All real roots of a quartic, upwards, and their number: between places where it is steepest, least and largest, which are roots of
+/// its derivatives.
+fn roots(quartic: &[f64; 5]) -> ([f64; 4], usize) {
+    let bound = 1.0 + quartic.iter().fold(0.0, |most, q| f64::max(most, (q / quartic[4]).abs()));
+    let (mut roots, mut n) = ([0.0; 4], 0);
+    for degree in 1..=4 {
+        // The derivative of this degree, and its own.
+        let mut p = *quartic;
+        for order in (degree..4).rev() {
+            for k in 0..=order {
+                p[k] = (k + 1) as f64 * p[k + 1];
+            }
+        }
+        let value = |u: f64| {
+            let both = (0..=degree).rev().fold([0.0, 0.0], |[f, df], k| [f * u + p[k], df * u + f]);
+            [both[0], both[1]]
+        };
+        let (mut now, mut found, mut low) = ([0.0; 4], 0, -bound);
+        for k in 0..=n {
+            let high = if k < n { roots[k] } else { bound };
+            let [positive, after] = [low, high].map(|u| value(u)[0] > 0.0);
+            if positive != after {
+                now[found] = zero([low, high], positive, CLOSE, value);
+                found += 1;
+            }
+            low = high;
+        }
+        (roots, n) = (now, found);
+    }
+    (roots, n)
 }
 
 /// Sines and cosines at places where pieces are looked at.

@@ -9,10 +9,12 @@ use nalgebra::{SymmetricEigen, U3};
 use std::f64::consts::TAU;
 
 /// Places on each piece to begin with, and at most.
-const FIRST: usize = 16;
+const FIRST: usize = 8;
 const MOST: usize = 2048;
 /// Pieces that are smooth enough, as `Pieces::smooth` says.
 const SMOOTH: f64 = 0.2;
+/// Below this they nearly touch one another or themselves.
+const PINCHED: f64 = 0.05;
 /// The first place, in steps of the first ring: in finer ones none is nearer to an end of the lines than a third of their steps.
 const OFFSET: f64 = 1.0 / 3.0;
 
@@ -46,6 +48,8 @@ impl Loops {
             Some(first) => cone(1).filter(|second| second.1.smooth > first.1.smooth).unwrap_or(first),
             None => cone(1)?,
         };
+        // Pieces that nearly touch one another need more, which few places may not show.
+        let enough = if pieces.smooth > PINCHED { 4 * FIRST } else { 8 * FIRST };
         let mut doubling = Doubling::new(tolerance);
         let mut around = FIRST;
         loop {
@@ -71,7 +75,7 @@ impl Loops {
                 first[..kept].iter().for_each(|[w, dw]| self.sums.add(*w, *dw));
             }
             let weight = TAU / around as f64;
-            if self.sums.settled(&mut doubling, weight) {
+            if self.sums.settled(&mut doubling, weight) && around >= enough {
                 return Some(self.sums.overlap(weight));
             }
             if around == MOST {

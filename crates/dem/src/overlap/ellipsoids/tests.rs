@@ -187,7 +187,7 @@ proptest! {
     }
 
     /// Swapped, bodies have other cones and caps; columns are another way, whose rays keep 1e-7 about. Bodies nearly alike and
-    /// aligned, where all axes are nearly equivalent, keep 1e-7 (else 1e-9 but in one pair of ten thousand).
+    /// aligned, where all axes are nearly equivalent, go by rays too (else 1e-9 is kept but in one pair of ten thousand).
     #[test]
     fn deep_ones_swapped_and_by_columns((a, at_a, b, at_b) in deep()) {
         let o = solve(1e-10, &a, &at_a, &b, &at_b).unwrap();
@@ -195,25 +195,31 @@ proptest! {
         let size = o.volume.cbrt();
         let area = o.area() + size * size;
         prop_assert!((o.volume / swapped.volume - 1.0).abs() < 2e-7, "{} {}", o.volume, swapped.volume);
-        prop_assert!((o.gradient - swapped.gradient).norm() < 1e-5 * area, "{:?} {:?}", o, swapped);
-        prop_assert!((o.moment - swapped.moment).norm() < 1e-5 * area * area.sqrt(), "{:?} {:?}", o, swapped);
+        prop_assert!((o.gradient - swapped.gradient).norm() < 1e-4 * area, "{:?} {:?}", o, swapped);
+        prop_assert!((o.moment - swapped.moment).norm() < 1e-4 * area * area.sqrt(), "{:?} {:?}", o, swapped);
         let mut columns = OverlapSolver::new().with_route(Some(Route::Columns)).with_tolerance(1e-10);
         let columns = columns.solve(&a, &at_a, &b, &at_b).unwrap()[0];
         prop_assert!((o.volume / columns.volume - 1.0).abs() < 1e-6, "{} {}", o.volume, columns.volume);
     }
 }
 
-/// The second of two small loops, seen from a flat cone, is next to the first one.
+/// Swapped, in so many pairs that some have two small loops next to one another as seen from a flat cone (one in 20 000).
 #[test]
-fn two_small_loops() {
-    // Thin plates, nearly in one plane: corners stick out at two opposite ends.
-    let (a, b) = (ellipsoid([2.0, 0.4, 0.41]), ellipsoid([1.95, 0.45, 0.47]));
-    let here = Pose::at([0.0; 3]);
-    for k in 0..200 {
-        let turn = Rotation::from_scaled_axis(Vector::new(0.3, 0.01 * f64::from(k), 0.02));
-        let there = Pose { position: Point::new(0.001 * f64::from(k), 0.002, 0.01), orientation: turn };
-        let o = solve(1e-9, &a, &here, &b, &there).unwrap();
-        let swapped = solve(1e-9, &b, &there, &a, &here).unwrap();
-        assert!((o.volume / swapped.volume - 1.0).abs() < 1e-8, "{k}: {o:?} {swapped:?}");
+fn many_deep_ones_swapped() {
+    let mut state = 7_u64;
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for k in 0..17_000 {
+        let [a, b] = [0; 2].map(|_| ellipsoid([0; 3].map(|_| (2.3 * next() - 1.0).exp())));
+        let [at_a, at_b] = [0.0, 1.0].map(|far| {
+            let turn = [0; 3].map(|_| 4.0 * next() - 2.0);
+            let position = Point::from([0; 3].map(|_| far * (next() - 0.5)));
+            Pose { position, orientation: Rotation::from_scaled_axis(turn.into()) }
+        });
+        let one = solve(1e-5, &a, &at_a, &b, &at_b).map_or(0.0, |o| o.volume);
+        let two = solve(1e-5, &b, &at_b, &a, &at_a).map_or(0.0, |o| o.volume);
+        assert!((one - two).abs() <= 1e-5 * one, "{k}: {one} {two}");
     }
 }

@@ -15,6 +15,19 @@ pub(super) struct Integrals {
     pub(super) moment: Vector,
 }
 
+impl Integrals {
+    /// Of the region's image in the plane across the third axis.
+    pub(super) fn mirrored(self) -> Self {
+        let image = |v: Vector| Vector::new(v.x, v.y, -v.z);
+        Self {
+            volume: self.volume,
+            first: image(self.first),
+            area: image(self.area),
+            moment: -image(self.moment),
+        }
+    }
+}
+
 impl Add for Integrals {
     type Output = Self;
     fn add(self, o: Self) -> Self {

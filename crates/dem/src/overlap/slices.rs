@@ -1,8 +1,11 @@
 //! Capsules and cylinders with one another, with spheres and with convex polyhedra: integrals over parallel slices.
 mod apart;
+mod breaks;
+mod ends;
 mod frame;
 mod heights;
 mod outline;
+mod piece;
 mod polyhedron;
 mod region;
 mod rules;
@@ -70,13 +73,17 @@ impl Slices {
         if apart.norm_squared() >= reach * reach {
             return None;
         }
+        if let Some(found) = ends::overlap(a, b) {
+            return Some(found);
+        }
         let axis = if a.half > 0.0 { a.axis } else { b.axis };
         let both = if a.half > 0.0 && b.half > 0.0 { a.axis.cross(&b.axis) } else { Vector::zeros() };
         // Across both axes or, where there is but one direction, across that and the way to the other centre.
-        let normal = if both.norm() > PARALLEL { both } else { axis.cross(&apart) };
+        let symmetric = both.norm() <= PARALLEL;
+        let normal = if symmetric { axis.cross(&apart) } else { both };
         let origin = if a.bound() < b.bound() { a.at.position } else { b.at.position };
         let frame = Frame::new(origin, axis, normal);
-        let scene = Scene { slack: SLACK * (reach + apart.norm()), tolerance };
+        let scene = Scene { slack: SLACK * (reach + apart.norm()), tolerance, symmetric };
         let found = self.integrate(&scene, a.sliced(&frame), Other::Tube(b.sliced(&frame)))?;
         let normal = (-apart).try_normalize(0.0).unwrap_or(-axis);
         match found.of {
@@ -112,7 +119,7 @@ impl Slices {
         let origin = if a.bound() < b.bounding_radius() { a.at.position } else { at_b.position };
         // In slices across it a face is always the same line: the one so found of those that are beside the tube.
         let frame = Frame::new(origin, a.axis, a.axis.cross(&beside));
-        let scene = Scene { slack: SLACK * (reach + apart.norm()), tolerance };
+        let scene = Scene { slack: SLACK * (reach + apart.norm()), tolerance, symmetric: false };
         let mut sliced = std::mem::take(&mut self.polyhedron);
         sliced.place(b, at_b, &frame);
         let found = self.integrate(&scene, a.sliced(&frame), Other::Polyhedron(&mut sliced));
@@ -136,12 +143,15 @@ impl Slices {
         if distance <= -reach {
             return Some(Overlap::whole(a.volume(), a.at.position, n));
         }
+        if let Some(found) = ends::wall(a, n, distance) {
+            return Some(found);
+        }
         let frame = Frame::new(a.at.position, a.axis, a.axis.cross(&n));
         let size = 2.0 * a.bound();
         let out = frame.direction(n).xy();
         self.slices[1].body = 1;
         self.slices[1].rectangle(out * (-distance - size), out, [size, size], 0.0);
-        let scene = Scene { slack: 2.0 * SLACK * size, tolerance };
+        let scene = Scene { slack: 2.0 * SLACK * size, tolerance, symmetric: true };
         let found = self.integrate(&scene, a.sliced(&frame), Other::Wall)?;
         match found.of {
             [true, false] => Some(Overlap::whole(a.volume(), a.at.position, n)),
@@ -155,7 +165,10 @@ impl Slices {
         let base = 0.5 * (range[0] + range[1]);
         a.lift(-base);
         b.lift(-base);
-        let range = [a.low.max(b.limits()[0]), a.high.min(b.limits()[1])];
+        let mut range = [a.low.max(b.limits()[0]), a.high.min(b.limits()[1])];
+        if scene.symmetric {
+            range[0] = 0.0;
+        }
         if range[0].is_nan() || range[1].is_nan() || range[0] >= range[1] {
             return None;
         }
@@ -177,11 +190,15 @@ impl Slices {
             at(h, one, two);
             apart::gap(one, two)
         })?;
-        let round = [0, 1].map(|i| arcs || (ends[i] == range[i] && lines[i]));
+        let mut round = [0, 1].map(|i| arcs || (ends[i] == range[i] && lines[i]));
+        if scene.symmetric && ends[0] == 0.0 {
+            round[0] = false;
+        }
         let (sums, of) = sweep::sweep(ends, round, arcs, scene.tolerance, |h| {
             at(h, one, two);
             region.section(one, two, scene.slack)
         });
+        let sums = if scene.symmetric { sums + sums.mirrored() } else { sums };
         Some(Swept { sums, base, of })
     }
 }
@@ -190,6 +207,8 @@ impl Slices {
 struct Scene {
     slack: f64,
     tolerance: f64,
+    /// Whether slices as far above the middle of all heights as below it are the same.
+    symmetric: bool,
 }
 
 /// Integrals with the heights counted from a base, and of which bodies pieces of the surface were met.

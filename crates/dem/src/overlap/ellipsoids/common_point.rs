@@ -1,7 +1,7 @@
 //! A point of two ellipsoids, or the proof that there is none.
 use super::Posed;
 use interfaces::Vector;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, SymmetricEigen, U3};
 
 /// Newton steps at most.
 const STEPS: usize = 60;
@@ -90,10 +90,9 @@ pub(super) enum Nearer {
 
 /// The least value of D is the largest one of ν − β²Σnᵢ²/(cᵢ − ν) for ν below all eigenvalues cᵢ of C (strong duality of the
 /// trust-region problem), nᵢ the parts of the third axis along the eigenvectors; there wᵢ = −βnᵢ/(cᵢ − ν).
-pub(super) fn nearer(lean: f64, quadric: &Matrix3<f64>) -> Nearer {
-    let eigen = quadric.symmetric_eigen();
+pub(super) fn nearer(lean: f64, eigen: &SymmetricEigen<f64, U3>) -> Nearer {
     let parts = eigen.eigenvectors.row(2).transpose() * lean;
-    let (values, vectors) = (eigen.eigenvalues, eigen.eigenvectors);
+    let (values, vectors) = (eigen.eigenvalues, &eigen.eigenvectors);
     let least = |c: Vector| {
         // Parts that are zero do not count, however near the pole.
         let over =

@@ -1,6 +1,6 @@
 //! What two slices share.
 use super::outline::{Outline, Section};
-use super::slice::{Place, Slice};
+use super::slice::{Place, Side, Slice};
 
 /// Cuts slices with one another; keeps the memory that this takes.
 #[derive(Clone, Debug, Default)]
@@ -25,53 +25,67 @@ impl Region {
     /// Any slice, cut at the sides of a polygon.
     fn cut(&mut self, any: &Slice, polygon: &Slice, slack: f64, section: &mut Section) {
         self.outline.start(any);
-        for side in &polygon.sides {
+        self.cut_all(polygon.sides.iter(), slack, section);
+        if self.outline.is_empty() {
+            return;
+        }
+        let sides = any.sides.iter().chain(&polygon.sides);
+        let margins = sides.map(|side| self.outline.behind(side)).filter(|m| *m > 100.0 * slack);
+        section.margin = margins.fold(f64::INFINITY, f64::min);
+    }
+    /// Two rounded cores: the second is a strip and what of a disc lies beyond each end of it; so is the first against these. Parts
+    /// of which a line shows that they share nothing are left out.
+    fn rounds(&mut self, a: &Slice, b: &Slice, slack: f64, section: &mut Section) {
+        let (strip_a, strip_b) = (a.strip(), b.strip());
+        if let Some(strip) = &strip_b
+            && !strip.iter().any(|side| beyond(side, a.ends(), a.radius))
+        {
+            self.outline.start(a);
+            self.cut_all(strip.iter(), slack, section);
+        }
+        let n_ends = |strip: bool| if strip { 2 } else { 1 };
+        let reach = (a.radius + b.radius) * (a.radius + b.radius);
+        for j in 0..n_ends(strip_b.is_some()) {
+            let end_b = b.ends()[j];
+            let rest_b = strip_b.map(|s| s[2 + j].flipped());
+            if far(end_b, a.ends(), reach) || rest_b.is_some_and(|side| beyond(&side, a.ends(), a.radius)) {
+                continue;
+            }
+            if let Some(strip) = &strip_a
+                && !strip.iter().any(|side| beyond(side, [end_b; 2], b.radius))
+            {
+                self.outline.start_disc(b, j);
+                self.cut_all(rest_b.iter().chain(strip), slack, section);
+            }
+            for i in 0..n_ends(strip_a.is_some()) {
+                let end_a = a.ends()[i];
+                let rest_a = strip_a.map(|s| s[2 + i].flipped());
+                if (end_a - end_b).norm_squared() >= reach
+                    || rest_a.is_some_and(|side| beyond(&side, [end_b; 2], b.radius))
+                    || rest_b.is_some_and(|side| beyond(&side, [end_a; 2], a.radius))
+                {
+                    continue;
+                }
+                self.outline.start_lens(a, i, b, j, slack);
+                self.cut_all(rest_b.iter().chain(&rest_a), slack, section);
+            }
+        }
+    }
+    /// Cuts the outline at all these sides and adds what is left.
+    fn cut_all<'a>(&mut self, sides: impl Iterator<Item = &'a Side>, slack: f64, section: &mut Section) {
+        for side in sides {
             self.outline.cut(side, slack);
             if self.outline.is_empty() {
                 return;
             }
         }
         self.outline.add_to(section);
-        let sides = any.sides.iter().chain(&polygon.sides);
-        let margins = sides.map(|side| self.outline.behind(side)).filter(|m| *m > 100.0 * slack);
-        section.margin = margins.fold(f64::INFINITY, f64::min);
     }
-    /// Two rounded cores: the second is a strip and what of a disc lies beyond each end of it; so is the first against these.
-    fn rounds(&mut self, a: &Slice, b: &Slice, slack: f64, section: &mut Section) {
-        let (strip_a, strip_b) = (a.strip(), b.strip());
-        if let Some(strip) = &strip_b {
-            self.outline.start(a);
-            for side in strip {
-                self.outline.cut(side, slack);
-            }
-            self.outline.add_to(section);
-        }
-        let n_ends = |strip: bool| if strip { 2 } else { 1 };
-        let reach = (a.radius + b.radius) * (a.radius + b.radius);
-        for j in 0..n_ends(strip_b.is_some()) {
-            if far(b.ends()[j], a.ends(), reach) {
-                continue;
-            }
-            let beyond = strip_b.map(|s| s[2 + j].flipped());
-            if let Some(strip) = &strip_a {
-                self.outline.start_disc(b, j);
-                for side in beyond.iter().chain(strip) {
-                    self.outline.cut(side, slack);
-                }
-                self.outline.add_to(section);
-            }
-            for i in 0..n_ends(strip_a.is_some()) {
-                if (a.ends()[i] - b.ends()[j]).norm_squared() >= reach {
-                    continue;
-                }
-                self.outline.start_lens(a, i, b, j, slack);
-                for side in beyond.iter().chain(strip_a.map(|s| s[2 + i].flipped()).iter()) {
-                    self.outline.cut(side, slack);
-                }
-                self.outline.add_to(section);
-            }
-        }
-    }
+}
+
+/// Whether all within a radius of a straight line between two ends is cut off by a side.
+fn beyond(side: &Side, ends: [Place; 2], radius: f64) -> bool {
+    ends.iter().all(|x| side.normal.dot(x) - radius >= side.offset)
 }
 
 /// Whether the square of the distance of a place from a straight line between two ends is no less than `square`.

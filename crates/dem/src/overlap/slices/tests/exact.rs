@@ -275,3 +275,26 @@ fn extreme_sizes() {
     assert_relative_eq!(o.volume, w.volume, max_relative = 1e-5);
     assert_relative_eq!(o.gradient, w.gradient, epsilon = 1e-5);
 }
+
+/// Four breaks at once, one of them between the middle of all heights and the place of a rule next to it.
+#[test]
+fn breaks_next_to_halves() {
+    let at = |x: [f64; 3], [x1, x2, x3, w]: [f64; 4]| Pose {
+        position: x.into(),
+        orientation: Rotation::from_quaternion(nalgebra::Quaternion::new(w, x1, x2, x3)),
+    };
+    let (tube, cube) = (
+        cylinder(0.7636823968362124, 0.7723586951482968),
+        cuboid([0.7978979130978494, 0.9441861904683268, 0.5731067780536946]),
+    );
+    let at_tube = at(
+        [0.1, -0.3, 0.2],
+        [0.19591941012286157, -0.38574108210892516, 0.5870542021618977, 0.6842417453171088],
+    );
+    let at_cube = at(
+        [0.47537594715642983, 0.09516574080743073, -0.10951086586493564],
+        [-0.3203508459558952, 0.7330353156449861, 0.47693846487014774, 0.36409375473894745],
+    );
+    let [coarse, fine] = [1e-5, 1e-11].map(|t| slices(t, &tube, at_tube, &cube, at_cube).unwrap().volume);
+    assert_relative_eq!(coarse, fine, max_relative = 1e-5);
+}

@@ -43,11 +43,13 @@ pub struct Overlap {
 
 impl Overlap {
     /// Area of the contact, |∂V/∂x| \[m²\]; its length \[m\] in a plane scene.
+    #[inline]
     pub fn area(&self) -> f64 {
         self.gradient.norm()
     }
     /// dV/dt = S·v + moment·ω, where `velocity` is that of the first body against the second at the centroid \[m/s\]
     /// and `spin` its angular velocity against the second's \[rad/s\].
+    #[inline]
     pub fn rate(&self, velocity: Vector, spin: Vector) -> f64 {
         self.gradient.dot(&velocity) + self.moment.dot(&spin)
     }

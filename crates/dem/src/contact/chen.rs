@@ -58,6 +58,7 @@ impl ContactLaw for Chen {
         PairProperties::by(self.means, a, b)
     }
 
+    #[inline]
     fn length(&self, arms: [f64; 2]) -> f64 {
         self.factor * self.means.of(arms[0], arms[1])
     }

@@ -105,6 +105,7 @@ impl ContactLaw for Potential {
     type Memory = Loading;
     const MOBILITY: bool = true;
 
+    #[inline]
     fn length(&self, arms: [f64; 2]) -> f64 {
         self.factor * series(arms[0], arms[1])
     }

@@ -40,6 +40,7 @@ fn cap(r: f64, s: f64) -> Part {
 }
 
 /// Round bodies have no moment about the centroid: it lies on the line of centres, and so does the gradient.
+#[inline]
 fn overlap(volume: f64, centroid: Point, normal: Vector, area: f64) -> Overlap {
     Overlap { volume, centroid, normal, gradient: -area * normal, moment: Vector::zeros() }
 }

@@ -73,16 +73,19 @@ impl Constants {
         }
     }
     /// May its centre not be moved? Contacts then feel an infinite mass.
+    #[inline]
     pub(super) fn pinned(&self) -> bool {
         self.freedom.linear == [false; 3]
     }
     /// Can forces change anything about it?
+    #[inline]
     pub(super) fn movable(&self) -> bool {
         self.freedom != Freedom::NONE
     }
 }
 
 impl Body {
+    #[inline]
     pub(super) fn is_plane(&self) -> bool {
         self.kind == Kind::Disc
     }

@@ -89,6 +89,7 @@ pub(super) fn shift(periods: &Periods, image: [i32; 3]) -> Vector {
 }
 
 impl<L: ContactLaw> View<'_, L> {
+    #[inline]
     fn second(&self, pair: &NearPair) -> Other<'_> {
         let b = pair.b as usize;
         match self.bodies.get(b) {
@@ -200,7 +201,8 @@ impl<L: ContactLaw> View<'_, L> {
         let (a, constants_a) = (&self.bodies[pair.a as usize], &self.constants[pair.a as usize]);
         let arm_a = overlap.centroid - a.pose.position;
         let round = a.kind != Kind::Other;
-        let (twist_b, arm_b, length_b, size_b, flat_b, inverse_b, material_b) = match self.second(pair) {
+        let other = self.second(pair);
+        let (twist_b, arm_b, length_b, size_b, flat_b, inverse_b, material_b) = match &other {
             Other::Body(b, constants, at_b) => {
                 let arm = overlap.centroid - at_b;
                 (b.twist, arm, arm.norm(), constants.size, constants.flat > 0.0, b.inverse_mass, b.material)
@@ -210,7 +212,7 @@ impl<L: ContactLaw> View<'_, L> {
             }
         };
         // Two that may turn but not move are to one another what they would be if they could.
-        let inverse_masses = match (a.inverse_mass, inverse_b, self.second(pair)) {
+        let inverse_masses = match (a.inverse_mass, inverse_b, &other) {
             (0.0, 0.0, Other::Body(_, b, _)) => [1.0 / constants_a.inertia.mass, 1.0 / b.inertia.mass],
             (0.0, 0.0, Other::Wall(_)) => [1.0 / constants_a.inertia.mass, 0.0],
             (wa, wb, _) => [wa, wb],
@@ -225,7 +227,7 @@ impl<L: ContactLaw> View<'_, L> {
             if !round {
                 sum += of(constants_a, a, &arm_a);
             }
-            if let Other::Body(b, constants, _) = self.second(pair)
+            if let Other::Body(b, constants, _) = &other
                 && b.kind == Kind::Other
             {
                 sum += of(constants, b, &arm_b);

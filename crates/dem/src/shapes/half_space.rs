@@ -57,6 +57,7 @@ impl Shape for HalfSpace {
 }
 
 impl Solid for HalfSpace {
+    #[inline]
     fn signed_distance(&self, x: Point, _band: f64) -> f64 {
         self.normal.dot(&(x - self.point))
     }

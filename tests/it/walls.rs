@@ -177,8 +177,7 @@ fn walls_and_moving_bodies_meet_in_one_flow() {
     let post = PrescribedBodies::default().with(Disc::new(0.7e-3).unwrap(), [2.2e-3, 1.8e-3, 0.0], 0.0);
     put_walls(&mut flow, &post).unwrap();
     let mut bodies = RigidBodies::new(Periods::new([None; 3]));
-    let material =
-        Material { density: 2000.0, youngs_modulus: 1e6, poisson_ratio: 0.3, damping: 1.0, friction: 0.0 };
+    let material = Material { density: 2000.0, damping: 1.0, friction: 0.0, ..Material::default() };
     let start = Pose::at([2.9e-3, 4.5e-3, 0.0]);
     bodies.add(Disc::new(0.5e-3).unwrap(), material, start, Twist::default(), Freedom::PLANAR).unwrap();
     let gravity = Vector::new(0.0, -9.81, 0.0);

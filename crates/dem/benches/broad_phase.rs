@@ -104,7 +104,8 @@ fn hull(boxes: &[Aabb]) -> Aabb {
 
 fn measure(scene: &Scene, only: &str) {
     let n = scene.boxes.len();
-    let ways: [(&str, fn() -> Box<dyn BroadPhase>); 5] = [
+    type Make = fn() -> Box<dyn BroadPhase>;
+    let ways: [(&str, Make); 5] = [
         ("sweep", || Box::new(Sweep::new())),
         ("cells", || Box::new(LinkedCells::new())),
         ("cells by size", || Box::new(HierarchicalGrid::new())),

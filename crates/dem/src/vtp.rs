@@ -10,7 +10,7 @@ const CORNERS: usize = 64;
 
 impl<L: ContactLaw> RigidBodies<L> {
     /// Writes the bodies as one `.vtp` file (VTK polygonal data): discs as polygons with a line from centre to
-    /// rim that shows how far they have turned, spheres as three such circles. Periodic bodies are drawn at
+    /// rim that shows how far they have turned, bodies made of triangles by these, others as three such ellipses along their axes, as long as their boxes. Periodic bodies are drawn at
     /// their image next after `corner`. Cell data: body number, velocity \[m/s\], angular velocity \[rad/s\].
     ///
     /// # Errors
@@ -22,21 +22,30 @@ impl<L: ContactLaw> RigidBodies<L> {
             let pose = self.pose(BodyId(b));
             let centre = self.periods().wrap(pose.position, corner);
             let shape = self.shape(BodyId(b));
-            let r = shape.bounding_radius();
+            let world = |p: Vector| centre + pose.orientation * p;
+            if let Some(surface) = shape.polyhedron() {
+                let first = points.len();
+                points.extend(surface.vertices.iter().map(|p| world(p.coords)));
+                for face in surface.faces {
+                    let ring = [face[0], face[1], face[2], face[0]];
+                    connectivity.extend(ring.map(|i| (first + i as usize) as i64));
+                    lines.push(connectivity.len());
+                    owners.push(b);
+                }
+                continue;
+            }
+            let half = 0.5 * shape.aabb().extent();
+            let axis = |a: usize| Vector::ith(a, half[a]);
             let planes: &[[Vector; 2]] = match shape.form() {
-                Form::Disc(_) => &[[Vector::new(1.0, 0.0, 0.0), Vector::new(0.0, 1.0, 0.0)]],
-                _ => &[
-                    [Vector::new(1.0, 0.0, 0.0), Vector::new(0.0, 1.0, 0.0)],
-                    [Vector::new(0.0, 1.0, 0.0), Vector::new(0.0, 0.0, 1.0)],
-                    [Vector::new(0.0, 0.0, 1.0), Vector::new(1.0, 0.0, 0.0)],
-                ],
+                Form::Disc(_) => &[[axis(0), axis(1)]],
+                _ => &[[axis(0), axis(1)], [axis(1), axis(2)], [axis(2), axis(0)]],
             };
             for [e1, e2] in planes {
                 let first = points.len();
                 points.push(centre);
                 for i in 0..CORNERS {
                     let (sin, cos) = (TAU * i as f64 / CORNERS as f64).sin_cos();
-                    points.push(centre + pose.orientation * ((e1 * cos + e2 * sin) * r));
+                    points.push(world(e1 * cos + e2 * sin));
                 }
                 // From the centre to the rim and once round.
                 connectivity.extend((first..first + CORNERS + 1).map(|i| i as i64));

@@ -13,8 +13,15 @@ pub const FLUID: Fluid = Fluid { density: 1000.0, viscosity: 1e-6 };
 pub const GRAVITY: f64 = 9.81;
 /// What discs and floor are made of: soft enough for the contact to be cheap, hard enough for the discs to sink
 /// less than a thousandth of their radius into the floor under their own weight, damped like a wet contact.
-pub const MATERIAL: Material =
-    Material { density: 1000.0, youngs_modulus: 1e6, poisson_ratio: 0.3, damping: 4.0, friction: 0.3 };
+pub const MATERIAL: Material = Material {
+    density: 1000.0,
+    youngs_modulus: 1e6,
+    poisson_ratio: 0.3,
+    damping: 4.0,
+    restitution: 0.5,
+    friction: 0.3,
+    rolling_friction: 0.0,
+};
 /// Fewer cells across a disc cannot hold its markers.
 const LEAST_CELLS: usize = 4;
 /// About a hundred bytes each.

@@ -1,8 +1,9 @@
 //! The file as a stranger's reader would take it apart.
 use super::*;
-use crate::{Disc, Material, Sphere};
+use crate::{Cuboid, Disc, Ellipsoid, Material, Shape, Sphere};
 use interfaces::{Freedom, Periods, Pose, Rotation, Twist};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// An array as the header describes it and the appended block holds it.
 struct Read {
@@ -71,8 +72,8 @@ fn arrays_and_counts_agree() {
         let mut bodies = RigidBodies::new(Periods::new([Some(10.0), None, None]));
         for x in [3.0, -2.0] {
             let pose = Pose { position: Point::new(x, 1.0, 0.0), orientation: quarter };
-            let shape: Round =
-                if spheres { Sphere::new(0.5).unwrap().into() } else { Disc::new(0.5).unwrap().into() };
+            let shape: Arc<dyn Shape> =
+                if spheres { Arc::new(Sphere::new(0.5).unwrap()) } else { Arc::new(Disc::new(0.5).unwrap()) };
             bodies.add(shape, Material::default(), pose, twist, Freedom::PLANAR).unwrap();
         }
         let mut file = Vec::new();
@@ -111,6 +112,26 @@ fn arrays_and_counts_agree() {
             assert_eq!(arrays[name].floats(), value.repeat(lines));
         }
     }
+}
+
+/// A cube is drawn by its triangles, an ellipsoid by ellipses.
+#[test]
+fn other_shapes() {
+    let mut bodies = RigidBodies::new(Periods::default());
+    let (cube, egg) = (Cuboid::new([2.0; 3]).unwrap(), Ellipsoid::new([1.0, 2.0, 3.0]).unwrap());
+    let (material, still) = (Material::default(), Twist::default());
+    bodies.add(cube, material, Pose::at([0.0; 3]), still, Freedom::FREE).unwrap();
+    bodies.add(egg, material, Pose::at([10.0, 0.0, 0.0]), still, Freedom::FREE).unwrap();
+    let mut file = Vec::new();
+    bodies.write_vtp(&mut file, Point::origin()).unwrap();
+    let (_, arrays) = read(&file);
+    assert_eq!(arrays["body"].ints(), [vec![0; 12], vec![1; 3]].concat());
+    let places: Vec<Point> = arrays["points"].floats().chunks_exact(3).map(Point::from_slice).collect();
+    let corners = 8;
+    assert!(places[..corners].iter().all(|p| p.iter().all(|x| x.abs() == 1.0)));
+    let far =
+        |a: usize| places[corners..].iter().map(|p| (p - Point::new(10.0, 0.0, 0.0))[a]).fold(0.0, f64::max);
+    assert!((0..3).all(|a| (far(a) - (a + 1) as f64).abs() < 1e-12), "{} {} {}", far(0), far(1), far(2));
 }
 
 #[test]

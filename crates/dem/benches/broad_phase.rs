@@ -16,6 +16,8 @@ impl Random {
     }
 }
 
+type Make = fn() -> Box<dyn BroadPhase>;
+
 struct Scene {
     name: String,
     boxes: Vec<Aabb>,
@@ -41,7 +43,8 @@ fn scenes(n: usize) -> Vec<Scene> {
     let mut all = vec![dense(n, "dense", None), dense(n, "dense, periodic", Some(1.0))];
     all.push(dilute(n));
     for ratio in [10.0, 100.0, 1000.0] {
-        all.push(mixed(n, ratio));
+        all.push(mixed(n, ratio, 0.0));
+        all.push(mixed(n, ratio, 3.0));
     }
     let mut huge = dense(n, "dense and one over all", None);
     huge.boxes[n / 2] = hull(&huge.boxes);
@@ -86,15 +89,20 @@ fn dilute(n: usize) -> Scene {
     Scene { name: "dilute".into(), boxes, periods: Periods::default() }
 }
 
-/// Sizes of equal shares per decade; all boxes together have 1.5 times the volume they are in.
-fn mixed(n: usize, ratio: f64) -> Scene {
+/// Sizes from 1 to `ratio`, as many per decade, or as much volume per decade (`power` 3); all boxes together have 1.5 times the volume they are in.
+fn mixed(n: usize, ratio: f64, power: f64) -> Scene {
     let mut random = Random(2);
-    let halves: Vec<f64> = (0..n).map(|_| 0.5 * ratio.powf(random.next())).collect();
+    let mut size = || match random.next() {
+        u if power == 0.0 => ratio.powf(u),
+        u => (1.0 - u * (1.0 - ratio.powf(-power))).powf(-1.0 / power),
+    };
+    let halves: Vec<f64> = (0..n).map(|_| 0.5 * size()).collect();
     let volume: f64 = halves.iter().map(|h| (2.0 * h).powi(3)).sum();
     let side = (volume / 1.5).cbrt();
     let mut place = || Point::from(Vector::from_fn(|_, _| side * random.next()));
     let boxes = halves.iter().map(|h| Aabb::around(place(), Vector::repeat(*h))).collect();
-    Scene { name: format!("sizes 1 to {ratio}"), boxes, periods: Periods::default() }
+    let name = format!("sizes 1 to {ratio}, {}", if power == 0.0 { "by number" } else { "by volume" });
+    Scene { name, boxes, periods: Periods::default() }
 }
 
 fn hull(boxes: &[Aabb]) -> Aabb {
@@ -104,7 +112,6 @@ fn hull(boxes: &[Aabb]) -> Aabb {
 
 fn measure(scene: &Scene, only: &str) {
     let n = scene.boxes.len();
-    type Make = fn() -> Box<dyn BroadPhase>;
     let ways: [(&str, Make); 5] = [
         ("sweep", || Box::new(Sweep::new())),
         ("cells", || Box::new(LinkedCells::new())),
@@ -116,7 +123,7 @@ fn measure(scene: &Scene, only: &str) {
         let crowded = scene.name.contains("clusters")
             || scene.name.contains("sizes")
             || scene.name.contains("over all");
-        if n > 10_000 && (name == "sweep" || name == "cells" && crowded)
+        if n > 10_000 && (name == "sweep" || name == "cells" && crowded && !scene.name.contains("sizes"))
             || n > 10_000 && name == "cells by size" && scene.name.contains("clusters")
         {
             continue;

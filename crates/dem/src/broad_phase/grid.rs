@@ -5,7 +5,7 @@ use std::ops::Range;
 
 /// Edges of a cell in units of the largest extent. Cells along x follow one another in memory, so a row of them is read
 /// in one go however many they are.
-const EDGES: [f64; 3] = [0.25, 1.0, 1.0];
+const EDGES: [f64; 3] = [0.5, 1.0, 1.0];
 /// At most so many cells per box, and a few.
 const CELLS_PER_BOX: usize = 16;
 /// How far a box may leave its cell before it is taken out of it, in units of the cell's edge.
@@ -120,10 +120,13 @@ impl Grid {
 
     #[inline]
     fn cell(&self, corner: [f64; 3]) -> [usize; 3] {
-        [0, 1, 2].map(|a| {
-            let place = ((corner[a] - self.origin[a]) * self.per_length[a]) as i32;
-            place.clamp(0, self.cells[a] as i32 - 1) as usize
-        })
+        [self.cell_along(0, corner[0]), self.cell_along(1, corner[1]), self.cell_along(2, corner[2])]
+    }
+
+    #[inline]
+    fn cell_along(&self, a: usize, x: f64) -> usize {
+        let place = ((x - self.origin[a]) * self.per_length[a]) as i32;
+        place.clamp(0, self.cells[a] as i32 - 1) as usize
     }
 
     /// Box `i` in `slot` is another one now, which is no larger than [`Self::holds`] allows.
@@ -237,7 +240,8 @@ impl Grid {
     #[inline]
     fn from(&self, target: &Aabb) -> [f64; 3] {
         // The difference is rounded.
-        [0, 1, 2].map(|a| target.min[a] - self.reach[a] - 4.0 * f64::EPSILON * target.min[a].abs())
+        let from = |a: usize| target.min[a] - self.reach[a] - 4.0 * f64::EPSILON * target.min[a].abs();
+        [from(0), from(1), from(2)]
     }
 
     /// The slots of a run of cells.
@@ -263,8 +267,13 @@ impl Grid {
 }
 
 /// The hull of most lower corners, from a sample, a quarter wider.
-fn bulk(members: &[u32], boxes: &[Aabb], lowest: [f64; 3], highest: [f64; 3]) -> ([f64; 3], [f64; 3]) {
-    const SAMPLE: usize = 256;
+pub(super) fn bulk(
+    members: &[u32],
+    boxes: &[Aabb],
+    lowest: [f64; 3],
+    highest: [f64; 3],
+) -> ([f64; 3], [f64; 3]) {
+    const SAMPLE: usize = 128;
     let (mut low, mut high) = (lowest, highest);
     let count = members.len().min(SAMPLE);
     for a in 0..3 {

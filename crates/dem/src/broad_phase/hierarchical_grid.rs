@@ -1,13 +1,18 @@
 //! Boxes in cells, by size.
 use super::BroadPhase;
-use super::grid::Grid;
+use super::grid::{Grid, bulk};
 use interfaces::Aabb;
 
-/// Boxes are of one class of sizes if their largest extents agree to a factor of 2.
-const CLASSES: usize = 2048;
+/// Classes of sizes, each of a factor of 2, from the largest size downwards; the last one has all smaller ones too.
+const CLASSES: usize = 32;
+/// What a query of one more level costs, in boxes looked at. With 10 000 boxes, 25 makes lists up to 1.5 times as dear as 80 where all
+/// sizes are alike in number, and 80 makes them up to 1.2 times as dear as 25 where they are alike in volume.
+const LEVEL_COST: f64 = 50.0;
+/// Fewer boxes than these are not worth a second level.
+const FEW: usize = 128;
 
-/// One lattice of cells for every class of sizes, each with cells about as large as its boxes (Ogarko & Luding 2012,
-/// doi:10.1016/j.cpc.2011.12.019); a query asks all of them. Classes with few boxes go into the next larger one.
+/// Lattices of cells for classes of sizes, each with cells about as large as its boxes (Ogarko & Luding 2012,
+/// doi:10.1016/j.cpc.2011.12.019); a query asks all of them. Classes that are not worth a lattice go into that of the next larger one.
 ///
 /// Rebuild O(n) by counting, update O(log n), query O(levels + found) where boxes fill space about evenly; memory O(n)
 /// wherever the boxes are. A box that moves far is put aside and looked at by every query; when there are many, all is built anew.
@@ -48,41 +53,64 @@ impl HierarchicalGrid {
         }
     }
 
+    #[cfg(test)]
+    pub(super) fn levels(&self) -> usize {
+        self.used
+    }
+
     /// How many boxes a query for a small box looks at, about, beyond those near it.
     pub(super) fn crowding(&self) -> f64 {
         self.levels[..self.used].iter().map(Grid::crowding).sum()
     }
 
-    /// Gives every class a level; `count` tells how many boxes a class has.
-    fn choose_levels(&mut self, count: &[u32; CLASSES]) -> [u16; CLASSES] {
-        let mut level = [0; CLASSES];
-        let (mut now, mut held, mut first) = (0, 0, usize::MAX);
-        for class in (0..CLASSES).filter(|c| count[*c] > 0) {
-            let near = first == usize::MAX || class - first < SPAN;
-            if held > 0 && !near && held > MERGE * count[class] && now + 1 < self.most_levels {
-                (now, held, first) = (now + 1, 0, usize::MAX);
-            }
-            first = first.min(class);
-            held += count[class];
-            level[class] = now as u16;
+    /// Puts levels in the place of codes of sizes, of which `most` is the highest.
+    fn choose_levels(&mut self, most: u16, boxes: &[Aabb]) {
+        // Exponents, counted from the largest.
+        let class = |code: u16| usize::from((most >> 4) - (code >> 4)).min(CLASSES - 1);
+        let (mut count, mut top, mut level) = ([0.0; CLASSES], [0; CLASSES], [0; CLASSES]);
+        for code in &self.level_of {
+            let class = class(*code);
+            count[class] += 1.0;
+            top[class] = top[class].max(*code);
         }
-        self.used = now + 1;
-        level
+        self.used = 1;
+        let last = count.iter().rposition(|c| *c > 0.0).unwrap_or(0);
+        if last > 0 {
+            let everywhere = ([f64::NEG_INFINITY; 3], [f64::INFINITY; 3]);
+            let (low, high) = bulk(&self.order, boxes, everywhere.0, everywhere.1);
+            let mut smaller = count[last];
+            for c in (0..=last).rev() {
+                if c < last && count[c] > 0.0 {
+                    // Boxes of this class, and those smaller ones if they are put among them, are asked for in cells as large as this.
+                    let size = largest_of(top[c]);
+                    let share: f64 = (0..3).map(|a| size / (high[a] - low[a]).max(size)).product();
+                    let read = share * (4.0 * count[c] + 2.5 * smaller);
+                    if read > LEVEL_COST && self.used < self.most_levels {
+                        self.used += 1;
+                        smaller = 0.0;
+                    }
+                    smaller += count[c];
+                }
+                level[c] = self.used as u16 - 1;
+            }
+        }
+        self.level_of.iter_mut().for_each(|code| *code = level[class(*code)]);
     }
 }
-/// A level spans so many classes at least.
-const SPAN: usize = 1;
-/// Smaller boxes get a level of their own if they are more than so many times those of the next class.
-const MERGE: u32 = 1;
 
 /// Largest extent.
 fn size(b: &Aabb) -> f64 {
     (b.max.x - b.min.x).max(b.max.y - b.min.y).max(b.max.z - b.min.z)
 }
 
-/// The exponent of a size.
-fn class(size: f64) -> usize {
-    (size.to_bits() >> 52) as usize % CLASSES
+/// Exponent and first four digits of a size.
+fn code(b: &Aabb) -> u16 {
+    (size(b).to_bits() >> 48) as u16
+}
+
+/// The size that none of this code reaches.
+fn largest_of(code: u16) -> f64 {
+    f64::from_bits((u64::from(code) + 1) << 48)
 }
 
 impl Default for HierarchicalGrid {
@@ -98,20 +126,20 @@ impl BroadPhase for HierarchicalGrid {
     fn rebuild(&mut self, boxes: &[Aabb]) {
         let n = boxes.len();
         self.slots.resize(n, 0);
-        self.order.resize(n, 0);
+        self.order.clear();
+        self.order.extend(0..n as u32);
         self.level_of.clear();
-        if self.most_levels == 1 {
-            self.used = 1;
+        self.used = 1;
+        if self.most_levels == 1 || n < FEW {
             self.level_of.resize(n, 0);
         } else {
-            let mut count = [0; CLASSES];
+            let mut most = 0;
             self.level_of.extend(boxes.iter().map(|b| {
-                let class = class(size(b));
-                count[class] += 1;
-                class as u16
+                let code = code(b);
+                most = most.max(code);
+                code
             }));
-            let level = self.choose_levels(&count);
-            self.level_of.iter_mut().for_each(|c| *c = level[usize::from(*c)]);
+            self.choose_levels(most, boxes);
         }
         if self.levels.len() < self.used {
             self.levels.resize_with(self.used, Grid::default);
@@ -119,9 +147,7 @@ impl BroadPhase for HierarchicalGrid {
         self.firsts.clear();
         self.updated = false;
         let mut done = 0;
-        if self.used == 1 {
-            self.order.iter_mut().enumerate().for_each(|(i, o)| *o = i as u32);
-        } else {
+        if self.used > 1 {
             let mut starts = [0; CLASSES + 1];
             self.level_of.iter().for_each(|l| starts[usize::from(*l) + 1] += 1);
             for l in 0..self.used {

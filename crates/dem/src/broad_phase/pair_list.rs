@@ -16,7 +16,11 @@ const MANY: usize = 4096;
 /// All is listed anew if more than one in so many bodies changed.
 const ANEW: usize = 8;
 
-/// Lists the pairs of bodies whose boxes meet, with all their images, and keeps the list up to date.
+/// Lists the pairs of bodies whose boxes meet, with all their images, and keeps the list up to date. Time per body: see [`Automatic`].
+///
+/// [`Self::list`] takes what the broad phase takes, and O(n + pairs): the pairs come in the order of space, are counted out to their first
+/// bodies, and each body's few are sorted. [`Self::refresh`] asks for the changed bodies only and merges what they meet into the
+/// list, O(changed log changed + pairs). Once warm neither allocates, but for the nodes of [`RTree`](crate::RTree) and what rayon needs for its tasks.
 ///
 /// The list is a function of the boxes alone: neither the broad phase nor the number of threads nor what was listed
 /// before changes a bit of it. A pair meets if the boxes, moved by whole periods so that their centres are between 0 and one period, share a

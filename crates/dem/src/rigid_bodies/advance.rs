@@ -110,8 +110,8 @@ impl<L: ContactLaw> Dynamics for RigidBodies<L> {
     }
 
     /// # Errors
-    /// [`DemError::TimeStep`] and [`DemError::SubSteps`], before anything has moved; those of [`OverlapSolver`](crate::OverlapSolver);
-    /// [`DemError::Diverged`], when a velocity is no longer finite: the bodies are then of no further use, save to restore an earlier
+    /// [`DemError::TimeStep`], before anything has moved; [`DemError::SubSteps`] and those of [`OverlapSolver`](crate::OverlapSolver), with the bodies where
+    /// the last sub-step left them; [`DemError::Diverged`], when a velocity is no longer finite: the bodies are then of no further use, save to restore an earlier
     /// state.
     fn advance(&mut self, dt: f64) -> Result<(), DemError> {
         if !(dt.is_finite() && dt > 0.0) {

@@ -132,9 +132,9 @@ fn at_rest_the_contact_bears_the_weight() {
 fn a_stack_of_ten() {
     use dem::{Cuboid, Shape};
     let cube: std::sync::Arc<dyn Shape> = std::sync::Arc::new(Cuboid::new([2.0 * R; 3]).unwrap());
-    for (shape, drop) in [(cube, 0.001), (sphere().shape(), 0.0)] {
+    for (shape, drop, damping, time) in [(cube, 0.001, 5.0, 3.0), (sphere().shape(), 0.0, 20.0, 6.0)] {
         let mut bodies = RigidBodies::new(Periods::default());
-        let material = Material { damping: 10.0, youngs_modulus: 1e6, ..Material::default() };
+        let material = Material { damping, youngs_modulus: 1e7, ..Material::default() };
         bodies.add_wall(floor(), material).unwrap();
         bodies.set_gravity(Vector::new(0.0, -G, 0.0));
         for k in 0..10 {
@@ -143,7 +143,7 @@ fn a_stack_of_ten() {
                 .add(shape.clone(), material, Pose::at([0.0, y, 0.0]), Twist::default(), Freedom::FREE)
                 .unwrap();
         }
-        bodies.advance(4.0).unwrap();
+        bodies.advance(time).unwrap();
         let weight = bodies.inertia(BodyId(0)).mass * G;
         let fastest = bodies.ids().map(|b| bodies.twist(b).linear.norm()).fold(0.0, f64::max);
         println!("{}: fastest {fastest:.2e} m/s", shape.name());

@@ -2,6 +2,7 @@
 mod bad_input;
 mod collisions;
 mod friction;
+mod many;
 mod near;
 mod potential;
 mod rotation;

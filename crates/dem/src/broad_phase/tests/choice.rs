@@ -39,3 +39,14 @@ fn clusters_are_put_in_a_tree() {
     automatic.rebuild(&boxes);
     assert!(automatic.is_tree());
 }
+
+/// A body that grows is given cells of its own size; else every query would be as wide as it.
+#[test]
+fn a_body_that_grows_gets_its_own_cells() {
+    let (boxes, mut grid) = (bed(4000), HierarchicalGrid::new());
+    grid.rebuild(&boxes);
+    grid.update(7, &boxes[7].grown(0.1));
+    assert_eq!(grid.levels(), 1);
+    grid.update(7, &boxes[7].grown(10.0));
+    assert_eq!(grid.levels(), 2);
+}

@@ -11,7 +11,7 @@ use crate::broad_phase::{NearPair, PairList};
 use crate::contact::{Chen, ContactLaw, Potential};
 use crate::{DemError, HalfSpace, Material, Overlap, OverlapSolver, PairProperties, Shape};
 use body::{Body, Constants, Kind};
-use contacts::{Chunk, Patch, Wall, shift};
+use contacts::{Chunk, Patch, Wall, shift, wall_of};
 use interfaces::{
     Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Load, Periods, Point, Pose, Solid, Twist, Vector,
     Wrench,
@@ -46,7 +46,7 @@ pub struct RigidBodies<L: ContactLaw = Chen> {
     boxes: Vec<Aabb>,
     movable: Vec<bool>,
     pairs: PairList,
-    /// Pairs of bodies, then of bodies and (numbered from `n_bodies` on) walls, each in ascending order; and those listed before.
+    /// Pairs of bodies, then of bodies and (numbered from the top down) walls, each in ascending order; and those listed before.
     near: Vec<NearPair>,
     last_near: Vec<NearPair>,
     chunks: Vec<Chunk<L::Memory>>,
@@ -251,7 +251,7 @@ impl<L: ContactLaw> RigidBodies<L> {
                 let depth = if round { body.radius + other.radius - apart.norm() } else { depth };
                 return Err(DemError::OverlappingStart { a: BodyId(a), b: BodyId(b), depth });
             }
-            let wall = b - self.bodies.len();
+            let wall = wall_of(pair.b);
             let gap = self.walls[wall].plane.signed_distance(body.pose.position) - body.radius;
             let depth = if body.kind == Kind::Other { depth } else { -gap };
             return Err(DemError::InWall { body: BodyId(a), wall, depth });
@@ -278,9 +278,10 @@ impl<L: ContactLaw> RigidBodies<L> {
         self.chunks.iter().flat_map(|c| &c.patches).map(|p| {
             let pair = &self.near[p.near as usize];
             let b = pair.b as usize;
-            let partner = match b.checked_sub(self.bodies.len()) {
-                Some(wall) => Partner::Wall(wall),
-                None => Partner::Body(BodyId(b), pair.image),
+            let partner = if b < self.bodies.len() {
+                Partner::Body(BodyId(b), pair.image)
+            } else {
+                Partner::Wall(wall_of(pair.b))
             };
             let Patch { volume, point, force, couple, .. } = *p;
             Contact { body: BodyId(pair.a as usize), partner, volume, point, force, couple }
@@ -330,7 +331,7 @@ impl RigidBodies<Potential> {
             let (a, b) = (pair.a as usize, pair.b as usize);
             let (size, material) = match self.bodies.get(b) {
                 Some(body) => (self.constants[b].size, body.material),
-                None => (f64::INFINITY, self.walls[b - self.bodies.len()].material),
+                None => (f64::INFINITY, self.walls[wall_of(pair.b)].material),
             };
             let properties = self.pair_properties(self.bodies[a].material, material);
             let mut found = |patches: &[Overlap]| {

@@ -19,7 +19,7 @@ pub trait ContactLaw: Clone + Debug + Send + Sync {
     /// L_c \[m\] of bodies whose centres are `arms` away from the contact.
     fn length(&self, arms: [f64; 2]) -> f64;
 
-    /// Do forces take dV/dt from `Touch::mobility`?
+    /// Does it ask for [`Touch::mobility`]?
     const MOBILITY: bool = false;
 
     /// Are its own numbers in order?

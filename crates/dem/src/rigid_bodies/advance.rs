@@ -25,15 +25,18 @@ impl<L: ContactLaw> RigidBodies<L> {
         }
     }
 
-    /// Half a drift, contacts where the bodies then are, a kick, half a drift; answers whether it was made. A step that turns out too long for the contacts that
-    /// it meets is taken back.
+    /// Half a drift, contacts where the bodies then are, a kick, half a drift; answers whether it was made. A step that turns out too long
+    /// for the contacts that it meets is taken back.
     fn step(&mut self, dt: f64, left: f64) -> Result<bool, DemError> {
         let half = 0.5 * dt;
         self.drift(half);
         if self.strayed() {
             self.list(left)?;
         }
-        self.push(dt)?;
+        if let Err(error) = self.push(dt) {
+            self.drift(-half);
+            return Err(error);
+        }
         if self.is_too_long(dt) {
             self.drift(-half);
             let used = self.near.len().div_ceil(CHUNK);

@@ -60,6 +60,16 @@ pub(super) struct Wall {
     pub(super) material: u32,
 }
 
+/// The number of a wall as the second of a pair: from the top down, so that it stays what it is when bodies come in.
+pub(super) fn wall_number(wall: usize) -> u32 {
+    u32::MAX - wall as u32
+}
+
+/// The wall that has this number.
+pub(super) fn wall_of(number: u32) -> usize {
+    (u32::MAX - number) as usize
+}
+
 /// All that pairs are computed from.
 #[derive(Clone, Copy)]
 pub(super) struct View<'a, L> {
@@ -96,7 +106,7 @@ impl<L: ContactLaw> View<'_, L> {
             Some(body) => {
                 Other::Body(body, &self.constants[b], body.pose.position + shift(&self.periods, pair.image))
             }
-            None => Other::Wall(&self.walls[b - self.bodies.len()]),
+            None => Other::Wall(&self.walls[wall_of(pair.b)]),
         }
     }
 

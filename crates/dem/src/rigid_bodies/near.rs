@@ -1,7 +1,7 @@
 //! Which pairs are near, for how long.
 use super::RigidBodies;
 use super::body::{Body, Constants, Kind};
-use super::contacts::{CHUNK, Chunk};
+use super::contacts::{CHUNK, Chunk, wall_number};
 use crate::DemError;
 use crate::broad_phase::{NearPair, PairListError};
 use crate::contact::ContactLaw;
@@ -132,12 +132,11 @@ impl<L: ContactLaw> RigidBodies<L> {
         std::mem::swap(&mut self.near, &mut self.last_near);
         self.near.clear();
         self.near.extend_from_slice(self.pairs.pairs());
-        let n = self.bodies.len();
         for (w, wall) in self.walls.iter().enumerate() {
             for (b, listed) in self.listed.iter().enumerate() {
                 let reach = self.bodies[b].radius + listed.margin;
                 if self.movable[b] && wall.plane.signed_distance(listed.centre) <= reach {
-                    self.near.push(NearPair { a: b as u32, b: (n + w) as u32, image: [0; 3] });
+                    self.near.push(NearPair { a: b as u32, b: wall_number(w), image: [0; 3] });
                 }
             }
         }

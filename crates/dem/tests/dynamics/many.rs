@@ -119,3 +119,31 @@ fn means_and_adhesion() {
     assert_eq!(pull(series, -10.0), 0.0);
     assert!(pull(series.with_adhesion(true), -10.0) > 0.0);
 }
+
+/// A body that comes in far away, amid frictional contacts with a wall and a neighbour, changes no bit of the others' way.
+#[test]
+fn bodies_come_in() {
+    let run = |comes: bool| {
+        let mut bodies = RigidBodies::new(Periods::default());
+        let material = Material { damping: 5.0, ..Material::default() };
+        for k in 0..2 {
+            let plane = HalfSpace::new(Point::new(0.0, -f64::from(k), 0.0), Vector::y()).unwrap();
+            bodies.add_wall(plane, material).unwrap();
+        }
+        bodies.set_gravity(Vector::new(1.0, -G, 0.0));
+        for x in [0.0, 1.99] {
+            let pose = Pose::at([x * R, 0.999 * R, 0.0]);
+            bodies.add(sphere().shape(), material, pose, Twist::default(), Freedom::FREE).unwrap();
+        }
+        for step in 0..400 {
+            if comes && step % 100 == 50 {
+                let pose = Pose::at([f64::from(step), 1.0, 0.0]);
+                bodies.add(sphere().shape(), material, pose, Twist::default(), Freedom::FREE).unwrap();
+            }
+            bodies.advance(1e-4).unwrap();
+        }
+        assert!(bodies.contacts().filter(|c| c.partner == dem::Partner::Wall(0)).count() == 2);
+        [bodies.pose(BodyId(0)), bodies.pose(BodyId(1))]
+    };
+    assert_eq!(run(true), run(false));
+}

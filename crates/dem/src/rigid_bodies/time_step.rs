@@ -16,6 +16,8 @@ const FEWEST_STEPS: f64 = 22.0;
 const FORESEEN_DEPTH: f64 = 0.05;
 /// Share of both bodies' inner radii by which they may come nearer in a sub-step.
 const TRAVEL: f64 = 0.05;
+/// What of it is still accepted, when pairs are listed amid a sub-step.
+const MOST_TRAVEL: f64 = 0.1;
 /// More sub-steps than this within one advance are an error.
 const MOST: f64 = 1e8;
 
@@ -86,9 +88,9 @@ impl<L: ContactLaw> RigidBodies<L> {
         self.stable_dt.min(contact).min(travel)
     }
 
-    /// Was a sub-step longer than the contacts that it met allow?
+    /// Was a sub-step longer than the contacts that it met allow, or bodies that turned out to be near?
     pub(super) fn is_too_long(&self, dt: f64) -> bool {
-        dt * self.stiffest.sqrt() * FEWEST_STEPS > PI
+        dt * self.stiffest.sqrt() * FEWEST_STEPS > PI || dt * self.fastest > MOST_TRAVEL
     }
 
     /// Into how many sub-steps `dt` is divided.

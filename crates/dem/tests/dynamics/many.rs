@@ -147,3 +147,43 @@ fn bodies_come_in() {
     };
     assert_eq!(run(true), run(false));
 }
+
+/// So fast that it would fly over a plate within one foreseen sub-step: the plate is met all the same.
+#[test]
+fn nothing_flies_past_unseen() {
+    let soft = Material { youngs_modulus: 1e3, ..Material::default() };
+    let mut bodies = RigidBodies::new(Periods::default());
+    let plate = Cuboid::new([0.2 * R, 10.0 * R, 10.0 * R]).unwrap();
+    bodies.add(plate, soft, Pose::at([0.0; 3]), Twist::default(), Freedom::NONE).unwrap();
+    let speed = 1000.0;
+    let ball = Pose::at([-1.5 * R, 0.0, 0.0]);
+    let fast = moving([speed, 0.0, 0.0], [0.0; 3]);
+    bodies.add(sphere().shape(), soft, ball, fast, Freedom::FREE).unwrap();
+    let dt = bodies.stable_dt();
+    assert!(speed * dt > 4.0 * R, "it would be past it after one step");
+    bodies.advance(dt).unwrap();
+    // It takes 2.2 R to pass.
+    let passing = 2.2 * R / speed;
+    assert!((bodies.contact_time() / passing - 1.0).abs() < 0.1, "{} of {passing} s", bodies.contact_time());
+}
+
+/// Two feet of one body have a spring each: it stands on an incline. (Without them, dashpots alone, it would creep.)
+#[test]
+fn feet_have_a_history_each() {
+    use dem::{Part, Union};
+    let foot = |x: f64| Part { shape: Arc::new(Cuboid::new([R; 3]).unwrap()), pose: Pose::at([x, 0.0, 0.0]) };
+    let stool = Union::new(vec![foot(-1.5 * R), foot(1.5 * R)]).unwrap();
+    let material = Material { youngs_modulus: 1e7, damping: 10.0, friction: 0.5, ..Material::default() };
+    let mut bodies = RigidBodies::new(Periods::default());
+    bodies.add_wall(floor(), material).unwrap();
+    let angle = 10.0_f64.to_radians();
+    bodies.set_gravity(Vector::new(angle.sin(), -angle.cos(), 0.0) * G);
+    bodies.add(stool, material, Pose::at([0.0, 0.5 * R, 0.0]), Twist::default(), Freedom::FREE).unwrap();
+    bodies.advance(0.2).unwrap();
+    assert_eq!(bodies.n_contacts(), 2);
+    let start = bodies.pose(BodyId(0)).position;
+    bodies.advance(0.2).unwrap();
+    let moved = (bodies.pose(BodyId(0)).position - start).norm();
+    println!("moved by {moved:.1e} m");
+    assert!(moved < 1e-9);
+}

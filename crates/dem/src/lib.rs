@@ -23,6 +23,8 @@
 
 mod broad_phase;
 mod contact;
+#[cfg(test)]
+mod draw;
 mod error;
 mod material;
 mod overlap;

@@ -1,36 +1,13 @@
 //! Every kind of shape with every other, slender and flat ones too, from a graze to one within the other: what must hold of any overlap.
 use super::{Overlap, OverlapSolver};
+use crate::draw::Draw;
 use crate::shapes::icosphere;
 use crate::{
     Capsule, ConvexPolyhedron, Cuboid, Cylinder, DemError, Ellipsoid, Form, HalfSpace, Implicit, Part, Shape,
     Sphere, TriangleMesh, Union,
 };
-use interfaces::{Aabb, Point, Pose, Rotation, Solid, Vector};
+use interfaces::{Aabb, Point, Pose, Solid, Vector};
 use std::sync::Arc;
-
-struct Draw(u64);
-
-impl Draw {
-    /// From 0 to 1.
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low * (high / low).powf(self.next())
-    }
-    fn direction(&mut self) -> Vector {
-        loop {
-            let v = Vector::from_fn(|_, _| 2.0 * self.next() - 1.0);
-            if v.norm() < 1.0 && v.norm() > 0.1 {
-                return v.normalize();
-            }
-        }
-    }
-    fn turn(&mut self) -> Rotation {
-        Rotation::from_scaled_axis(self.direction() * 3.0 * self.next())
-    }
-}
 
 /// A ring.
 #[derive(Clone, Copy, Debug)]

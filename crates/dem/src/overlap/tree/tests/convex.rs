@@ -1,30 +1,7 @@
 //! Bodies with edges of which only the distances are used, against exact routes.
 use super::*;
+use crate::draw::Draw;
 use crate::{Capsule, Cuboid, Cylinder, Ellipsoid};
-
-/// Numbers that look random, the same in each run.
-struct Draw(u64);
-
-impl Draw {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low * (high / low).powf(self.next())
-    }
-    fn direction(&mut self) -> Vector {
-        loop {
-            let v = Vector::from_fn(|_, _| 2.0 * self.next() - 1.0);
-            if v.norm() < 1.0 && v.norm() > 0.1 {
-                return v.normalize();
-            }
-        }
-    }
-    fn turn(&mut self) -> Rotation {
-        Rotation::from_scaled_axis(self.direction() * 3.0 * self.next())
-    }
-}
 
 const KINDS: usize = 6;
 

@@ -1,5 +1,5 @@
 //! What can go wrong.
-use crate::{Refinement, Route};
+use crate::{Partner, Refinement, Route};
 use interfaces::BodyId;
 
 /// Why a shape, a body or a step could not be made.
@@ -52,6 +52,19 @@ pub enum DemError {
         height: f64,
         /// Largest extent \[m\].
         size: f64,
+    },
+    /// A body is on its way through another one, or through a wall: the contact, soft as it is, could not stop it.
+    #[error(
+        "body {} went through {partner}: both share {:.0} % of the smaller one and it is no longer pushed back; give a larger Young's modulus, less load or less speed, or a start without such an overlap",
+        body.0, 100.0 * share
+    )]
+    PassedThrough {
+        /// The body.
+        body: BodyId,
+        /// What it went through.
+        partner: Partner,
+        /// Part of the smaller one's volume that both share.
+        share: f64,
     },
     /// A material property is not physical.
     #[error("the {property} of the material is {value}; {remedy}")]

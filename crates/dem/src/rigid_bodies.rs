@@ -3,6 +3,7 @@ mod advance;
 mod body;
 mod checkpoint;
 mod contacts;
+mod meeting;
 mod near;
 mod time_step;
 mod turning;
@@ -11,11 +12,12 @@ use crate::broad_phase::{NearPair, PairList};
 use crate::contact::{Chen, ContactLaw, Potential};
 use crate::{DemError, HalfSpace, Material, Overlap, OverlapSolver, PairProperties, Shape};
 use body::{Body, Constants, Kind};
-use contacts::{Chunk, Patch, Wall, shift, wall_of};
+use contacts::{Chunk, Patch, Wall, wall_of};
 use interfaces::{
     Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Load, Periods, Point, Pose, Solid, Twist, Vector,
     Wrench,
 };
+use meeting::shift;
 use near::Listed;
 use std::sync::Arc;
 
@@ -75,6 +77,8 @@ pub struct Contact {
     pub volume: f64,
     /// Its centroid, next to `body` \[m\].
     pub point: Point,
+    /// The way the overlap pushes `body`, of unit length.
+    pub normal: Vector,
     /// Force on `body` at the centroid \[N\].
     pub force: Vector,
     /// Torque on it besides \[N m\].
@@ -88,6 +92,16 @@ pub enum Partner {
     Body(BodyId, [i32; 3]),
     /// A wall, by its number.
     Wall(usize),
+}
+
+impl std::fmt::Display for Partner {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Body(b, [0, 0, 0]) => write!(f, "body {}", b.0),
+            Self::Body(b, image) => write!(f, "body {}, {image:?} periods away", b.0),
+            Self::Wall(wall) => write!(f, "wall {wall}"),
+        }
+    }
 }
 
 impl RigidBodies {
@@ -233,7 +247,7 @@ impl<L: ContactLaw> RigidBodies<L> {
         if self.listed.iter().any(|l| l.margin < 0.0) {
             self.list(0.0)?;
         }
-        let (mut solver, mut calls) = (OverlapSolver::new(), 0);
+        let mut solver = OverlapSolver::new();
         for pair in &self.near {
             let mut depth = None;
             let mut found = |patches: &[Overlap]| {
@@ -241,7 +255,7 @@ impl<L: ContactLaw> RigidBodies<L> {
                 let of = |o: &Overlap| if o.area() > 0.0 { 2.0 * o.volume / o.area() } else { f64::INFINITY };
                 depth = patches.iter().map(of).reduce(f64::max);
             };
-            self.view().overlaps(pair, &mut solver, &mut calls, &mut found)?;
+            self.view().overlaps(pair, &mut solver, &mut found)?;
             let Some(depth) = depth else { continue };
             let (a, b) = (pair.a as usize, pair.b as usize);
             let body = &self.bodies[a];
@@ -277,14 +291,9 @@ impl<L: ContactLaw> RigidBodies<L> {
     pub fn contacts(&self) -> impl Iterator<Item = Contact> {
         self.chunks.iter().flat_map(|c| &c.patches).map(|p| {
             let pair = &self.near[p.near as usize];
-            let b = pair.b as usize;
-            let partner = if b < self.bodies.len() {
-                Partner::Body(BodyId(b), pair.image)
-            } else {
-                Partner::Wall(wall_of(pair.b))
-            };
-            let Patch { volume, point, force, couple, .. } = *p;
-            Contact { body: BodyId(pair.a as usize), partner, volume, point, force, couple }
+            let (body, partner) = (BodyId(pair.a as usize), self.view().partner(pair));
+            let Patch { volume, point, normal, force, couple, .. } = *p;
+            Contact { body, partner, volume, point, normal, force, couple }
         })
     }
     /// Seconds so far in which anything touched anything.
@@ -326,20 +335,21 @@ impl RigidBodies<Potential> {
         if self.strayed() {
             self.list(0.0)?;
         }
-        let (mut solver, mut calls, mut energy) = (OverlapSolver::new(), 0, 0.0);
+        let (mut solver, mut energy) = (OverlapSolver::new(), 0.0);
         for pair in &self.near {
             let (a, b) = (pair.a as usize, pair.b as usize);
-            let (size, material) = match self.bodies.get(b) {
-                Some(body) => (self.constants[b].size, body.material),
-                None => (f64::INFINITY, self.walls[wall_of(pair.b)].material),
+            let (size, face, material) = match self.bodies.get(b) {
+                Some(body) => (self.constants[b].size, self.constants[b].flat, body.material),
+                None => (f64::INFINITY, f64::INFINITY, self.walls[wall_of(pair.b)].material),
             };
+            let first = &self.constants[a];
             let properties = self.pair_properties(self.bodies[a].material, material);
+            let (sizes, face, plane) = ([first.size, size], first.flat.min(face), self.bodies[a].is_plane());
             let mut found = |patches: &[Overlap]| {
                 let volume = patches.iter().map(|o| o.volume).sum();
-                let sizes = [self.constants[a].size, size];
-                energy += self.law.energy(properties, sizes, volume, self.bodies[a].is_plane()).0;
+                energy += self.law.energy(properties, sizes, face, volume, plane).0;
             };
-            self.view().overlaps(pair, &mut solver, &mut calls, &mut found)?;
+            self.view().overlaps(pair, &mut solver, &mut found)?;
         }
         Ok(energy)
     }

@@ -63,10 +63,10 @@ impl ContactLaw for Chen {
         self.factor * self.means.of(arms[0], arms[1])
     }
 
-    #[inline]
+    #[inline(always)]
     fn push(&self, p: &PairProperties, t: &Touch<'_>, spring: &mut Vector) -> Push {
         let length = self.length(t.arms);
-        let (n, area) = (t.overlap.normal, t.overlap.area());
+        let (n, area) = (t.overlap.normal, t.area);
         // A contact at a body's very centre has no length to divide by, and no way to push.
         if length <= 0.0 {
             return Push { force: Vector::zeros(), couple: Vector::zeros(), stiffness: 0.0 };

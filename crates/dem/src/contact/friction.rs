@@ -20,7 +20,7 @@ pub(super) struct Friction {
 impl Friction {
     /// The tangential force on the first body. `spring` is the elastic part of the last one: it is turned into the present tangent plane, its
     /// length kept, and updated.
-    #[inline]
+    #[inline(always)]
     pub(super) fn force(&self, spring: &mut Vector) -> Vector {
         if self.limit <= 0.0 {
             *spring = Vector::zeros();

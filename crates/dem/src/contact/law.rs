@@ -34,6 +34,8 @@ pub trait ContactLaw: Clone + Debug + Send + Sync {
 pub struct Touch<'a> {
     /// The patch.
     pub overlap: &'a Overlap,
+    /// Area of the patch, |∂V/∂x| \[m²\].
+    pub area: f64,
     /// Volume of all patches of the two \[m³\].
     pub volume: f64,
     /// Velocity of the first body against the second at the centroid \[m/s\].
@@ -42,15 +44,17 @@ pub struct Touch<'a> {
     pub spin: Vector,
     /// 1/m of both \[1/kg\]; 0 of what cannot be moved.
     pub inverse_masses: [f64; 2],
-    /// Distances from the bodies' centres of mass to the centroid \[m\]; infinite for a wall.
+    /// Distances from the bodies' centres of mass to the centroid \[m\], at least a twentieth of the radius of the largest sphere around the
+    /// centre that is within the body; infinite for a wall.
     pub arms: [f64; 2],
     /// Radii of spheres (in a plane scene discs) as large as the bodies \[m\]; infinite for a wall.
     pub sizes: [f64; 2],
     /// By how much a force −∇V of 1 per m³ changes dV/dt per second: ∇V·m⁻¹∇V over all of both bodies' motions \[m⁴/kg\]. NaN for laws
     /// that do not ask for it.
     pub mobility: f64,
-    /// May flat faces meet, so that the area of contact is there at once?
-    pub flat: bool,
+    /// Area of the smaller of both bodies' largest flat faces \[m²\]; 0 if one has none. Flat faces may meet, and the area of contact is
+    /// there at once.
+    pub face: f64,
     /// Are volumes areas, and forces per metre of depth?
     pub plane: bool,
     /// The sub-step \[s\].

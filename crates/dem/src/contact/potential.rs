@@ -16,6 +16,10 @@ use std::f64::consts::PI;
 /// centroid and the couple −E′∂V/∂φ), R* = R_i R_j/(R_i + R_j) with the radii of spheres as large as the bodies. For shallow
 /// overlaps of spheres it is [`Chen`](crate::Chen)'s Y V/L_c. In a plane scene E′ = ⅔ Y δ/L_c, δ = (3V/(4√(2R*)))^⅔.
 ///
+/// Where whole flat faces meet, A is there at once, and a force like √V would be without limit stiff at first: a cube that lies on a floor
+/// would swing a thousand times faster than it bounces. Between two bodies with flat faces √V is therefore √V₀ x(3 − x)/2, x = V/V₀, below V₀ = 10⁻⁴ A_f R*,
+/// A_f the smaller of both largest faces: still a function of V alone, so energy is kept.
+///
 /// s is 1 while V grows and e² while it shrinks (Walton & Braun 1986, J. Rheol. 30, 949): bodies part with e times the speed at which they
 /// met, whatever that was, whatever their shapes, at walls and at bodies that cannot be moved, where contact is central. Where loading
 /// turns into unloading within a sub-step, each has its part of it; a contact at rest carries what it has to, between both.
@@ -39,24 +43,47 @@ impl Potential {
     pub fn with_length_factor(self, factor: f64) -> Self {
         Self { factor }
     }
-    /// E(V) and E′(V) \[J, J/m³\] (in a plane scene per metre of depth).
+    /// E(V) and E′(V) \[J, J/m³\] (in a plane scene per metre of depth) of bodies as large as spheres of these radii, flat faces of
+    /// up to `face` in area meeting.
     #[inline]
-    pub fn energy(&self, p: &PairProperties, sizes: [f64; 2], volume: f64, plane: bool) -> (f64, f64) {
+    pub fn energy(
+        &self,
+        p: &PairProperties,
+        sizes: [f64; 2],
+        face: f64,
+        volume: f64,
+        plane: bool,
+    ) -> (f64, f64) {
         let radius = series(sizes[0], sizes[1]);
         let unit = p.stiffness / (self.factor * radius);
         if plane {
             let depth = (0.75 * volume / (2.0 * radius).sqrt()).cbrt().powi(2);
             // δ ∝ V^⅔.
-            (0.4 * unit * depth * volume, 2.0 / 3.0 * unit * depth)
+            return (0.4 * unit * depth * volume, 2.0 / 3.0 * unit * depth);
+        }
+        let slope = 0.5 * unit / (PI * radius).sqrt();
+        let first = ONSET * face * radius;
+        if volume < first {
+            let (root, x) = (first.sqrt(), volume / first);
+            (slope * root * first * x * x * (0.75 - x / 6.0), slope * root * 0.5 * x * (3.0 - x))
         } else {
-            let slope = 0.5 * unit * (volume / (PI * radius)).sqrt();
-            (2.0 / 3.0 * slope * volume, slope)
+            let root = volume.sqrt();
+            (slope * (2.0 / 3.0 * root * volume - first * first.sqrt() / 12.0), slope * root)
         }
     }
 }
 
+/// Volume up to which the force between flat faces begins gently, in areas of the face times R*.
+const ONSET: f64 = 1e-4;
+
 /// What is given back is the share e² of the energy, and the leapfrog's error a share of all of it: the smaller e, the finer the steps.
 const FINER: f64 = 0.02;
+/// Where edges and faces come in, the force has kinks: finer steps where all of the energy is to be kept (to 1e-8 of it, over 200 rebounds of cubes).
+const EDGES_FINER: f64 = 16.0;
+
+/// How quickly a contact at rest follows what presses it. All contacts of a heap do so at once, each by what the others did last: at once would be
+/// too much, and forces would swing from sub-step to sub-step.
+const FOLLOW: f64 = 0.25;
 
 /// What [`Potential`] keeps per patch.
 #[derive(Clone, Copy, Debug, Default)]
@@ -65,39 +92,56 @@ pub struct Loading {
     /// Speed of approach along the normal \[m/s\] and by how much the contact slowed it in the last sub-step \[m/s²\].
     approach: f64,
     slowed: f64,
+    /// What else quickened it \[m/s²\], smoothed.
+    other: f64,
     met: bool,
+    /// Did loading turn into unloading, or back, in the last sub-step?
+    turned: bool,
 }
 
 impl Memory for Loading {
-    const N: usize = 6;
+    const N: usize = 8;
     fn save(&self, out: &mut Vec<f64>) {
         self.spring.save(out);
-        out.extend([self.approach, self.slowed, f64::from(u8::from(self.met))]);
+        out.extend([self.approach, self.slowed, self.other]);
+        out.extend([self.met, self.turned].map(|yes| f64::from(u8::from(yes))));
     }
     fn load(from: &[f64]) -> Self {
-        Self { spring: Vector::load(from), approach: from[3], slowed: from[4], met: from[5] != 0.0 }
+        let [approach, slowed, other] = [3, 4, 5].map(|i| from[i]);
+        let [met, turned] = [6, 7].map(|i| from[i] != 0.0);
+        Self { spring: Vector::load(from), approach, slowed, other, met, turned }
     }
 }
 
-/// Mean share of the force over a sub-step, for bodies that approach at `u`, are slowed by `a` under the full force, and
-/// quickened by `other` from elsewhere; `least` of the force while they part.
-fn share(u: f64, a: f64, other: f64, least: f64, dt: f64) -> f64 {
-    // What keeps a contact where it is.
-    let rest = if a > 0.0 { (other / a).clamp(least, 1.0) } else { 1.0 };
-    if u > 0.0 {
-        let end = u + (other - a) * dt;
-        if end >= 0.0 {
-            return 1.0;
+/// A contact that is loaded and unloaded.
+struct Turn {
+    /// Speed of approach \[m/s\].
+    approach: f64,
+    /// What the full force slows it by, and what all else quickens it by \[m/s²\].
+    full: f64,
+    other: f64,
+    /// Share of the force while the bodies part.
+    least: f64,
+    dt: f64,
+}
+
+impl Turn {
+    /// Mean share of the force over a sub-step, and whether loading turned into unloading or back within it. A contact that did so in the last
+    /// sub-step already is at `rest`: it is brought to a stop over some.
+    fn share(&self, rest: bool) -> (f64, bool) {
+        let Self { approach, full, other, least, dt } = *self;
+        let now = if approach > 0.0 { 1.0 } else { least };
+        let end = approach + (other - now * full) * dt;
+        if full <= 0.0 || (end <= 0.0) == (approach <= 0.0) {
+            return (now, false);
         }
-        let before = u / (u - end);
-        before + (1.0 - before) * rest
-    } else {
-        let end = u + (other - least * a) * dt;
-        if end <= 0.0 {
-            return least;
-        }
-        let before = u / (u - end);
-        before * least + (1.0 - before) * rest
+        let share = if rest {
+            (other + FOLLOW * approach / dt) / full
+        } else {
+            let before = approach / (approach - end);
+            before * now + (1.0 - before) * (other / full).clamp(least, 1.0)
+        };
+        (share.clamp(least, 1.0), true)
     }
 }
 
@@ -110,31 +154,37 @@ impl ContactLaw for Potential {
         self.factor * series(arms[0], arms[1])
     }
 
-    #[inline]
+    #[inline(always)]
     fn push(&self, p: &PairProperties, t: &Touch<'_>, memory: &mut Loading) -> Push {
         let o = t.overlap;
-        let area = o.area();
+        let area = t.area;
         // One within the other: nothing changes when they move.
         if area <= 0.0 {
             *memory = Loading::default();
             return Push { force: Vector::zeros(), couple: Vector::zeros(), stiffness: 0.0 };
         }
         let rate = o.rate(t.velocity, t.spin);
-        let (_, mut slope) = self.energy(p, t.sizes, t.volume, t.plane);
+        let (_, mut slope) = self.energy(p, t.sizes, t.face, t.volume, t.plane);
         // Where whole faces meet, the force begins like a root of the depth. The first and the last sub-step of such a contact do the work that
         // belongs to the whole way from and to V = 0, though the bodies touch in a part of a sub-step only.
         let reach = 0.5 * t.dt * rate.abs();
         let most = t.volume + reach;
-        let (deepest, steepest) = self.energy(p, t.sizes, most, t.plane);
-        if t.flat && reach > 0.0 && (!memory.met || (rate < 0.0 && t.volume < 2.0 * reach)) {
+        let (deepest, steepest) = self.energy(p, t.sizes, t.face, most, t.plane);
+        if t.face > 0.0 && reach > 0.0 && (!memory.met || (rate < 0.0 && t.volume < 2.0 * reach)) {
             slope = deepest / (2.0 * reach);
         }
         let approach = rate / area;
         let full = slope * t.mobility / area;
         let least = p.restitution * p.restitution;
         let share = if least < 1.0 {
-            let other = if memory.met { (approach - memory.approach) / t.dt + memory.slowed } else { 0.0 };
-            share(approach, full, other, least, t.dt)
+            if memory.met {
+                let other = (approach - memory.approach) / t.dt + memory.slowed;
+                memory.other += FOLLOW * (other - memory.other);
+            }
+            let turn = Turn { approach, full, other: memory.other, least, dt: t.dt };
+            let (share, turned) = turn.share(memory.turned);
+            memory.turned = turned;
+            share
         } else {
             1.0
         };
@@ -142,7 +192,11 @@ impl ContactLaw for Potential {
         let size = share * slope;
         // dF/dδ = E″A² + E′dA/dδ: of a shallow sphere Y A/L_c; of a face half of it.
         let stiffness = steepest * area * area / most * (1.0 + FINER / least.max(0.001));
-        let stiffness = if t.flat { 2.0 * stiffness } else { stiffness };
+        let stiffness = match t.face > 0.0 {
+            true if least >= 1.0 => EDGES_FINER * stiffness,
+            true => 2.0 * stiffness,
+            false => stiffness,
+        };
         let mut force = o.gradient * -size;
         if p.friction > 0.0 {
             let [wa, wb] = t.inverse_masses;

@@ -25,7 +25,15 @@ impl Means {
 /// Product over sum; zero when either is zero, the other one when one is infinite.
 #[inline]
 pub(crate) fn series(a: f64, b: f64) -> f64 {
-    if a > 0.0 && b > 0.0 { 1.0 / (1.0 / a + 1.0 / b) } else { 0.0 }
+    if b == f64::INFINITY {
+        a
+    } else if a == f64::INFINITY {
+        b
+    } else if a > 0.0 && b > 0.0 {
+        a * (b / (a + b))
+    } else {
+        0.0
+    }
 }
 
 /// What two materials are to one another.
@@ -84,6 +92,7 @@ mod tests {
         assert!((literal.stiffness - 2.0 * p.stiffness).abs() < 1e-12 && literal.damping == 2.0 * p.damping);
         assert_eq!(series(0.0, 0.0), 0.0);
         assert_eq!(series(3.0, f64::INFINITY), 3.0);
+        assert_eq!(series(f64::INFINITY, 3.0), 3.0);
         assert_eq!(Means::Literal.of(3.0, f64::INFINITY), 6.0);
     }
 }

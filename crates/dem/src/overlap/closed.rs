@@ -51,7 +51,7 @@ pub(crate) fn discs(ra: f64, a: Point, rb: f64, b: Point) -> Option<Overlap> {
 
 /// Two caps on the common circle, s_a and s_b deep. The centroid divides the line of centres as the volumes of the caps do: both have
 /// the same moment about their own centre, π/4 of the circle's radius to the fourth.
-#[inline]
+#[inline(always)]
 pub(crate) fn spheres(ra: f64, a: Point, rb: f64, b: Point) -> Option<Overlap> {
     let apart = a - b;
     let d = apart.norm();

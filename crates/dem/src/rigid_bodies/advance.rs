@@ -69,17 +69,23 @@ impl<L: ContactLaw> RigidBodies<L> {
         let result = work(&view, &mut chunks[..used], &mut contact, dt);
         self.chunks = chunks;
         self.contact = contact;
-        result?;
+        if result.is_err() {
+            // What was last known.
+            let mut contact = std::mem::take(&mut self.contact);
+            contact.fill(Wrench::default());
+            self.chunks.iter().for_each(|c| self.view().add(c, &mut contact));
+            self.contact = contact;
+        }
         for chunk in &mut self.chunks[..used] {
             self.n_contacts += chunk.patches.len();
             self.stiffest = self.stiffest.max(chunk.stiffest);
             self.overlap_calls += std::mem::take(&mut chunk.overlap_calls);
         }
-        Ok(())
+        result
     }
 }
 
-/// Fills the chunks, on as many threads as there are, and sums up in their order.
+/// Fills the chunks, on as many threads as there are, and sums up in their order; after an error all are as they were.
 fn work<L: ContactLaw>(
     view: &View<'_, L>,
     chunks: &mut [Chunk<L::Memory>],
@@ -90,16 +96,20 @@ fn work<L: ContactLaw>(
     if chunks.len() > 1 && rayon::current_num_threads() > 1 {
         use rayon::prelude::*;
         chunks.par_iter_mut().enumerate().for_each(|(i, chunk)| view.fill(i * CHUNK, chunk, dt));
-        for chunk in chunks {
-            chunk.error.take().map_or(Ok(()), Err)?;
-            view.add(chunk, wrenches);
+        if let Some(error) = chunks.iter_mut().find_map(|c| c.error.take()) {
+            chunks.iter_mut().for_each(Chunk::undo);
+            return Err(error);
         }
+        chunks.iter().for_each(|c| view.add(c, wrenches));
         return Ok(());
     }
-    for (i, chunk) in chunks.iter_mut().enumerate() {
-        view.fill(i * CHUNK, chunk, dt);
-        chunk.error.take().map_or(Ok(()), Err)?;
-        view.add(chunk, wrenches);
+    for i in 0..chunks.len() {
+        view.fill(i * CHUNK, &mut chunks[i], dt);
+        if let Some(error) = chunks[i].error.take() {
+            chunks[..=i].iter_mut().for_each(Chunk::undo);
+            return Err(error);
+        }
+        view.add(&chunks[i], wrenches);
     }
     Ok(())
 }

@@ -7,7 +7,7 @@ use interfaces::{Checkpoint, Load, Point, RestartError, Rotation, Vector, Wrench
 
 /// Saved numbers per body, and per touching patch besides what the law keeps.
 const BODY: usize = 38;
-const PATCH: usize = 8;
+const PATCH: usize = 18;
 
 /// Poses, twists, loads, contact impulses and what the contact law keeps of touching patches. Shapes, materials, walls and gravity are not saved:
 /// the run that restores has to set up the same ones.
@@ -42,7 +42,10 @@ impl<L: ContactLaw> Checkpoint for RigidBodies<L> {
             let pair = &self.near[patch.near as usize];
             values.extend([f64::from(pair.a), f64::from(pair.b)]);
             values.extend(pair.image.map(f64::from));
-            values.extend_from_slice(patch.point.coords.as_slice());
+            values.push(patch.volume);
+            for v in [patch.point.coords, patch.normal, patch.force, patch.couple] {
+                values.extend_from_slice(v.as_slice());
+            }
             patch.memory.save(&mut values);
         }
         sink("n_patches", &[(values.len() / (PATCH + L::Memory::N)) as f64]);
@@ -84,12 +87,14 @@ impl<L: ContactLaw> Checkpoint for RigidBodies<L> {
             let wanted = key(v[0] as u32, v[1] as u32, [v[2] as i32, v[3] as i32, v[4] as i32]);
             if let Ok(at) = self.near.binary_search_by_key(&wanted, |p| key(p.a, p.b, p.image)) {
                 let chunk: &mut Chunk<L::Memory> = &mut self.chunks[at / CHUNK];
+                let vector = |i: usize| Vector::new(v[6 + 3 * i], v[7 + 3 * i], v[8 + 3 * i]);
                 chunk.patches.push(Patch {
                     near: at as u32,
-                    volume: 0.0,
-                    point: Point::new(v[5], v[6], v[7]),
-                    force: Vector::zeros(),
-                    couple: Vector::zeros(),
+                    volume: v[5],
+                    point: Point::from(vector(0)),
+                    normal: vector(1),
+                    force: vector(2),
+                    couple: vector(3),
                     memory: L::Memory::load(&v[PATCH..]),
                 });
             }

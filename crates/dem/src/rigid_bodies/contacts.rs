@@ -1,13 +1,18 @@
 //! Forces of the pairs that touch.
-use super::body::{Body, Constants, Kind};
+use super::Partner;
+use super::body::{Body, Constants};
+use super::meeting::{Meeting, Other, shift};
 use crate::broad_phase::NearPair;
 use crate::contact::{ContactLaw, Push, Touch};
-use crate::overlap::{Overlap, closed};
-use crate::{DemError, HalfSpace, OverlapSolver, PairProperties};
-use interfaces::{Periods, Point, Pose, Twist, Vector, Wrench};
+use crate::{DemError, HalfSpace, Overlap, OverlapSolver, PairProperties};
+use interfaces::{BodyId, Periods, Point, Twist, Vector, Wrench};
 
 /// Pairs that are worked on as one: their number does not depend on that of threads, and so does no sum.
 pub(super) const CHUNK: usize = 1024;
+/// Overlaps of more than this times the cube of the smaller body's size (a quarter of a ball) are deep.
+const DEEP: f64 = 1.0;
+/// Contacts count as no nearer to a body's centre than this part of its inner radius, or L_c would vanish there.
+const SHORTEST_ARM: f64 = 0.05;
 
 /// A patch of an overlap, and what it does to the first of the pair.
 #[derive(Clone, Copy, Debug)]
@@ -16,9 +21,18 @@ pub(super) struct Patch<M> {
     pub(super) near: u32,
     pub(super) volume: f64,
     pub(super) point: Point,
+    pub(super) normal: Vector,
     pub(super) force: Vector,
     pub(super) couple: Vector,
     pub(super) memory: M,
+}
+
+impl<M> Patch<M> {
+    #[inline]
+    fn new(near: u32, overlap: &Overlap, push: &Push, memory: M) -> Self {
+        let Overlap { volume, centroid, normal, .. } = *overlap;
+        Self { near, volume, point: centroid, normal, force: push.force, couple: push.couple, memory }
+    }
 }
 
 /// Some of the pairs: what they do, and the memory this takes.
@@ -83,164 +97,99 @@ pub(super) struct View<'a, L> {
     pub(super) periods: Periods,
 }
 
-/// The second of a pair.
-enum Other<'a> {
-    Body(&'a Body, &'a Constants, Point),
-    Wall(&'a Wall),
-}
-
-/// How far away the image of a body is whose number of periods is `image`.
-#[inline]
-pub(super) fn shift(periods: &Periods, image: [i32; 3]) -> Vector {
-    if image == [0; 3] {
-        return Vector::zeros();
-    }
-    Vector::from_fn(|a, _| periods.along(a).map_or(0.0, |l| l * f64::from(image[a])))
-}
-
 impl<L: ContactLaw> View<'_, L> {
-    #[inline]
-    fn second(&self, pair: &NearPair) -> Other<'_> {
-        let b = pair.b as usize;
-        match self.bodies.get(b) {
-            Some(body) => {
-                Other::Body(body, &self.constants[b], body.pose.position + shift(&self.periods, pair.image))
-            }
-            None => Other::Wall(&self.walls[wall_of(pair.b)]),
-        }
-    }
-
-    /// What the two of a pair share, handed to `found`; counts the overlaps that were computed.
-    #[inline]
-    pub(super) fn overlaps(
-        &self,
-        pair: &NearPair,
-        solver: &mut OverlapSolver,
-        calls: &mut u64,
-        found: &mut impl FnMut(&[Overlap]),
-    ) -> Result<(), DemError> {
-        let a = &self.bodies[pair.a as usize];
-        let place = a.pose.position;
-        let other = self.second(pair);
-        match &other {
-            Other::Body(b, _, at_b) => {
-                let within = a.radius + b.radius;
-                if (place - at_b).norm_squared() >= within * within {
-                    return Ok(());
-                }
-            }
-            Other::Wall(wall) if wall.plane.signed_distance(place) >= a.radius => return Ok(()),
-            Other::Wall(_) => {}
-        }
-        *calls += 1;
-        let one = match (&other, a.kind) {
-            (Other::Body(b, _, at_b), Kind::Ball) if b.kind == Kind::Ball => {
-                closed::spheres(a.radius, place, b.radius, *at_b)
-            }
-            (Other::Body(b, _, at_b), Kind::Disc) if b.kind == Kind::Disc => {
-                closed::discs(a.radius, place, b.radius, *at_b)
-            }
-            (Other::Wall(w), Kind::Ball) => {
-                closed::sphere_wall(a.radius, place, w.plane.signed_distance(place), w.plane.normal())
-            }
-            (Other::Wall(w), Kind::Disc) => {
-                closed::disc_wall(a.radius, place, w.plane.signed_distance(place), w.plane.normal())
-            }
-            _ => {
-                let shape = &*self.constants[pair.a as usize].shape;
-                let patches = match &other {
-                    Other::Body(b, constants, at_b) => {
-                        let pose = Pose { position: *at_b, ..b.pose };
-                        solver.solve(shape, &a.pose, &*constants.shape, &pose)?
-                    }
-                    Other::Wall(wall) => solver.solve(shape, &a.pose, &wall.plane, &Pose::at([0.0; 3]))?,
-                };
-                if !patches.is_empty() {
-                    found(patches);
-                }
-                return Ok(());
-            }
-        };
-        if let Some(patch) = one {
-            found(&[patch]);
-        }
-        Ok(())
-    }
-
     /// Forces of the pairs from `first` on that are this chunk's.
     pub(super) fn fill(&self, first: usize, chunk: &mut Chunk<L::Memory>, dt: f64) {
         let Chunk { patches, last, solver, overlap_calls, stiffest, error } = chunk;
         std::mem::swap(patches, last);
         patches.clear();
-        *stiffest = 0.0;
+        (*stiffest, *error) = (0.0, None);
         let mut old = 0;
         let end = self.near.len().min(first + CHUNK);
         for (k, pair) in (first..).zip(&self.near[first..end]) {
+            let meeting = self.meeting(pair);
+            if meeting.is_apart() {
+                continue;
+            }
+            *overlap_calls += 1;
             while last.get(old).is_some_and(|p| (p.near as usize) < k) {
                 old += 1;
             }
-            let mut found = |shared: &[Overlap]| {
+            let result = if let Some(shared) = meeting.round() {
+                let Some(overlap) = shared else { continue };
+                let before = last.get(old).filter(|p| p.near as usize == k);
+                self.push::<true>(&meeting, &overlap, overlap.volume, before, dt).map(|(push, memory)| {
+                    *stiffest = stiffest.max(push.stiffness);
+                    patches.push(Patch::new(k as u32, &overlap, &push, memory));
+                })
+            } else {
                 let same = last[old..].iter().take_while(|p| p.near as usize == k).count();
                 let before = &last[old..old + same];
-                let volume = shared.iter().map(|o| o.volume).sum();
-                for overlap in shared {
-                    let memory = remembered(before, shared, overlap);
-                    let patch = self.patch(k as u32, pair, overlap, volume, memory, dt, stiffest);
-                    patches.push(patch);
-                }
+                meeting.solve(solver).and_then(|shared| {
+                    let volume = shared.iter().map(|o| o.volume).sum();
+                    shared.iter().try_for_each(|overlap| {
+                        let before = remembered(before, shared, overlap);
+                        let (push, memory) = self.push::<false>(&meeting, overlap, volume, before, dt)?;
+                        *stiffest = stiffest.max(push.stiffness);
+                        patches.push(Patch::new(k as u32, overlap, &push, memory));
+                        Ok(())
+                    })
+                })
             };
-            if let Err(e) = self.overlaps(pair, solver, overlap_calls, &mut found) {
+            if let Err(e) = result {
                 *error = Some(e);
                 return;
             }
         }
     }
 
-    #[inline]
-    #[expect(clippy::too_many_arguments)]
-    fn patch(
+    /// What a patch does to the first of a pair (its stiffness over mass \[1/s²\]), and what the law keeps of it; `ROUND` where both are balls or discs, or one and a wall.
+    #[inline(always)]
+    fn push<const ROUND: bool>(
         &self,
-        near: u32,
-        pair: &NearPair,
+        meeting: &Meeting<'_>,
         overlap: &Overlap,
         volume: f64,
-        mut memory: L::Memory,
+        before: Option<&Patch<L::Memory>>,
         dt: f64,
-        stiffest: &mut f64,
-    ) -> Patch<L::Memory> {
-        let (a, constants_a) = (&self.bodies[pair.a as usize], &self.constants[pair.a as usize]);
+    ) -> Result<(Push, L::Memory), DemError> {
+        let Meeting { a, constants, other, .. } = meeting;
+        let normal = overlap.normal;
         let arm_a = overlap.centroid - a.pose.position;
-        let round = a.kind != Kind::Other;
-        let other = self.second(pair);
-        let (twist_b, arm_b, length_b, size_b, flat_b, inverse_b, material_b) = match &other {
+        // Contacts of round bodies are on the line of centres.
+        let length = |arm: &Vector, sign: f64| if ROUND { sign * arm.dot(&normal) } else { arm.norm() };
+        let area = if ROUND { -overlap.gradient.dot(&normal) } else { overlap.area() };
+        let (size_a, inner_a) = if ROUND { (a.radius, a.radius) } else { (constants.size, constants.inner) };
+        let (twist_b, arm_b, length_b, size_b, face_b, inverse_b, material_b) = match other {
             Other::Body(b, constants, at_b) => {
                 let arm = overlap.centroid - at_b;
-                (b.twist, arm, arm.norm(), constants.size, constants.flat > 0.0, b.inverse_mass, b.material)
+                let (size, face) = if ROUND { (b.radius, 0.0) } else { (constants.size, constants.flat) };
+                let inner = if ROUND { b.radius } else { constants.inner };
+                let length = length(&arm, 1.0).max(SHORTEST_ARM * inner);
+                (b.twist, arm, length, size, face, b.inverse_mass, b.material)
             }
             Other::Wall(w) => {
-                (Twist::default(), Vector::zeros(), f64::INFINITY, f64::INFINITY, true, 0.0, w.material)
+                let far = f64::INFINITY;
+                (Twist::default(), Vector::zeros(), far, far, far, 0.0, w.material)
             }
         };
         // Two that may turn but not move are to one another what they would be if they could.
-        let inverse_masses = match (a.inverse_mass, inverse_b, &other) {
-            (0.0, 0.0, Other::Body(_, b, _)) => [1.0 / constants_a.inertia.mass, 1.0 / b.inertia.mass],
-            (0.0, 0.0, Other::Wall(_)) => [1.0 / constants_a.inertia.mass, 0.0],
+        let inverse_masses = match (a.inverse_mass, inverse_b, other) {
+            (0.0, 0.0, Other::Body(_, b, _)) => [1.0 / constants.inertia.mass, 1.0 / b.inertia.mass],
+            (0.0, 0.0, Other::Wall(_)) => [1.0 / constants.inertia.mass, 0.0],
             (wa, wb, _) => [wa, wb],
         };
-        let inverse_sum = a.inverse_mass + inverse_b;
         let mobility = if L::MOBILITY {
-            let mut sum = overlap.gradient.norm_squared() * inverse_sum;
-            let of = |constants: &Constants, body: &Body, arm: &Vector| {
-                let j = arm.cross(&overlap.gradient) + overlap.moment;
-                constants.turning.mobility(&body.pose.orientation, &j)
-            };
-            if !round {
-                sum += of(constants_a, a, &arm_a);
-            }
-            if let Other::Body(b, constants, _) = &other
-                && b.kind == Kind::Other
-            {
-                sum += of(constants, b, &arm_b);
+            let mut sum = area * area * (a.inverse_mass + inverse_b);
+            if !ROUND {
+                let of = |constants: &Constants, body: &Body, arm: &Vector| {
+                    let j = arm.cross(&overlap.gradient) + overlap.moment;
+                    constants.turning.mobility(&body.pose.orientation, &j)
+                };
+                sum += of(constants, a, &arm_a);
+                if let Other::Body(b, constants, _) = other {
+                    sum += of(constants, b, &arm_b);
+                }
             }
             sum
         } else {
@@ -248,24 +197,51 @@ impl<L: ContactLaw> View<'_, L> {
         };
         let touch = Touch {
             overlap,
+            area,
             volume,
             velocity: a.twist.at(arm_a) - twist_b.at(arm_b),
             spin: a.twist.angular - twist_b.angular,
             inverse_masses,
-            arms: [arm_a.norm(), length_b],
-            sizes: [constants_a.size, size_b],
+            arms: [length(&arm_a, -1.0).max(SHORTEST_ARM * inner_a), length_b],
+            sizes: [size_a, size_b],
             mobility,
-            flat: flat_b && constants_a.flat > 0.0,
+            face: if ROUND { 0.0 } else { constants.flat.min(face_b) },
             plane: a.is_plane(),
             dt,
         };
+        let smaller = size_a.min(size_b);
+        let deep = DEEP * if touch.plane { smaller * smaller } else { smaller * smaller * smaller };
+        if overlap.volume > deep {
+            // Is it still pushed back, and the way it was?
+            let within = area * smaller <= 1e-9 * overlap.volume;
+            if within || before.is_some_and(|p| p.volume > deep && p.normal.dot(&normal) < 0.0) {
+                return Err(self.passed_through(*meeting.pair, overlap.volume));
+            }
+        }
+        let mut memory = before.map_or_else(L::Memory::default, |p| p.memory);
         let properties = &self.properties[a.material as usize * self.n_materials + material_b as usize];
-        let Push { force, couple, stiffness } = self.law.push(properties, &touch, &mut memory);
+        let mut push = self.law.push(properties, &touch, &mut memory);
         let inverse = inverse_masses[0] + inverse_masses[1];
-        let area = overlap.area();
         let inverse = if L::MOBILITY && area > 0.0 { mobility / (area * area) } else { inverse };
-        *stiffest = stiffest.max(stiffness * inverse);
-        Patch { near, volume: overlap.volume, point: overlap.centroid, force, couple, memory }
+        push.stiffness *= inverse;
+        Ok((push, memory))
+    }
+
+    #[cold]
+    fn passed_through(&self, pair: NearPair, volume: f64) -> DemError {
+        let of = |b: u32| self.constants.get(b as usize).map_or(f64::INFINITY, |c| c.inertia.volume);
+        let share = volume / of(pair.a).min(of(pair.b));
+        DemError::PassedThrough { body: BodyId(pair.a as usize), partner: self.partner(&pair), share }
+    }
+
+    /// What the first of a pair meets.
+    pub(super) fn partner(&self, pair: &NearPair) -> Partner {
+        let b = pair.b as usize;
+        if b < self.bodies.len() {
+            Partner::Body(BodyId(b), pair.image)
+        } else {
+            Partner::Wall(wall_of(pair.b))
+        }
     }
 
     /// Adds the forces of a chunk to those on the bodies, always in the same order.
@@ -286,19 +262,18 @@ impl<L: ContactLaw> View<'_, L> {
     }
 }
 
-/// What is remembered of a patch: that of the pair's nearest one, unless another patch is nearer to it.
+/// The patch before that a patch goes on from: the pair's nearest one, unless another patch is nearer to it.
 #[inline]
-fn remembered<M: Copy + Default>(before: &[Patch<M>], now: &[Overlap], patch: &Overlap) -> M {
+fn remembered<'a, M>(before: &'a [Patch<M>], now: &[Overlap], patch: &Overlap) -> Option<&'a Patch<M>> {
     match (before, now) {
-        ([], _) => M::default(),
-        ([only], [_]) => only.memory,
+        ([], _) => None,
+        ([only], [_]) => Some(only),
         _ => {
             let away = |p: &Patch<M>, o: &Overlap| (p.point - o.centroid).norm_squared();
-            let nearest = before
+            before
                 .iter()
                 .min_by(|p, q| away(p, patch).total_cmp(&away(q, patch)))
-                .filter(|p| now.iter().all(|o| std::ptr::eq(o, patch) || away(p, o) > away(p, patch)));
-            nearest.map_or_else(M::default, |p| p.memory)
+                .filter(|p| now.iter().all(|o| std::ptr::eq(o, patch) || away(p, o) > away(p, patch)))
         }
     }
 }

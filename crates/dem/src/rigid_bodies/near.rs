@@ -2,6 +2,7 @@
 use super::RigidBodies;
 use super::body::{Body, Constants, Kind};
 use super::contacts::{CHUNK, Chunk, wall_number};
+use super::meeting::shift;
 use crate::DemError;
 use crate::broad_phase::{NearPair, PairListError};
 use crate::contact::ContactLaw;
@@ -131,7 +132,16 @@ impl<L: ContactLaw> RigidBodies<L> {
         })?;
         std::mem::swap(&mut self.near, &mut self.last_near);
         self.near.clear();
-        self.near.extend_from_slice(self.pairs.pairs());
+        // Boxes that meet at their corners hold balls that are far apart.
+        let (bodies, listed, periods) = (&self.bodies, &self.listed, &self.periods);
+        let spheres_meet = |pair: &&NearPair| {
+            let (a, b) = (pair.a as usize, pair.b as usize);
+            let apart = listed[b].centre + shift(periods, pair.image) - listed[a].centre;
+            let within = bodies[a].radius + listed[a].margin + bodies[b].radius + listed[b].margin;
+            apart.norm_squared() <= within * within
+        };
+        self.near.extend(self.pairs.pairs().iter().filter(spheres_meet));
+        let pairs = self.near.len();
         for (w, wall) in self.walls.iter().enumerate() {
             for (b, listed) in self.listed.iter().enumerate() {
                 let reach = self.bodies[b].radius + listed.margin;
@@ -140,7 +150,6 @@ impl<L: ContactLaw> RigidBodies<L> {
                 }
             }
         }
-        let pairs = self.pairs.pairs().len();
         self.near[pairs..].sort_unstable();
         self.carry_over();
         Ok(())

@@ -52,7 +52,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             (PI * chord * chord, PI * depth * depth * r)
         };
         let least_mass = 1.0 / c.inertia.mass;
-        let of = |area: f64, volume: f64, arm: f64, flat: bool| {
+        let of = |area: f64, volume: f64, arm: f64, face: f64| {
             let overlap = Overlap {
                 volume,
                 centroid: Point::origin(),
@@ -62,6 +62,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             };
             let touch = Touch {
                 overlap: &overlap,
+                area,
                 volume,
                 velocity: Vector::zeros(),
                 spin: Vector::zeros(),
@@ -69,15 +70,15 @@ impl<L: ContactLaw> RigidBodies<L> {
                 arms: [arm, if wall { f64::INFINITY } else { arm }],
                 sizes: [r, if wall { f64::INFINITY } else { r }],
                 mobility: 0.0,
-                flat,
+                face,
                 plane,
                 dt: f64::MIN_POSITIVE,
             };
             let Push { stiffness, .. } = self.law.push(properties, &touch, &mut L::Memory::default());
             PI / (stiffness * (touch.inverse_masses[0] + touch.inverse_masses[1])).sqrt()
         };
-        let cap = of(area, volume, r, false);
-        if c.flat > area { cap.min(of(c.flat, c.flat * depth, c.inner, true)) } else { cap }
+        let cap = of(area, volume, r, 0.0);
+        if c.flat > area { cap.min(of(c.flat, c.flat * depth, c.inner, c.flat)) } else { cap }
     }
 
     /// The longest sub-step as things stand: what was foreseen, what the stiffest contact asks for, and what keeps bodies from

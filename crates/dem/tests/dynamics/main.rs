@@ -7,6 +7,7 @@ mod near;
 mod potential;
 mod rotation;
 mod state;
+mod stress;
 
 use dem::{Disc, Material, RigidBodies, Shape, Sphere};
 use interfaces::{Bodies, BodyId, Freedom, Kinematics, Load, Periods, Pose, Twist, Vector, Wrench};

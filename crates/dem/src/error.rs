@@ -66,6 +66,14 @@ pub enum DemError {
         /// Part of the smaller one's volume that both share.
         share: f64,
     },
+    /// Thresholds of sleep are not positive.
+    #[error("bodies would sleep below {speed} m/s after {time} s; give positive, finite numbers")]
+    Sleep {
+        /// The speed.
+        speed: f64,
+        /// The time.
+        time: f64,
+    },
     /// A material property is not physical.
     #[error("the {property} of the material is {value}; {remedy}")]
     Material {

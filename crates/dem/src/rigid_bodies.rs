@@ -5,6 +5,7 @@ mod checkpoint;
 mod contacts;
 mod meeting;
 mod near;
+mod sleep;
 mod time_step;
 mod turning;
 
@@ -19,6 +20,8 @@ use interfaces::{
 };
 use meeting::shift;
 use near::Listed;
+pub use sleep::Sleep;
+use sleep::Sleepers;
 use std::sync::Arc;
 
 /// Rigid bodies of any shape that touch one another and plane walls, in a box that may be periodic.
@@ -52,8 +55,8 @@ pub struct RigidBodies<L: ContactLaw = Chen> {
     near: Vec<NearPair>,
     last_near: Vec<NearPair>,
     chunks: Vec<Chunk<L::Memory>>,
-    carried: Vec<Patch<L::Memory>>,
-    n_contacts: usize,
+    carried: Vec<(NearPair, Patch<L::Memory>)>,
+    sleepers: Sleepers<L::Memory>,
     contact_time: f64,
     overlap_calls: u64,
     /// Kept, because every advance asks for it.
@@ -134,7 +137,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             last_near: Vec::new(),
             chunks: Vec::new(),
             carried: Vec::new(),
-            n_contacts: 0,
+            sleepers: Sleepers::default(),
             contact_time: 0.0,
             overlap_calls: 0,
             stable_dt: f64::INFINITY,
@@ -146,6 +149,9 @@ impl<L: ContactLaw> RigidBodies<L> {
 
     /// Weight: every body that can be moved is accelerated by `gravity` \[m/s²\], besides its load. None unless told.
     pub fn set_gravity(&mut self, gravity: Vector) {
+        if gravity != self.gravity {
+            self.wake_all();
+        }
         self.gravity = gravity;
     }
 
@@ -205,6 +211,7 @@ impl<L: ContactLaw> RigidBodies<L> {
         self.contact.push(Wrench::default());
         self.impulse.push(Wrench::default());
         self.listed.push(Listed::not_yet());
+        self.sleepers.add();
         self.stable_dt = self.stable_dt.min(self.stable_dt_of(body.0));
         Ok(body)
     }
@@ -216,6 +223,7 @@ impl<L: ContactLaw> RigidBodies<L> {
     pub fn add_wall(&mut self, plane: HalfSpace, material: Material) -> Result<(), DemError> {
         material.check()?;
         let material = self.number_of(material);
+        self.wake_all();
         self.walls.push(Wall { plane, material });
         self.listed.iter_mut().for_each(|l| *l = Listed::not_yet());
         self.stable_dt = self.least_stable_dt();
@@ -289,9 +297,9 @@ impl<L: ContactLaw> RigidBodies<L> {
     }
     /// All patches that bodies shared in the last sub-step, in a fixed order.
     pub fn contacts(&self) -> impl Iterator<Item = Contact> {
-        self.chunks.iter().flat_map(|c| &c.patches).map(|p| {
-            let pair = &self.near[p.near as usize];
-            let (body, partner) = (BodyId(pair.a as usize), self.view().partner(pair));
+        let awake = self.chunks.iter().flat_map(|c| &c.patches).map(|p| (self.near[p.near as usize], p));
+        awake.chain(self.sleepers.kept()).map(|(pair, p)| {
+            let (body, partner) = (BodyId(pair.a as usize), self.view().partner(&pair));
             let Patch { volume, point, normal, force, couple, .. } = *p;
             Contact { body, partner, volume, point, normal, force, couple }
         })
@@ -302,7 +310,8 @@ impl<L: ContactLaw> RigidBodies<L> {
     }
     /// How many patches bodies shared in the last sub-step, those with walls included.
     pub fn n_contacts(&self) -> usize {
-        self.n_contacts
+        let awake: usize = self.chunks.iter().map(|c| c.patches.len()).sum();
+        awake + self.sleepers.patches.len() + self.sleepers.woken.len()
     }
     /// How many overlaps were computed in all steps so far; pairs whose boxes are apart cost none.
     pub fn overlap_calls(&self) -> u64 {
@@ -336,7 +345,9 @@ impl RigidBodies<Potential> {
             self.list(0.0)?;
         }
         let (mut solver, mut energy) = (OverlapSolver::new(), 0.0);
-        for pair in &self.near {
+        let mut asleep: Vec<NearPair> = self.sleepers.patches.iter().map(|(pair, _)| *pair).collect();
+        asleep.dedup();
+        for pair in self.near.iter().chain(&asleep) {
             let (a, b) = (pair.a as usize, pair.b as usize);
             let (size, face, material) = match self.bodies.get(b) {
                 Some(body) => (self.constants[b].size, self.constants[b].flat, body.material),

@@ -20,8 +20,11 @@ impl<L: ContactLaw> RigidBodies<L> {
     }
 
     fn drift(&mut self, dt: f64) {
-        for ((body, constants), load) in self.bodies.iter_mut().zip(&self.constants).zip(&self.loads) {
-            body.before(constants, load, dt);
+        let asleep = &self.sleepers;
+        for (b, body) in self.bodies.iter_mut().enumerate() {
+            if asleep.n == 0 || !asleep.is_asleep(b) {
+                body.before(&self.constants[b], &self.loads[b], dt);
+            }
         }
     }
 
@@ -33,7 +36,12 @@ impl<L: ContactLaw> RigidBodies<L> {
         if self.strayed() {
             self.list(left)?;
         }
-        if let Err(error) = self.push(dt) {
+        let mut pushed = self.push(dt);
+        while pushed.is_ok() && self.wake_touched() {
+            self.list(left)?;
+            pushed = self.push(dt);
+        }
+        if let Err(error) = pushed {
             self.drift(-half);
             return Err(error);
         }
@@ -43,10 +51,16 @@ impl<L: ContactLaw> RigidBodies<L> {
             self.chunks[..used].iter_mut().for_each(Chunk::undo);
             return Ok(false);
         }
-        self.contact_time += if self.n_contacts == 0 { 0.0 } else { dt };
+        self.contact_time += if self.n_contacts() == 0 { 0.0 } else { dt };
         let (mass_of, gravity) = (|c: &super::body::Constants| c.inertia.mass, self.gravity);
         for (b, body) in self.bodies.iter_mut().enumerate() {
             let (constants, load, contact) = (&self.constants[b], &self.loads[b], &self.contact[b]);
+            if self.sleepers.n > 0 && self.sleepers.is_asleep(b) {
+                // Its contacts bear what pulls at it.
+                let weight = Wrench { force: gravity * mass_of(constants), ..Wrench::default() };
+                self.impulse[b] += (load.wrench + weight) * -dt;
+                continue;
+            }
             self.impulse[b] += *contact * dt;
             let mut total = load.wrench + *contact;
             total.force += gravity * mass_of(constants);
@@ -58,7 +72,7 @@ impl<L: ContactLaw> RigidBodies<L> {
     /// Contact wrenches on all bodies, as things stand.
     fn push(&mut self, dt: f64) -> Result<(), DemError> {
         self.contact.fill(Wrench::default());
-        (self.stiffest, self.n_contacts) = (0.0, 0);
+        self.stiffest = 0.0;
         if self.near.is_empty() {
             return Ok(());
         }
@@ -77,7 +91,6 @@ impl<L: ContactLaw> RigidBodies<L> {
             self.contact = contact;
         }
         for chunk in &mut self.chunks[..used] {
-            self.n_contacts += chunk.patches.len();
             self.stiffest = self.stiffest.max(chunk.stiffest);
             self.overlap_calls += std::mem::take(&mut chunk.overlap_calls);
         }
@@ -119,6 +132,9 @@ impl<L: ContactLaw> Dynamics for RigidBodies<L> {
 
     /// The load is kept until another one is given.
     fn apply(&mut self, b: BodyId, load: Load) {
+        if load != self.loads[b.0] {
+            self.wake(self.sleepers.island[b.0]);
+        }
         self.loads[b.0] = load;
     }
 
@@ -158,7 +174,10 @@ impl<L: ContactLaw> Dynamics for RigidBodies<L> {
             Some(b) => {
                 Err(DemError::Diverged { body: BodyId(b), velocity: self.bodies[b].twist.linear.into() })
             }
-            None => Ok(()),
+            None => {
+                self.fall_asleep(dt);
+                Ok(())
+            }
         }
     }
 
@@ -167,6 +186,9 @@ impl<L: ContactLaw> Dynamics for RigidBodies<L> {
     }
 
     fn set_twist(&mut self, b: BodyId, twist: Twist) {
+        if twist != self.bodies[b.0].twist {
+            self.wake(self.sleepers.island[b.0]);
+        }
         self.bodies[b.0].twist = twist;
     }
 

@@ -1,7 +1,9 @@
 //! What a restart needs of the bodies.
 use super::RigidBodies;
-use super::contacts::{CHUNK, Chunk, Patch};
+use super::contacts::{CHUNK, Patch};
 use super::near::Listed;
+use super::sleep::Sleepers;
+use crate::broad_phase::NearPair;
 use crate::contact::{ContactLaw, Memory};
 use interfaces::{Checkpoint, Load, Point, RestartError, Rotation, Vector, Wrench};
 
@@ -38,8 +40,8 @@ impl<L: ContactLaw> Checkpoint for RigidBodies<L> {
         }
         sink("bodies", &values);
         values.clear();
-        for patch in self.chunks.iter().flat_map(|c| &c.patches) {
-            let pair = &self.near[patch.near as usize];
+        let awake = self.chunks.iter().flat_map(|c| &c.patches).map(|p| (self.near[p.near as usize], p));
+        for (pair, patch) in awake.chain(self.sleepers.kept()) {
             values.extend([f64::from(pair.a), f64::from(pair.b)]);
             values.extend(pair.image.map(f64::from));
             values.push(patch.volume);
@@ -50,6 +52,11 @@ impl<L: ContactLaw> Checkpoint for RigidBodies<L> {
         }
         sink("n_patches", &[(values.len() / (PATCH + L::Memory::N)) as f64]);
         sink("patches", &values);
+        values.clear();
+        let Sleepers { island, slow, steps, .. } = &self.sleepers;
+        values.extend(island.iter().zip(slow).flat_map(|(i, s)| [f64::from(*i), *s]));
+        values.push(f64::from(*steps));
+        sink("sleep", &values);
         let counters =
             [self.contact_time, self.overlap_calls as f64, self.stiffest, self.fastest, self.listed_for];
         sink("contact_time", &counters);
@@ -78,32 +85,47 @@ impl<L: ContactLaw> Checkpoint for RigidBodies<L> {
         let counters = RestartError::take(source, "contact_time", 5)?;
         (self.contact_time, self.overlap_calls) = (counters[0], counters[1] as u64);
         (self.stiffest, self.fastest, self.listed_for) = (counters[2], counters[3], counters[4]);
+        let sleep = RestartError::take(source, "sleep", 2 * self.bodies.len() + 1)?;
+        for (b, v) in sleep.chunks_exact(2).enumerate() {
+            (self.sleepers.island[b], self.sleepers.slow[b]) = (v[0] as u32, v[1]);
+        }
+        self.sleepers.steps = sleep[sleep.len() - 1] as u32;
+        self.sleepers.n = self.sleepers.island.iter().filter(|i| **i != 0).count();
+        self.sleepers.patches.clear();
+        self.sleepers.woken.clear();
         // Listed once with nothing remembered; then each patch goes to its pair.
         self.chunks.iter_mut().for_each(|c| c.patches.clear());
-        self.list_again().map_err(|_| RestartError::Differs("bodies".into()))?;
+        self.near.clear();
+        // Unless they are to be listed at the next step anyway.
+        if self.listed.iter().all(|l| l.margin >= 0.0) {
+            self.list_again().map_err(|_| RestartError::Differs("bodies".into()))?;
+        }
         let n = self.bodies.len();
         let key = |a: u32, b: u32, image: [i32; 3]| (b as usize >= n, a, b, image);
         for v in patches.chunks_exact(size) {
             let wanted = key(v[0] as u32, v[1] as u32, [v[2] as i32, v[3] as i32, v[4] as i32]);
-            if let Ok(at) = self.near.binary_search_by_key(&wanted, |p| key(p.a, p.b, p.image)) {
-                let chunk: &mut Chunk<L::Memory> = &mut self.chunks[at / CHUNK];
-                let vector = |i: usize| Vector::new(v[6 + 3 * i], v[7 + 3 * i], v[8 + 3 * i]);
-                chunk.patches.push(Patch {
-                    near: at as u32,
-                    volume: v[5],
-                    point: Point::from(vector(0)),
-                    normal: vector(1),
-                    force: vector(2),
-                    couple: vector(3),
-                    memory: L::Memory::load(&v[PATCH..]),
-                });
+            let at = self.near.binary_search_by_key(&wanted, |p| key(p.a, p.b, p.image));
+            let vector = |i: usize| Vector::new(v[6 + 3 * i], v[7 + 3 * i], v[8 + 3 * i]);
+            let patch = Patch {
+                near: at.unwrap_or_default() as u32,
+                volume: v[5],
+                point: Point::from(vector(0)),
+                normal: vector(1),
+                force: vector(2),
+                couple: vector(3),
+                memory: L::Memory::load(&v[PATCH..]),
+            };
+            match at {
+                Ok(at) => self.chunks[at / CHUNK].patches.push(patch),
+                Err(_) => {
+                    let (_, a, b, image) = wanted;
+                    let asleep =
+                        [a, b].iter().any(|b| self.sleepers.island.get(*b as usize).is_some_and(|i| *i != 0));
+                    let to = if asleep { &mut self.sleepers.patches } else { &mut self.sleepers.woken };
+                    to.push((NearPair { a, b, image }, patch));
+                }
             }
         }
-        self.n_contacts = n_patches(&self.chunks);
         Ok(())
     }
-}
-
-fn n_patches<M>(chunks: &[Chunk<M>]) -> usize {
-    chunks.iter().map(|c| c.patches.len()).sum()
 }

@@ -1,7 +1,7 @@
 //! Which pairs are near, for how long.
 use super::RigidBodies;
 use super::body::{Body, Constants, Kind};
-use super::contacts::{CHUNK, Chunk, wall_number};
+use super::contacts::{CHUNK, Chunk, Patch, wall_number};
 use super::meeting::shift;
 use crate::DemError;
 use crate::broad_phase::{NearPair, PairListError};
@@ -76,6 +76,9 @@ impl<L: ContactLaw> RigidBodies<L> {
     /// May a body leave what was listed for it within `dt`?
     pub(super) fn may_stray(&self, dt: f64) -> bool {
         self.bodies.iter().zip(&self.listed).enumerate().any(|(b, (body, listed))| {
+            if self.sleepers.is_asleep(b) {
+                return listed.margin < 0.0;
+            }
             listed.gone(body) + path(body, &self.constants[b], &self.pull(b), dt) > listed.margin
         })
     }
@@ -99,7 +102,11 @@ impl<L: ContactLaw> RigidBodies<L> {
         let dt = self.horizon(dt);
         self.listed_for = dt;
         for (b, body) in self.bodies.iter().enumerate() {
-            self.listed[b] = Listed::new(body, &self.constants[b], &self.pull(b), dt);
+            self.listed[b] = if self.sleepers.is_asleep(b) {
+                Listed { centre: body.pose.position, orientation: body.pose.orientation, margin: 0.0 }
+            } else {
+                Listed::new(body, &self.constants[b], &self.pull(b), dt)
+            };
         }
         self.list_again()?;
         self.fastest = self.fastest_approach();
@@ -134,18 +141,24 @@ impl<L: ContactLaw> RigidBodies<L> {
         self.near.clear();
         // Boxes that meet at their corners hold balls that are far apart.
         let (bodies, listed, periods) = (&self.bodies, &self.listed, &self.periods);
+        let (constants, sleepers) = (&self.constants, &self.sleepers);
+        let lies = |b: usize| sleepers.lies(b, &bodies[b], &constants[b]);
         let spheres_meet = |pair: &&NearPair| {
             let (a, b) = (pair.a as usize, pair.b as usize);
             let apart = listed[b].centre + shift(periods, pair.image) - listed[a].centre;
             let within = bodies[a].radius + listed[a].margin + bodies[b].radius + listed[b].margin;
-            apart.norm_squared() <= within * within
+            let lie = sleepers.n > 0 && lies(a) && lies(b);
+            apart.norm_squared() <= within * within && !lie
         };
         self.near.extend(self.pairs.pairs().iter().filter(spheres_meet));
         let pairs = self.near.len();
         for (w, wall) in self.walls.iter().enumerate() {
             for (b, listed) in self.listed.iter().enumerate() {
                 let reach = self.bodies[b].radius + listed.margin;
-                if self.movable[b] && wall.plane.signed_distance(listed.centre) <= reach {
+                if self.movable[b]
+                    && !self.sleepers.is_asleep(b)
+                    && wall.plane.signed_distance(listed.centre) <= reach
+                {
                     self.near.push(NearPair { a: b as u32, b: wall_number(w), image: [0; 3] });
                 }
             }
@@ -161,20 +174,24 @@ impl<L: ContactLaw> RigidBodies<L> {
         let key = |p: &NearPair| (p.b as usize >= n, *p);
         self.carried.clear();
         for chunk in &mut self.chunks {
-            self.carried.append(&mut chunk.patches);
+            let pair = |p: &Patch<L::Memory>| self.last_near[p.near as usize];
+            self.carried.extend(chunk.patches.drain(..).map(|p| (pair(&p), p)));
+        }
+        if !self.sleepers.woken.is_empty() {
+            self.carried.append(&mut self.sleepers.woken);
+            self.carried.sort_by_key(|(pair, _)| key(pair));
         }
         let wanted = self.near.len().div_ceil(CHUNK);
         while self.chunks.len() < wanted {
             self.chunks.push(Chunk::default());
         }
         let mut at = 0;
-        for patch in &self.carried {
-            let pair = self.last_near[patch.near as usize];
-            while at < self.near.len() && key(&self.near[at]) < key(&pair) {
+        for (pair, patch) in &self.carried {
+            while at < self.near.len() && key(&self.near[at]) < key(pair) {
                 at += 1;
             }
-            if self.near.get(at) == Some(&pair) {
-                self.chunks[at / CHUNK].patches.push(super::contacts::Patch { near: at as u32, ..*patch });
+            if self.near.get(at) == Some(pair) {
+                self.chunks[at / CHUNK].patches.push(Patch { near: at as u32, ..*patch });
             }
         }
     }

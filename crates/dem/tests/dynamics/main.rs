@@ -6,6 +6,7 @@ mod many;
 mod near;
 mod potential;
 mod rotation;
+mod sleep;
 mod state;
 mod stress;
 

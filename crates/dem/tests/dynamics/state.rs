@@ -123,6 +123,7 @@ fn a_restart_amid_frictional_contact_continues_bit_for_bit() {
     again.restore(&source).unwrap();
     for step in 0..50 {
         assert_eq!(saved(&again), saved(&bodies), "after {step} steps");
+        assert!(again.contacts().eq(bodies.contacts()), "after {step} steps");
         for b in bodies.ids() {
             assert_eq!(again.contact_impulse(b), bodies.contact_impulse(b));
         }

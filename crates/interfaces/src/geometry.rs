@@ -67,6 +67,7 @@ pub struct Wrench {
 
 impl Wrench {
     /// A force that acts at `arm` from the centre of mass.
+    #[inline]
     pub fn at(force: Vector, arm: Vector) -> Self {
         Self { force, torque: arm.cross(&force) }
     }
@@ -74,23 +75,27 @@ impl Wrench {
 
 impl std::ops::Add for Wrench {
     type Output = Self;
+    #[inline]
     fn add(self, o: Self) -> Self {
         Self { force: self.force + o.force, torque: self.torque + o.torque }
     }
 }
 impl std::ops::AddAssign for Wrench {
+    #[inline]
     fn add_assign(&mut self, o: Self) {
         *self = *self + o;
     }
 }
 impl std::ops::Sub for Wrench {
     type Output = Self;
+    #[inline]
     fn sub(self, o: Self) -> Self {
         self + o * -1.0
     }
 }
 impl std::ops::Mul<f64> for Wrench {
     type Output = Self;
+    #[inline]
     fn mul(self, s: f64) -> Self {
         Self { force: self.force * s, torque: self.torque * s }
     }
@@ -107,10 +112,12 @@ pub struct Aabb {
 
 impl Aabb {
     /// The box of half-widths `half` around `centre`.
+    #[inline]
     pub fn around(centre: Point, half: Vector) -> Self {
         Self { min: centre - half, max: centre + half }
     }
     /// Widened by `margin` on every side.
+    #[inline]
     pub fn grown(&self, margin: f64) -> Self {
         let m = Vector::repeat(margin);
         Self { min: self.min - m, max: self.max + m }
@@ -140,6 +147,7 @@ impl Periods {
         Self { lengths }
     }
     /// The period along axis `a`, if it has one.
+    #[inline]
     pub fn along(&self, a: usize) -> Option<f64> {
         self.lengths[a]
     }

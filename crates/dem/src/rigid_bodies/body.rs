@@ -1,7 +1,7 @@
 //! One body.
 use super::turning::{Turning, turn};
 use crate::{Form, Shape};
-use interfaces::{Freedom, Inertia, Load, Point, Pose, Rotation, Twist, Wrench};
+use interfaces::{Freedom, Inertia, Load, Point, Pose, Rotation, Twist, Vector, Wrench};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -106,12 +106,9 @@ impl Body {
         let Self { pose, twist, .. } = self;
         let spin = twist.angular;
         if constants.movable() {
-            let accelerate = total.force / (constants.inertia.mass + load.added_mass);
-            for i in 0..3 {
-                if constants.freedom.linear[i] {
-                    twist.linear[i] += 2.0 * half * accelerate[i];
-                }
-            }
+            let kick = total.force * (2.0 * half / (constants.inertia.mass + load.added_mass));
+            let free = constants.freedom.linear;
+            twist.linear += Vector::from_fn(|i, _| if free[i] { kick[i] } else { 0.0 });
             let q = &pose.orientation;
             constants.turning.kick(q, &mut twist.angular, &total.torque, load.added_moment, 2.0 * half);
         }
@@ -126,8 +123,8 @@ impl Body {
 
 /// Turns `q` by the small rotation vector `by`.
 #[inline]
-fn turned(q: &mut Rotation, by: interfaces::Vector) {
-    if by != interfaces::Vector::zeros() {
+fn turned(q: &mut Rotation, by: Vector) {
+    if by != Vector::zeros() {
         *q = turn(by) * *q;
         q.renormalize_fast();
     }

@@ -9,8 +9,6 @@ use interfaces::{BodyId, Periods, Point, Twist, Vector, Wrench};
 
 /// Pairs that are worked on as one: their number does not depend on that of threads, and so does no sum.
 pub(super) const CHUNK: usize = 1024;
-/// Overlaps of more than this times the cube of the smaller body's size (a quarter of a ball) are deep.
-const DEEP: f64 = 1.0;
 /// Contacts count as no nearer to a body's centre than this part of its inner radius, or L_c would vanish there.
 const SHORTEST_ARM: f64 = 0.05;
 
@@ -115,29 +113,39 @@ impl<L: ContactLaw> View<'_, L> {
             while last.get(old).is_some_and(|p| (p.near as usize) < k) {
                 old += 1;
             }
-            let result = if let Some(shared) = meeting.round() {
-                let Some(overlap) = shared else { continue };
+            let mut failed = None;
+            if meeting.is_round() {
+                let Some(overlap) = meeting.lens() else { continue };
                 let before = last.get(old).filter(|p| p.near as usize == k);
-                self.push::<true>(&meeting, &overlap, overlap.volume, before, dt).map(|(push, memory)| {
+                if meeting.is_through(&overlap, before) {
+                    failed = Some(self.passed_through(*pair, overlap.volume));
+                } else {
+                    let (push, memory) = self.push::<true>(&meeting, &overlap, overlap.volume, before, dt);
                     *stiffest = stiffest.max(push.stiffness);
                     patches.push(Patch::new(k as u32, &overlap, &push, memory));
-                })
+                }
             } else {
                 let same = last[old..].iter().take_while(|p| p.near as usize == k).count();
                 let before = &last[old..old + same];
-                meeting.solve(solver).and_then(|shared| {
-                    let volume = shared.iter().map(|o| o.volume).sum();
-                    shared.iter().try_for_each(|overlap| {
-                        let before = remembered(before, shared, overlap);
-                        let (push, memory) = self.push::<false>(&meeting, overlap, volume, before, dt)?;
-                        *stiffest = stiffest.max(push.stiffness);
-                        patches.push(Patch::new(k as u32, overlap, &push, memory));
-                        Ok(())
-                    })
-                })
-            };
-            if let Err(e) = result {
-                *error = Some(e);
+                match meeting.solve(solver) {
+                    Err(error) => failed = Some(error),
+                    Ok(shared) => {
+                        let volume = shared.iter().map(|o| o.volume).sum();
+                        for overlap in shared {
+                            let before = remembered(before, shared, overlap);
+                            if meeting.is_through(overlap, before) {
+                                failed = Some(self.passed_through(*pair, overlap.volume));
+                                break;
+                            }
+                            let (push, memory) = self.push::<false>(&meeting, overlap, volume, before, dt);
+                            *stiffest = stiffest.max(push.stiffness);
+                            patches.push(Patch::new(k as u32, overlap, &push, memory));
+                        }
+                    }
+                }
+            }
+            if failed.is_some() {
+                *error = failed;
                 return;
             }
         }
@@ -152,7 +160,7 @@ impl<L: ContactLaw> View<'_, L> {
         volume: f64,
         before: Option<&Patch<L::Memory>>,
         dt: f64,
-    ) -> Result<(Push, L::Memory), DemError> {
+    ) -> (Push, L::Memory) {
         let Meeting { a, constants, other, .. } = meeting;
         let normal = overlap.normal;
         let arm_a = overlap.centroid - a.pose.position;
@@ -209,22 +217,13 @@ impl<L: ContactLaw> View<'_, L> {
             plane: a.is_plane(),
             dt,
         };
-        let smaller = size_a.min(size_b);
-        let deep = DEEP * if touch.plane { smaller * smaller } else { smaller * smaller * smaller };
-        if overlap.volume > deep {
-            // Is it still pushed back, and the way it was?
-            let within = area * smaller <= 1e-9 * overlap.volume;
-            if within || before.is_some_and(|p| p.volume > deep && p.normal.dot(&normal) < 0.0) {
-                return Err(self.passed_through(*meeting.pair, overlap.volume));
-            }
-        }
         let mut memory = before.map_or_else(L::Memory::default, |p| p.memory);
         let properties = &self.properties[a.material as usize * self.n_materials + material_b as usize];
         let mut push = self.law.push(properties, &touch, &mut memory);
         let inverse = inverse_masses[0] + inverse_masses[1];
         let inverse = if L::MOBILITY && area > 0.0 { mobility / (area * area) } else { inverse };
         push.stiffness *= inverse;
-        Ok((push, memory))
+        (push, memory)
     }
 
     #[cold]

@@ -1,16 +1,18 @@
 //! Two that may touch.
 use super::body::{Body, Constants, Kind};
-use super::contacts::{View, Wall, wall_of};
+use super::contacts::{Patch, View, Wall, wall_of};
 use crate::broad_phase::NearPair;
 use crate::contact::ContactLaw;
 use crate::overlap::{Overlap, closed};
 use crate::{DemError, OverlapSolver};
 use interfaces::{Periods, Point, Pose, Vector};
 
+/// Overlaps of more than this times the cube of the smaller body's size (a quarter of a ball) are deep.
+const DEEP: f64 = 1.0;
+
 /// A body and what it may touch.
 #[derive(Clone, Copy)]
 pub(super) struct Meeting<'a> {
-    pub(super) pair: &'a NearPair,
     pub(super) a: &'a Body,
     pub(super) constants: &'a Constants,
     pub(super) other: Other<'a>,
@@ -35,7 +37,7 @@ pub(super) fn shift(periods: &Periods, image: [i32; 3]) -> Vector {
 
 impl<'a, L: ContactLaw> View<'a, L> {
     #[inline(always)]
-    pub(super) fn meeting(&self, pair: &'a NearPair) -> Meeting<'a> {
+    pub(super) fn meeting(&self, pair: &NearPair) -> Meeting<'a> {
         let (a, b) = (pair.a as usize, pair.b as usize);
         let other = match self.bodies.get(b) {
             Some(body) => {
@@ -43,13 +45,13 @@ impl<'a, L: ContactLaw> View<'a, L> {
             }
             None => Other::Wall(&self.walls[wall_of(pair.b)]),
         };
-        Meeting { pair, a: &self.bodies[a], constants: &self.constants[a], other }
+        Meeting { a: &self.bodies[a], constants: &self.constants[a], other }
     }
 
     /// What the two of a pair share.
     pub(super) fn overlaps(
         &self,
-        pair: &'a NearPair,
+        pair: &NearPair,
         solver: &mut OverlapSolver,
         found: &mut impl FnMut(&[Overlap]),
     ) -> Result<(), DemError> {
@@ -57,13 +59,10 @@ impl<'a, L: ContactLaw> View<'a, L> {
         if meeting.is_apart() {
             return Ok(());
         }
-        match meeting.round() {
-            Some(Some(overlap)) => found(&[overlap]),
-            Some(None) => {}
-            None => match meeting.solve(solver)? {
-                [] => {}
-                patches => found(patches),
-            },
+        if meeting.is_round() {
+            meeting.lens().iter().for_each(|lens| found(std::slice::from_ref(lens)));
+        } else if let patches @ [_, ..] = meeting.solve(solver)? {
+            found(patches);
         }
         Ok(())
     }
@@ -83,25 +82,45 @@ impl Meeting<'_> {
         }
     }
 
-    /// The overlap of two balls or discs, or of one and a wall; `None` for other pairs.
+    /// Are both balls or discs, or one and a wall?
+    #[inline]
+    pub(super) fn is_round(&self) -> bool {
+        self.a.kind != Kind::Other
+            && match &self.other {
+                Other::Body(b, _, _) => b.kind == self.a.kind,
+                Other::Wall(_) => true,
+            }
+    }
+
+    /// The overlap of two that are round.
     #[inline(always)]
-    pub(super) fn round(&self) -> Option<Option<Overlap>> {
+    pub(super) fn lens(&self) -> Option<Overlap> {
         let (place, r) = (self.a.pose.position, self.a.radius);
         match (&self.other, self.a.kind) {
-            (Other::Body(b, _, at_b), Kind::Ball) if b.kind == Kind::Ball => {
-                Some(closed::spheres(r, place, b.radius, *at_b))
-            }
-            (Other::Body(b, _, at_b), Kind::Disc) if b.kind == Kind::Disc => {
-                Some(closed::discs(r, place, b.radius, *at_b))
-            }
-            (Other::Wall(w), Kind::Ball) => {
-                Some(closed::sphere_wall(r, place, w.plane.signed_distance(place), w.plane.normal()))
-            }
+            (Other::Body(b, _, at_b), Kind::Disc) => closed::discs(r, place, b.radius, *at_b),
+            (Other::Body(b, _, at_b), _) => closed::spheres(r, place, b.radius, *at_b),
             (Other::Wall(w), Kind::Disc) => {
-                Some(closed::disc_wall(r, place, w.plane.signed_distance(place), w.plane.normal()))
+                closed::disc_wall(r, place, w.plane.signed_distance(place), w.plane.normal())
             }
-            _ => None,
+            (Other::Wall(w), _) => {
+                closed::sphere_wall(r, place, w.plane.signed_distance(place), w.plane.normal())
+            }
         }
+    }
+
+    /// Is one of both on its way through the other: no longer pushed back, or the other way than `before`?
+    #[inline]
+    pub(super) fn is_through<M>(&self, overlap: &Overlap, before: Option<&Patch<M>>) -> bool {
+        // Of balls and discs the size is the radius.
+        let size = |b: &Body, c: &Constants| if b.kind == Kind::Other { c.size } else { b.radius };
+        let mut smaller = size(self.a, self.constants);
+        if let Other::Body(b, c, _) = &self.other {
+            smaller = smaller.min(size(b, c));
+        }
+        let deep = DEEP * smaller * smaller * if self.a.is_plane() { 1.0 } else { smaller };
+        overlap.volume > deep
+            && (overlap.area() * smaller <= 1e-9 * overlap.volume
+                || before.is_some_and(|p| p.volume > deep && p.normal.dot(&overlap.normal) < 0.0))
     }
 
     /// The overlap of any two.

@@ -39,14 +39,22 @@ impl Listed {
     #[inline]
     fn gone(&self, body: &Body) -> f64 {
         let moved = (body.pose.position - self.centre).norm();
-        if body.kind == Kind::Other {
-            // |q − p| is at least 0.9 times half the angle between them, up to a right angle; the other sign is the same turn.
-            let (p, q) = (&self.orientation.coords, &body.pose.orientation.coords);
-            let half = (q - p).norm_squared().min((q + p).norm_squared()).sqrt();
-            moved + 2.3 * half * body.radius
-        } else {
-            moved
-        }
+        if body.kind == Kind::Other { moved + self.turned(body) } else { moved }
+    }
+
+    /// Has the surface gone farther than the margin?
+    #[inline]
+    fn is_left(&self, body: &Body) -> bool {
+        let margin = if body.kind == Kind::Other { self.margin - self.turned(body) } else { self.margin };
+        margin < 0.0 || (body.pose.position - self.centre).norm_squared() > margin * margin
+    }
+
+    /// How far the surface has gone at most by turning.
+    #[inline]
+    fn turned(&self, body: &Body) -> f64 {
+        // |q − p| is at least 0.9 times half the angle between them, up to a right angle; the other sign is the same turn.
+        let (p, q) = (&self.orientation.coords, &body.pose.orientation.coords);
+        2.3 * (q - p).norm_squared().min((q + p).norm_squared()).sqrt() * body.radius
     }
 }
 
@@ -94,7 +102,7 @@ impl<L: ContactLaw> RigidBodies<L> {
 
     /// Has a body gone farther than foreseen?
     pub(super) fn strayed(&self) -> bool {
-        self.bodies.iter().zip(&self.listed).any(|(body, listed)| listed.gone(body) > listed.margin)
+        self.bodies.iter().zip(&self.listed).any(|(body, listed)| listed.is_left(body))
     }
 
     /// Lists the pairs whose boxes may meet within `dt`, or within some sub-steps.

@@ -32,6 +32,7 @@ impl HalfSpace {
         Self { point: pose.to_world(self.point), normal: pose.orientation * self.normal }
     }
     /// Distance of `x` from the plane, negative in the wall \[m\].
+    #[inline]
     pub fn signed_distance(&self, x: Point) -> f64 {
         self.normal.dot(&(x - self.point))
     }

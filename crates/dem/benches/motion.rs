@@ -4,7 +4,8 @@
 //! polyhedra of 26 vertices pile up; there it is per pair that touches and step. Each figure is the median of several blocks of steps.
 use cpu_time::ProcessTime;
 use dem::{
-    Chen, ContactLaw, ConvexPolyhedron, Cuboid, HalfSpace, Material, Potential, RigidBodies, Shape, Sphere,
+    Chen, ContactLaw, ConvexPolyhedron, Cuboid, HalfSpace, Material, Potential, RigidBodies, Shape, Sleep,
+    Sphere,
 };
 use interfaces::{BodyId, Dynamics, Freedom, Kinematics, Periods, Point, Pose, Rotation, Twist, Vector};
 use std::f64::consts::PI;
@@ -33,9 +34,16 @@ impl Draw {
     }
 }
 
-/// `n` bodies on a loose lattice over a floor between four walls.
-fn scene<L: ContactLaw>(law: L, shape: &Arc<dyn Shape>, n: usize, turned: bool) -> RigidBodies<L> {
-    let spacing = 2.2 * shape.bounding_radius();
+/// `n` bodies on a lattice over a floor between four walls, `spacing` bounding radii apart.
+fn scene<L: ContactLaw>(
+    law: L,
+    shape: &Arc<dyn Shape>,
+    n: usize,
+    spacing: f64,
+    turned: bool,
+) -> RigidBodies<L> {
+    let gap = spacing - 2.0;
+    let spacing = spacing * shape.bounding_radius();
     let side = ((n as f64 / 2.0).cbrt()).ceil() as usize;
     let width = side as f64 * spacing;
     let mut bodies = RigidBodies::with_law(Periods::default(), law);
@@ -53,7 +61,8 @@ fn scene<L: ContactLaw>(law: L, shape: &Arc<dyn Shape>, n: usize, turned: bool) 
     let mut draw = Draw(7);
     for i in 0..n {
         let at = [i % side, i / side % side, i / (side * side)];
-        let place = at.map(|k| (k as f64 + 0.5) * spacing + 0.1 * shape.bounding_radius() * draw.number());
+        let place =
+            at.map(|k| (k as f64 + 0.5) * spacing + 0.5 * gap * shape.bounding_radius() * draw.number());
         let mut pose = Pose::at(place);
         if turned {
             let about = Vector::new(draw.number(), draw.number(), draw.number());
@@ -90,7 +99,8 @@ fn time<L: ContactLaw>(name: &str, mut bodies: RigidBodies<L>, seconds: f64, ste
     blocks.sort_by(|p, q| p.0.total_cmp(&q.0));
     let (cpu, wall, touching, calls) = blocks[blocks.len() / 2];
     println!(
-        "{name:34} {n:7} bodies, {:5.2} touching and {:5.2} overlaps per body: {:7.3} us per body-step ({:.3} in the fall), {:7.3} us per touching pair, wall {:7.3}",
+        "{name:34} {n:7} bodies ({} asleep), {:5.2} touching and {:5.2} overlaps per body: {:7.3} us per body-step ({:.3} in the fall), {:7.3} us per touching pair, wall {:7.3}",
+        bodies.n_asleep(),
         touching / n,
         calls / n,
         1e6 * cpu / n,
@@ -159,20 +169,28 @@ fn main() {
     let asked = |name: &str| words.is_empty() || words.iter().any(|w| name == w);
     let ball: Arc<dyn Shape> = Arc::new(Sphere::new(R).unwrap());
     let cube: Arc<dyn Shape> = Arc::new(Cuboid::new([2.0 * R; 3]).unwrap());
-    for (n, seconds, steps) in [(1_000, 0.6, 1000), (10_000, 0.6, 100), (100_000, 0.3, 20)] {
+    // Many fall from less far: the fall is long enough to watch already.
+    for (n, spacing, seconds, steps) in
+        [(1_000, 2.2, 0.6, 1000), (10_000, 2.04, 0.1, 100), (100_000, 2.04, 0.05, 20)]
+    {
         let name = format!("spheres {n}");
         if asked(&name) {
-            time(&name, scene(Chen::default(), &ball, n, false), seconds, steps);
+            time(&name, scene(Chen::default(), &ball, n, spacing, false), seconds, steps);
         }
     }
     if asked("spheres, potential") {
-        time("spheres, potential", scene(Potential::default(), &ball, 1000, false), 0.3, 300);
+        time("spheres, potential", scene(Potential::default(), &ball, 1000, 2.2, false), 0.3, 300);
+    }
+    if asked("spheres asleep") {
+        let mut bodies = scene(Chen::default(), &ball, 1000, 2.04, false);
+        bodies.set_sleep(Some(Sleep { speed: 0.02, time: 0.02 })).unwrap();
+        time("spheres asleep", bodies, 1.5, 1000);
     }
     if asked("cubes") {
-        time("cubes", scene(Chen::default(), &cube, 500, true), 0.4, 100);
+        time("cubes", scene(Chen::default(), &cube, 500, 2.2, true), 0.4, 100);
     }
     if asked("polyhedra of 26 vertices") {
-        time("polyhedra of 26 vertices", scene(Chen::default(), &polyhedron(26), 500, true), 0.4, 100);
+        time("polyhedra of 26 vertices", scene(Chen::default(), &polyhedron(26), 500, 2.2, true), 0.4, 100);
     }
     if asked("gas") {
         gas();

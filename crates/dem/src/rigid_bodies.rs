@@ -51,6 +51,8 @@ pub struct RigidBodies<L: ContactLaw = Chen> {
     boxes: Vec<Aabb>,
     movable: Vec<bool>,
     pairs: PairList,
+    /// Scratch: who went astray.
+    strays: Vec<u32>,
     /// Pairs of bodies, then of bodies and (numbered from the top down) walls, each in ascending order; and those listed before.
     near: Vec<NearPair>,
     last_near: Vec<NearPair>,
@@ -133,6 +135,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             boxes: Vec::new(),
             movable: Vec::new(),
             pairs: PairList::new(periods),
+            strays: Vec::new(),
             near: Vec::new(),
             last_near: Vec::new(),
             chunks: Vec::new(),

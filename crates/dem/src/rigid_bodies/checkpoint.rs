@@ -84,7 +84,6 @@ impl<L: ContactLaw> Checkpoint for RigidBodies<L> {
         let patches = RestartError::take(source, "patches", size * n)?;
         let counters = RestartError::take(source, "contact_time", 5)?;
         (self.contact_time, self.overlap_calls) = (counters[0], counters[1] as u64);
-        (self.stiffest, self.fastest, self.listed_for) = (counters[2], counters[3], counters[4]);
         let sleep = RestartError::take(source, "sleep", 2 * self.bodies.len() + 1)?;
         for (b, v) in sleep.chunks_exact(2).enumerate() {
             (self.sleepers.island[b], self.sleepers.slow[b]) = (v[0] as u32, v[1]);
@@ -100,6 +99,7 @@ impl<L: ContactLaw> Checkpoint for RigidBodies<L> {
         if self.listed.iter().all(|l| l.margin >= 0.0) {
             self.list_again().map_err(|_| RestartError::Differs("bodies".into()))?;
         }
+        (self.stiffest, self.fastest, self.listed_for) = (counters[2], counters[3], counters[4]);
         let n = self.bodies.len();
         let key = |a: u32, b: u32, image: [i32; 3]| (b as usize >= n, a, b, image);
         for v in patches.chunks_exact(size) {

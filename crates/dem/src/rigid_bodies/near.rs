@@ -10,6 +10,8 @@ use interfaces::{Aabb, BodyId, Load, Point, Pose, Rotation, Vector, Wrench};
 
 /// Sub-steps for which pairs are listed.
 const HORIZON: f64 = 40.0;
+/// All are listed anew unless fewer than one in so many went astray.
+const FEW: usize = 8;
 /// Radii by which bodies may go astray besides, having been pushed.
 const SKIN: f64 = 0.02;
 
@@ -105,40 +107,76 @@ impl<L: ContactLaw> RigidBodies<L> {
         self.bodies.iter().zip(&self.listed).any(|(body, listed)| listed.is_left(body))
     }
 
+    /// Where body `b` may be within `dt`.
+    fn listing(&self, b: usize, dt: f64) -> Listed {
+        let body = &self.bodies[b];
+        if self.sleepers.is_asleep(b) {
+            Listed { centre: body.pose.position, orientation: body.pose.orientation, margin: 0.0 }
+        } else {
+            Listed::new(body, &self.constants[b], &self.pull(b), dt)
+        }
+    }
+
+    /// The box of all places where body `b` is listed to be.
+    fn listed_box(&self, b: usize) -> Aabb {
+        let (Listed { centre, orientation, margin }, r) = (self.listed[b], self.bodies[b].radius);
+        let own = match self.bodies[b].kind {
+            Kind::Ball => Aabb::around(centre, Vector::new(r, r, r)),
+            Kind::Disc => Aabb::around(centre, Vector::new(r, r, 0.0)),
+            Kind::Other => self.constants[b].shape.aabb().posed(&Pose { position: centre, orientation }),
+        };
+        own.grown(margin)
+    }
+
     /// Lists the pairs whose boxes may meet within `dt`, or within some sub-steps.
     pub(super) fn list(&mut self, dt: f64) -> Result<(), DemError> {
         let dt = self.horizon(dt);
         self.listed_for = dt;
-        for (b, body) in self.bodies.iter().enumerate() {
-            self.listed[b] = if self.sleepers.is_asleep(b) {
-                Listed { centre: body.pose.position, orientation: body.pose.orientation, margin: 0.0 }
-            } else {
-                Listed::new(body, &self.constants[b], &self.pull(b), dt)
-            };
+        for b in 0..self.bodies.len() {
+            self.listed[b] = self.listing(b, dt);
         }
-        self.list_again()?;
-        self.fastest = self.fastest_approach();
-        Ok(())
+        self.list_again()
+    }
+
+    /// Lists anew those that have gone farther than foreseen, if they are few; all otherwise.
+    pub(super) fn list_strayed(&mut self, dt: f64) -> Result<(), DemError> {
+        let ahead = self.horizon(dt);
+        let mut strayed = std::mem::take(&mut self.strays);
+        strayed.clear();
+        let few = self.bodies.len() / FEW;
+        let all = (0..self.bodies.len()).filter(|b| self.listed[*b].is_left(&self.bodies[*b]));
+        strayed.extend(all.take(few + 1).map(|b| b as u32));
+        let result = if strayed.len() > few || self.boxes.len() != self.bodies.len() {
+            self.list(dt)
+        } else {
+            for b in strayed.iter().map(|b| *b as usize) {
+                self.listed[b] = self.listing(b, ahead);
+                self.boxes[b] = self.listed_box(b);
+            }
+            let refreshed = self.pairs.refresh(&self.boxes, &self.movable, &strayed);
+            self.gather(refreshed)
+        };
+        self.strays = strayed;
+        result
     }
 
     /// Lists the pairs by where bodies are listed to be.
     pub(super) fn list_again(&mut self) -> Result<(), DemError> {
         self.boxes.clear();
-        self.movable.clear();
-        for ((body, constants), listed) in self.bodies.iter().zip(&self.constants).zip(&self.listed) {
-            let r = body.radius;
-            let own = match body.kind {
-                Kind::Ball => Aabb::around(listed.centre, Vector::new(r, r, r)),
-                Kind::Disc => Aabb::around(listed.centre, Vector::new(r, r, 0.0)),
-                Kind::Other => constants
-                    .shape
-                    .aabb()
-                    .posed(&Pose { position: listed.centre, orientation: listed.orientation }),
-            };
-            self.boxes.push(own.grown(listed.margin));
-            self.movable.push(constants.movable());
+        self.boxes.reserve(self.bodies.len());
+        for b in 0..self.bodies.len() {
+            let own = self.listed_box(b);
+            self.boxes.push(own);
         }
-        self.pairs.list(&self.boxes, &self.movable).map_err(|error| match error {
+        self.movable.clear();
+        self.movable.extend(self.constants.iter().map(Constants::movable));
+        let listed = self.pairs.list(&self.boxes, &self.movable);
+        self.gather(listed)
+    }
+
+    /// Gathers the pairs that are near from those whose boxes meet, with the walls'.
+    fn gather(&mut self, listed: Result<(), PairListError>) -> Result<(), DemError> {
+        listed.map_err(|error| match error {
             // Where bodies are to start was checked.
             PairListError::Box { body, .. } => {
                 DemError::Diverged { body: BodyId(body), velocity: self.bodies[body].twist.linear.into() }
@@ -173,6 +211,7 @@ impl<L: ContactLaw> RigidBodies<L> {
         }
         self.near[pairs..].sort_unstable();
         self.carry_over();
+        self.fastest = self.fastest_approach();
         Ok(())
     }
 

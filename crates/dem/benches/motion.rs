@@ -165,7 +165,7 @@ fn main() {
     let cube: Arc<dyn Shape> = Arc::new(Cuboid::new([2.0 * R; 3]).unwrap());
     // Many are softer, so that they lie after fewer steps.
     for (n, stiffness, seconds, steps) in
-        [(1_000, 1e9, 0.6, 1000), (10_000, 1e7, 0.4, 100), (100_000, 1e7, 0.4, 20)]
+        [(1_000, 1e9, 0.6, 1000), (10_000, 1e8, 0.4, 100), (100_000, 1e8, 0.25, 20)]
     {
         let name = format!("spheres {n}");
         if asked(&name) {

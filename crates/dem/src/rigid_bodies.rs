@@ -353,12 +353,12 @@ impl RigidBodies<Potential> {
         for pair in self.near.iter().chain(&asleep) {
             let (a, b) = (pair.a as usize, pair.b as usize);
             let (size, face, material) = match self.bodies.get(b) {
-                Some(body) => (self.constants[b].size, self.constants[b].flat, body.material),
+                Some(body) => (self.constants[b].size, self.constants[b].face, body.material),
                 None => (f64::INFINITY, f64::INFINITY, self.walls[wall_of(pair.b)].material),
             };
             let first = &self.constants[a];
             let properties = self.pair_properties(self.bodies[a].material, material);
-            let (sizes, face, plane) = ([first.size, size], first.flat.min(face), self.bodies[a].is_plane());
+            let (sizes, face, plane) = ([first.size, size], first.face.min(face), self.bodies[a].is_plane());
             let mut found = |patches: &[Overlap]| {
                 let volume = patches.iter().map(|o| o.volume).sum();
                 energy += self.law.energy(properties, sizes, face, volume, plane).0;

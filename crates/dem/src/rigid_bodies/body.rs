@@ -38,8 +38,26 @@ pub(super) struct Constants {
     pub(super) size: f64,
     /// Radius of a sphere around the centre of mass that is within the body; `size` if the centre is not.
     pub(super) inner: f64,
-    /// Area of its largest flat face.
+    /// Area of its largest flat face, as far as is known.
     pub(super) flat: f64,
+    /// The same; where nothing is known, what may be: as large as a cut through the inner sphere.
+    pub(super) face: f64,
+}
+
+/// Area of the largest flat face \[m²\]; `None` where the form does not tell.
+fn flat(form: &Form<'_>) -> Option<f64> {
+    match form {
+        Form::Hull(hull) => Some(hull.face_areas().fold(0.0, f64::max)),
+        Form::Facets(facets) => Some(facets.largest_flat()),
+        Form::Cylinder(c) => Some(PI * c.radius() * c.radius()),
+        Form::Union(parts) => {
+            parts.iter().try_fold(0.0, |largest, part| flat(&part.shape.form()).map(|f| f64::max(largest, f)))
+        }
+        Form::Smooth(_) | Form::Distance => None,
+        Form::Disc(_) | Form::Sphere(_) | Form::HalfSpace(_) | Form::Ellipsoid(_) | Form::Capsule(_) => {
+            Some(0.0)
+        }
+    }
 }
 
 impl std::fmt::Debug for Constants {
@@ -57,13 +75,12 @@ impl Constants {
         let plane = matches!(shape.form(), Form::Disc(_));
         let size = if plane { (inertia.volume / PI).sqrt() } else { (0.75 * inertia.volume / PI).cbrt() };
         let depth = -shape.signed_distance(Point::origin(), shape.bounding_radius());
-        let flat = match shape.form() {
-            Form::Hull(hull) => hull.face_areas().fold(0.0, f64::max),
-            Form::Cylinder(c) => PI * c.radius() * c.radius(),
-            _ => 0.0,
-        };
+        let inner = if depth > 0.0 { depth } else { size };
+        let flat = flat(&shape.form());
+        let face = flat.unwrap_or(PI * inner * inner);
+        let flat = flat.unwrap_or(0.0);
         let turning = Turning::new(&inertia.tensor, freedom.angular);
-        Self { inertia, freedom, turning, size, inner: if depth > 0.0 { depth } else { size }, flat, shape }
+        Self { inertia, freedom, turning, size, inner, flat, face, shape }
     }
     pub(super) fn kind(&self) -> Kind {
         match self.shape.form() {

@@ -171,7 +171,7 @@ impl<L: ContactLaw> View<'_, L> {
         let (twist_b, arm_b, length_b, size_b, face_b, inverse_b, material_b) = match other {
             Other::Body(b, constants, at_b) => {
                 let arm = overlap.centroid - at_b;
-                let (size, face) = if ROUND { (b.radius, 0.0) } else { (constants.size, constants.flat) };
+                let (size, face) = if ROUND { (b.radius, 0.0) } else { (constants.size, constants.face) };
                 let inner = if ROUND { b.radius } else { constants.inner };
                 let length = length(&arm, 1.0).max(SHORTEST_ARM * inner);
                 (b.twist, arm, length, size, face, b.inverse_mass, b.material)
@@ -213,7 +213,7 @@ impl<L: ContactLaw> View<'_, L> {
             arms: [length(&arm_a, -1.0).max(SHORTEST_ARM * inner_a), length_b],
             sizes: [size_a, size_b],
             mobility,
-            face: if ROUND { 0.0 } else { constants.flat.min(face_b) },
+            face: if ROUND { 0.0 } else { constants.face.min(face_b) },
             plane: a.is_plane(),
             dt,
         };

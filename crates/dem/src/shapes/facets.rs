@@ -167,6 +167,35 @@ impl Facets {
             }
         }
     }
+    /// Area of the largest flat part of the surface, of one triangle or of neighbours in one plane (to 1e-6 rad) \[m²\].
+    pub(crate) fn largest_flat(&self) -> f64 {
+        let normals: Vec<Vector> = self.faces.iter().map(|f| self.twice_area(f)).collect();
+        let mut root: Vec<u32> = (0..self.faces.len() as u32).collect();
+        let find = |root: &mut [u32], mut f: u32| {
+            while root[f as usize] != f {
+                root[f as usize] = root[root[f as usize] as usize];
+                f = root[f as usize];
+            }
+            f
+        };
+        for edge in &self.edges {
+            let [m, n] = [edge.left, edge.right].map(|f| normals[f as usize]);
+            if m.dot(&n) > 0.0 && m.cross(&n).norm() <= 1e-6 * m.norm() * n.norm() {
+                let [p, q] = [edge.left, edge.right].map(|f| find(&mut root, f));
+                root[p as usize] = q;
+            }
+        }
+        let mut areas = vec![0.0; self.faces.len()];
+        for f in 0..self.faces.len() {
+            areas[find(&mut root, f as u32) as usize] += 0.5 * normals[f].norm();
+        }
+        areas.into_iter().fold(0.0, f64::max)
+    }
+
+    fn twice_area(&self, face: &Face) -> Vector {
+        let [a, b, c] = face.corners.map(|v| self.vertices[v as usize]);
+        (b - a).cross(&(c - a))
+    }
 
     pub(crate) fn moments(&self) -> Moments {
         Moments::of(&self.vertices, self.faces.iter().map(|f| f.corners))

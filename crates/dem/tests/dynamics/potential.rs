@@ -1,6 +1,6 @@
 //! The law with a potential: energy, restitution, rest.
 use super::*;
-use dem::{ConvexPolyhedron, Cuboid, HalfSpace, Potential};
+use dem::{ConvexPolyhedron, Cuboid, Cylinder, HalfSpace, Part, Potential, TriangleMesh, Union};
 use interfaces::{Dynamics, Point, Rotation};
 
 type Conservative = RigidBodies<Potential>;
@@ -156,6 +156,41 @@ fn a_stack_of_cubes_rests() {
         }
         println!("e {e}: largest error of a contact's force {off:.1e} of a cube's weight");
         assert!(off < 0.05);
+    }
+}
+
+/// A cube of triangles, one of two halves, and an upright cylinder: their faces are flat, too, and lie on a hard floor without ever smaller
+/// steps.
+#[test]
+fn whatever_is_flat_rests() {
+    let vertices =
+        [0, 1, 2, 3, 4, 5, 6, 7].map(|i| [0, 1, 2].map(|axis| if i >> axis & 1 == 0 { -R } else { R }));
+    let sides = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let faces: Vec<[u32; 3]> =
+        sides.iter().flat_map(|s: &[u32; 4]| [[s[0], s[2], s[1]], [s[0], s[3], s[2]]]).collect();
+    let half: Arc<dyn Shape> = Arc::new(Cuboid::new([R, 2.0 * R, 2.0 * R]).unwrap());
+    let half_at = |x: f64| Part { shape: half.clone(), pose: Pose::at([x, 0.0, 0.0]) };
+    let shapes: [Arc<dyn Shape>; 3] = [
+        Arc::new(TriangleMesh::new(&vertices, &faces).unwrap()),
+        Arc::new(Union::new(vec![half_at(-0.5 * R), half_at(0.5 * R)]).unwrap()),
+        Arc::new(Cylinder::new(R, 2.0 * R).unwrap()),
+    ];
+    for shape in shapes {
+        let m = Material { restitution: 0.5, friction: 0.5, youngs_modulus: 1e8, ..material(0.5) };
+        let mut bodies = Conservative::with_law(Periods::default(), Potential::default());
+        bodies.add_wall(HalfSpace::new(Point::origin(), Vector::z()).unwrap(), m).unwrap();
+        bodies.set_gravity(Vector::new(0.0, 0.0, -9.81));
+        let upright = Pose::at([0.0, 0.0, R]);
+        let b = bodies.add(shape.clone(), m, upright, Twist::default(), Freedom::FREE).unwrap();
+        bodies.advance(0.05).unwrap();
+        let sub_steps = bodies.overlap_calls() as f64 * bodies.stable_dt() / 0.05;
+        let carried: f64 = bodies.contacts().map(|c| c.force.z).sum();
+        let off = (carried / (9.81 * bodies.inertia(b).mass) - 1.0).abs();
+        println!(
+            "{}: {sub_steps:.1} times as many sub-steps as by stable_dt, force off by {off:.1e}",
+            shape.name()
+        );
+        assert!(sub_steps < 50.0 && off < 1e-2);
     }
 }
 

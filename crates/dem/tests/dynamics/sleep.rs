@@ -181,3 +181,20 @@ fn thresholds_are_checked() {
         assert!(matches!(bodies.set_sleep(Some(Sleep { speed, time })), Err(DemError::Sleep { .. })));
     }
 }
+
+/// A plate that moves more slowly than who may sleep: what lies on it is carried all the same.
+#[test]
+fn nobody_sleeps_on_what_moves() {
+    let mut bodies = RigidBodies::new(Periods::default());
+    bodies.set_gravity(Vector::new(0.0, 0.0, -9.81));
+    bodies.set_sleep(Some(SLEEP)).unwrap();
+    let plate = Cuboid::new([6.0 * R, 6.0 * R, R]).unwrap();
+    let lifted = moving([0.0, 0.0, 0.5 * SLEEP.speed], [0.0; 3]);
+    bodies.add(plate, material(), Pose::at([0.0, 0.0, -0.5 * R]), lifted, Freedom::NONE).unwrap();
+    let cube = Cuboid::new([2.0 * R; 3]).unwrap();
+    let b = bodies.add(cube, material(), Pose::at([0.0, 0.0, R]), lifted, Freedom::FREE).unwrap();
+    let start = bodies.pose(b).position.z;
+    (0..500).for_each(|_| bodies.advance(1e-3).unwrap());
+    let risen = (bodies.pose(b).position.z - start) / (0.5 * lifted.linear.z);
+    assert!(bodies.n_asleep() == 0 && (risen - 1.0).abs() < 0.05, "{risen}");
+}

@@ -201,3 +201,25 @@ fn nobody_sleeps_on_what_moves() {
     let risen = (bodies.pose(b).position.z - start) / (0.5 * lifted.linear.z);
     assert!((risen - 1.0).abs() < 0.05, "{risen}");
 }
+
+/// A block that friction holds on an incline is held by it from the first step on when it wakes: its springs have slept, too.
+#[test]
+fn friction_is_remembered() {
+    let mut bodies = RigidBodies::new(Periods::default());
+    bodies.add_wall(HalfSpace::new(Point::origin(), Vector::z()).unwrap(), material()).unwrap();
+    bodies.set_gravity(Vector::new(2.0, 0.0, -9.81));
+    bodies.set_sleep(Some(SLEEP)).unwrap();
+    let block = Cuboid::new([4.0 * R, 4.0 * R, R]).unwrap();
+    let b = bodies
+        .add(block, material(), Pose::at([0.0, 0.0, 0.5 * R]), Twist::default(), Freedom::FREE)
+        .unwrap();
+    (0..600).for_each(|_| bodies.advance(1e-3).unwrap());
+    assert!(bodies.is_asleep(b));
+    bodies.apply(b, push(Vector::new(1e-9, 0.0, 0.0)));
+    assert!(!bodies.is_asleep(b));
+    let dt = bodies.stable_dt();
+    bodies.advance(dt).unwrap();
+    let held: f64 = bodies.contacts().map(|c| -c.force.x).sum();
+    let pull = 2.0 * bodies.inertia(b).mass;
+    assert!((held / pull - 1.0).abs() < 0.01, "{held} N of {pull} N");
+}

@@ -7,8 +7,10 @@ use crate::overlap::{Overlap, closed};
 use crate::{DemError, OverlapSolver};
 use interfaces::{Periods, Point, Pose, Vector};
 
-/// Overlaps of more than this times the cube of the smaller body's size (a quarter of a ball) are deep.
-const DEEP: f64 = 1.0;
+/// Overlaps of more than this times the cube of the smaller body's size are looked at: is the body still pushed back?
+const DEEP: f64 = 1e-3;
+/// A patch that is turned round goes on from one no farther away than this, in sizes of the smaller body.
+const BESIDE: f64 = 0.25;
 
 /// A body and what it may touch.
 #[derive(Clone, Copy)]
@@ -118,9 +120,13 @@ impl Meeting<'_> {
             smaller = smaller.min(size(b, c));
         }
         let deep = DEEP * smaller * smaller * if self.a.is_plane() { 1.0 } else { smaller };
+        let turned = |p: &Patch<M>| {
+            p.volume > deep
+                && p.normal.dot(&overlap.normal) < 0.0
+                && (p.point - overlap.centroid).norm() < BESIDE * smaller
+        };
         overlap.volume > deep
-            && (overlap.area() * smaller <= 1e-9 * overlap.volume
-                || before.is_some_and(|p| p.volume > deep && p.normal.dot(&overlap.normal) < 0.0))
+            && (overlap.area() * smaller <= 1e-9 * overlap.volume || before.is_some_and(turned))
     }
 
     /// The overlap of any two.

@@ -280,3 +280,29 @@ fn who_goes_through_another_is_told() {
     // They go on to be asked, saved and so on.
     assert!(bodies.kinetic_energy().is_finite() && bodies.n_contacts() == 1);
 }
+
+/// A sheet a twentieth of the ball's radius thick shares little with it, and turns the ball back or tells that it could not.
+#[test]
+fn thin_sheets_are_not_passed_unseen() {
+    let sheet: Arc<dyn Shape> = Arc::new(Cuboid::new([6.0 * R, 6.0 * R, 0.05 * R]).unwrap());
+    let m = Material { friction: 0.0, ..material(1e6) };
+    let (mut stopped, mut told) = (0, 0);
+    for speed in [0.003, 0.03, 0.3, 3.0, 30.0] {
+        let mut bodies = RigidBodies::with_law(Periods::default(), Potential::default());
+        bodies.add(sheet.clone(), m, Pose::at([0.0; 3]), Twist::default(), Freedom::NONE).unwrap();
+        let b = add(&mut bodies, &ball(R), m, Pose::at([0.1 * R, 0.2 * R, 1.1 * R]));
+        bodies.set_twist(b, moving([0.0, 0.0, -speed], [0.0; 3]));
+        let result = (0..200).try_for_each(|_| bodies.advance(0.05 * R / speed));
+        let height = bodies.pose(b).position.z;
+        println!("{speed} m/s: {result:?}, at {:.2} R", height / R);
+        match result {
+            Ok(()) => {
+                assert!(height > R);
+                stopped += 1;
+            }
+            Err(DemError::PassedThrough { .. }) => told += 1,
+            Err(error) => panic!("{error}"),
+        }
+    }
+    assert!(stopped > 0 && told > 0);
+}

@@ -227,3 +227,32 @@ impl ContactLaw for Potential {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Material;
+
+    /// E is the integral of E′ from V = 0 on, through the gentle beginning and beyond, in space and in the plane.
+    #[test]
+    fn energy_is_the_integral_of_its_slope() {
+        let p = PairProperties::new(&Material::default(), &Material::default());
+        let law = Potential::default();
+        let (sizes, face) = ([0.01, 0.02], 3e-4);
+        let first = ONSET * face * series(sizes[0], sizes[1]);
+        for (face, plane) in [(face, false), (0.0, false), (0.0, true)] {
+            let (n, end) = (4000, 5.0 * first);
+            let at = |v: f64| law.energy(&p, sizes, face, v, plane);
+            let mut sum = 0.0;
+            for i in 0..n {
+                // Cubes of equal steps: the root at V = 0 does no harm.
+                let [low, high] = [i, i + 1].map(|k| end * (f64::from(k) / f64::from(n)).powi(3));
+                sum += (high - low) * at(0.5 * (low + high)).1;
+                if (i + 1) % 500 == 0 {
+                    let (energy, _) = at(high);
+                    assert!((sum / energy - 1.0).abs() < 1e-4, "{face} {plane}: {sum:e} {energy:e}");
+                }
+            }
+        }
+    }
+}

@@ -91,6 +91,28 @@ fn restitution_is_what_was_asked_for() {
     assert!(worst < 5e-3);
 }
 
+/// A ball that meets the tip of a rod, which turns away: the places that touched part with e times the speed at which they met.
+#[test]
+fn restitution_off_centre() {
+    for e in [0.2, 0.5, 0.8, 1.0] {
+        let mut bodies = Conservative::with_law(Periods::default(), Potential::default());
+        let m = material(e);
+        let rod = Cuboid::new([0.5 * R, 20.0 * R, 0.5 * R]).unwrap();
+        let rod = bodies.add(rod, m, Pose::at([0.0; 3]), Twist::default(), Freedom::FREE).unwrap();
+        let arm = Vector::new(0.25 * R, 9.0 * R, 0.0);
+        let start = Pose::at([1.255 * R, 9.0 * R, 0.0]);
+        let thrown = moving([-0.1, 0.0, 0.0], [0.0; 3]);
+        let b = bodies.add(sphere().shape(), m, start, thrown, Freedom::FREE).unwrap();
+        let dt = bodies.stable_dt();
+        run_until_apart(&mut bodies, dt, |_| 1.0);
+        let apart = bodies.twist(b).linear.x - bodies.twist(rod).at(arm).x;
+        let off = apart / (0.1 * e) - 1.0;
+        println!("e {e}: off by {off:.1e}");
+        assert!(off.abs() < 2e-3, "{off}");
+        assert!(bodies.twist(rod).angular.z.abs() * 9.0 * R > 0.02);
+    }
+}
+
 /// Cubes that meet anyhow keep their energy; so little is lost that it is the time step's error, of high order.
 #[test]
 fn cubes_keep_energy() {

@@ -131,9 +131,8 @@ impl OverlapSolver {
         // The most frequent pair of all, before all else.
         match (self.route, a.form(), b.form()) {
             (None, Form::Sphere(p), Form::Sphere(q)) => {
-                if let Some(patch) = p.overlap(at_a.position, q, at_b.position) {
-                    self.patches.push(patch);
-                }
+                let patches = &mut self.patches;
+                closed::spheres_to(p.radius(), at_a.position, q.radius(), at_b.position, |o| patches.push(o));
             }
             _ => self.pair(a, at_a, b, at_b)?,
         }

@@ -1,9 +1,15 @@
 //! Capsules and cylinders with one another, with spheres and with convex polyhedra: integrals over parallel slices.
+mod adaptive;
 mod apart;
+mod ball;
 mod breaks;
+mod circle;
+mod common;
+mod crossing;
 mod ends;
 mod frame;
 mod heights;
+mod known;
 mod outline;
 mod piece;
 mod polyhedron;
@@ -13,6 +19,7 @@ mod slice;
 mod sweep;
 #[cfg(test)]
 mod tests;
+mod touches;
 mod tube;
 
 use super::Overlap;
@@ -31,12 +38,15 @@ const FINEST: f64 = 1e-12;
 const SLACK: f64 = 4e-16;
 /// Sine of the angle between axes that are taken for parallel.
 const PARALLEL: f64 = 1e-15;
+/// Sine of the angle between axes from which on they are not parallel.
+const STEEP: f64 = 1e-3;
 /// Cosine of the angle to the axis from which on faces are across a tube, not beside it.
 const BESIDE: f64 = 0.99;
 
 /// Slices along the axes of both bodies. A capsule's is all within a radius of a straight line, a cylinder's a rectangle, and a
 /// polyhedron's a polygon: what two of them share has an outline of straight pieces and arcs, along which area,
 /// first moment and the integrals of the surface's normal are known exactly. What remains is one integral over the height.
+/// Balls are sliced across the other's axis instead, where they and tubes are discs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Slices {
     polyhedron: SlicedPolyhedron,
@@ -76,16 +86,39 @@ impl Slices {
         if let Some(found) = ends::overlap(a, b) {
             return Some(found);
         }
-        let axis = if a.half > 0.0 { a.axis } else { b.axis };
-        let both = if a.half > 0.0 && b.half > 0.0 { a.axis.cross(&b.axis) } else { Vector::zeros() };
+        if a.ends == Ends::Round && b.ends == Ends::Round && ends::apart(a, b) {
+            return None;
+        }
+        let normal = (-apart).try_normalize(0.0).unwrap_or(-b.axis);
+        if a.half == 0.0 {
+            return ball::overlap(a.at.position, a.radius, b, normal, tolerance);
+        }
+        if b.half == 0.0 {
+            return ball::overlap(b.at.position, b.radius, a, -normal, tolerance).map(|o| o.swapped());
+        }
+        let found = crossing::overlap(a, b, tolerance).or_else(|| ends::end(a, b, normal, tolerance));
+        if found.is_some() {
+            return found;
+        }
+        self.along_both(a, b, tolerance, a.axis.cross(&b.axis).norm() > STEEP)
+    }
+
+    /// By slices along both axes, from one known height at which their outline changes to the next (`known`) if there are any.
+    fn along_both(&mut self, a: &Tube, b: &Tube, tolerance: f64, known: bool) -> Option<Overlap> {
+        let apart = b.at.position - a.at.position;
+        let both = a.axis.cross(&b.axis);
         // Across both axes or, where there is but one direction, across that and the way to the other centre.
         let symmetric = both.norm() <= PARALLEL;
-        let normal = if symmetric { axis.cross(&apart) } else { both };
+        let across = if symmetric { a.axis.cross(&apart) } else { both };
         let origin = if a.bound() < b.bound() { a.at.position } else { b.at.position };
-        let frame = Frame::new(origin, axis, normal);
-        let scene = Scene { slack: SLACK * (reach + apart.norm()), tolerance, symmetric };
-        let found = self.integrate(&scene, a.sliced(&frame), Other::Tube(b.sliced(&frame)))?;
-        let normal = (-apart).try_normalize(0.0).unwrap_or(-axis);
+        let frame = Frame::new(origin, a.axis, across);
+        let slack = SLACK * (a.bound() + b.bound() + apart.norm());
+        let scene = Scene { slack, tolerance, symmetric };
+        let sliced = [a.sliced(&frame), b.sliced(&frame)];
+        let found = if known { known::integrate(sliced, tolerance) } else { None };
+        let [first, second] = sliced;
+        let found = found.or_else(|| self.integrate(&scene, first, Other::Tube(second)))?;
+        let normal = (-apart).try_normalize(0.0).unwrap_or(-a.axis);
         match found.of {
             [true, false] => Some(Overlap::whole(a.volume(), a.at.position, normal)),
             [false, true] => Some(Overlap::whole(b.volume(), b.at.position, normal)),

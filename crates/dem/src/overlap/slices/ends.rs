@@ -1,4 +1,4 @@
-//! Round ends that meet nothing but round or flat ends: closed forms.
+//! Round ends: closed forms where they meet nothing but round or flat ends, balls where they meet other parts of one body only.
 use super::tube::{Ends, Tube};
 use crate::Overlap;
 use crate::overlap::closed;
@@ -34,6 +34,46 @@ pub(super) fn overlap(a: &Tube, b: &Tube) -> Option<Overlap> {
         [Ends::Flat, Ends::Round] => face(b, a).map(|o| o.swapped()),
         [Ends::Flat, Ends::Flat] => None,
     }
+}
+
+/// Whether the axes of two capsules are no nearer than both radii (Ericson, Real-Time Collision Detection, 5.1.9).
+pub(super) fn apart(a: &Tube, b: &Tube) -> bool {
+    let between = b.at.position - a.at.position;
+    let (cos, sin) = (a.axis.dot(&b.axis), a.axis.cross(&b.axis).norm_squared());
+    let (along_a, along_b) = (a.axis.dot(&between), b.axis.dot(&between));
+    // Any place will do of lines that are parallel.
+    let s = if sin > 1e-12 { (along_a - cos * along_b) / sin } else { 0.0 };
+    let t = (s.clamp(-a.half, a.half) * cos - along_b).clamp(-b.half, b.half);
+    let s = (along_a + t * cos).clamp(-a.half, a.half);
+    let reach = a.radius + b.radius;
+    (between + b.axis * t - a.axis * s).norm_squared() >= reach * reach
+}
+
+/// What both share where that is between a round end of the one and any part of the other, which is a ball and a tube; `None` where it is
+/// not, or not for sure.
+///
+/// What is behind the plane that touches the other body in the place nearest to the ball is a cap of the ball, and if this stays clear of
+/// the plane where the straight part begins, the common region cannot leave the ball: it is convex.
+pub(super) fn end(a: &Tube, b: &Tube, normal: Vector, tolerance: f64) -> Option<Overlap> {
+    let of = |tube: &Tube, other: &Tube| {
+        if tube.ends == Ends::Flat || tube.half == 0.0 {
+            return None;
+        }
+        let ball = tube.end_towards(tube.axis.dot(&(other.at.position - tube.at.position)));
+        let out = ball.out?;
+        let (towards, distance) = other.plane_before(ball.centre);
+        let along = towards.dot(&out);
+        let rim = ((ball.radius - distance) * (ball.radius + distance)).max(0.0).sqrt();
+        let clear = distance.abs() < ball.radius
+            && -along * ball.radius < distance
+            && distance * along - rim * towards.cross(&out).norm() > 0.0;
+        if clear { Some(ball) } else { None }
+    };
+    if let Some(ball) = of(a, b) {
+        return super::ball::overlap(ball.centre, ball.radius, b, normal, tolerance);
+    }
+    let ball = of(b, a)?;
+    super::ball::overlap(ball.centre, ball.radius, a, -normal, tolerance).map(|o| o.swapped())
 }
 
 /// What a tube and the half-space at a signed `distance` of its middle, out of which leads `n`, share, if it is the cap of a ball at
@@ -93,6 +133,30 @@ fn face(a: &Tube, b: &Tube) -> Option<Overlap> {
 }
 
 impl Tube {
+    /// The direction from a place x into the tube and the distance along it at which a plane across it touches the tube, in the
+    /// place nearest to x if x is outside.
+    fn plane_before(&self, x: Point) -> (Vector, f64) {
+        let from = x - self.at.position;
+        let along = self.axis.dot(&from);
+        let beyond = along - along.clamp(-self.half, self.half);
+        let across = from - self.axis * along;
+        let distance = across.norm();
+        if self.ends == Ends::Round {
+            let way = across + self.axis * beyond;
+            let to_line = way.norm();
+            return (way / -to_line, to_line - self.radius);
+        }
+        let (side, end) = (distance - self.radius, along.abs() - self.half);
+        let (out, up) = (across / distance, self.axis * 1f64.copysign(along));
+        if side > 0.0 && end > 0.0 {
+            let way = side.hypot(end);
+            ((out * side + up * end) / -way, way)
+        } else if side > end {
+            (-out, side)
+        } else {
+            (-up, end)
+        }
+    }
     /// The ball at the end along the axis if `along` is positive, else at the other one.
     fn end_towards(&self, along: f64) -> Ball {
         let out = if along < 0.0 { -self.axis } else { self.axis };

@@ -1,8 +1,6 @@
 //! A range of heights as rules see it.
-use std::f64::consts::FRAC_PI_2;
-
 /// Heights between two ends as a function of u between −1 and 1: linear, but quadratic at an end that is round, where the
-/// integrand may be one of the square root of the distance, and m + w sin πu/2 if both are.
+/// integrand may be one of the square root of the distance, and m + ½w(3u − u³) if both are.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Piece {
     pub(super) ends: [f64; 2],
@@ -13,6 +11,10 @@ pub(super) struct Piece {
 }
 
 impl Piece {
+    /// All between two heights, which may be round.
+    pub(super) fn between(low: (f64, bool), high: (f64, bool)) -> Self {
+        Self { ends: [low.0, high.0], round: [low.1, high.1], part: [-1.0, 1.0], near: [None; 2] }
+    }
     /// Both halves, knowing what was in the `middle`.
     pub(super) fn halves(self, middle: (f64, u64)) -> [Self; 2] {
         let [from, to] = self.part;
@@ -25,7 +27,7 @@ impl Piece {
     }
     /// The height at a place of a rule, and its change with that.
     #[inline]
-    pub(super) fn height(&self, [share, sin, cos, ..]: &[f64; 6]) -> [f64; 2] {
+    pub(super) fn height(&self, share: f64) -> [f64; 2] {
         let ([low, high], [from, to]) = (self.ends, self.part);
         let (middle, half, scale) = (0.5 * (low + high), 0.5 * (high - low), 0.5 * (to - from));
         let u = 0.5 * (from + to) + scale * share;
@@ -34,8 +36,7 @@ impl Piece {
             [true, false] => [low + 0.5 * half * (1.0 + u) * (1.0 + u), half * (1.0 + u) * scale],
             [false, true] => [high - 0.5 * half * (1.0 - u) * (1.0 - u), half * (1.0 - u) * scale],
             [true, true] => {
-                let (sin, cos) = if scale == 1.0 { (*sin, *cos) } else { (FRAC_PI_2 * u).sin_cos() };
-                [middle + half * sin, FRAC_PI_2 * half * cos * scale]
+                [middle + 0.5 * half * u * (3.0 - u * u), 1.5 * half * (1.0 - u) * (1.0 + u) * scale]
             }
         }
     }
@@ -47,7 +48,8 @@ impl Piece {
             [false, false] => (h - 0.5 * (low + high)) / half,
             [true, false] => (2.0 * (h - low).max(0.0) / half).sqrt() - 1.0,
             [false, true] => 1.0 - (2.0 * (high - h).max(0.0) / half).sqrt(),
-            [true, true] => ((h - 0.5 * (low + high)) / half).clamp(-1.0, 1.0).asin() / FRAC_PI_2,
+            // The cubic's root by three times the angle.
+            [true, true] => 2.0 * (((h - 0.5 * (low + high)) / half).clamp(-1.0, 1.0).asin() / 3.0).sin(),
         };
         u.clamp(self.part[0], self.part[1])
     }
@@ -70,7 +72,6 @@ impl Piece {
         pieces
     }
     pub(super) fn limits(&self) -> [f64; 2] {
-        let at = |share: f64, cos| self.height(&[share, share, cos, 0.0, 0.0, 0.0])[0];
-        [at(-1.0, 0.0), at(1.0, 0.0)]
+        [-1.0, 1.0].map(|share| self.height(share)[0])
     }
 }

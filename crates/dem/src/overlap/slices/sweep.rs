@@ -109,8 +109,8 @@ impl<F: FnMut(f64) -> Section> Sweep<F> {
         self.n += 1;
     }
     /// The slice at a place of a rule, and what it adds per weight.
-    fn at(&mut self, piece: &Piece, rule: &[f64; 6]) -> (Found, Integrals) {
-        let [h, change] = piece.height(rule);
+    fn at(&mut self, piece: &Piece, rule: &[f64; 4]) -> (Found, Integrals) {
+        let [h, change] = piece.height(rule[0]);
         let s = (self.section)(h);
         self.of = [self.of[0] | s.of[0], self.of[1] | s.of[1]];
         ((h, s), per_height(h, &s) * change)
@@ -212,7 +212,7 @@ impl<F: FnMut(f64) -> Section> Sweep<F> {
         let (mut same, mut sums, mark) = (true, looked.fifteen, looked.found[3].1.mark);
         for (i, rule) in RULES[7..].iter().enumerate() {
             let (found, part) = self.at(piece, rule);
-            sums = sums + part * rule[5];
+            sums = sums + part * rule[3];
             same &= found.1.mark == mark;
             all[2 * i] = found;
         }

@@ -1,5 +1,6 @@
 //! Slices against closed forms, integrals over other slices, polyhedra, and properties that every overlap has.
 mod exact;
+mod independent;
 mod properties;
 
 use crate::{Capsule, ConvexPolyhedron, Cuboid, Cylinder, Overlap, OverlapSolver, Route, Shape, Sphere};

@@ -64,11 +64,11 @@ impl Tube {
 /// A tube as a frame's slices see it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SlicedTube {
-    centre: Place,
-    axis: Place,
-    half: f64,
-    radius: f64,
-    ends: Ends,
+    pub(super) centre: Place,
+    pub(super) axis: Place,
+    pub(super) half: f64,
+    pub(super) radius: f64,
+    pub(super) ends: Ends,
     pub(super) low: f64,
     pub(super) high: f64,
 }
@@ -77,6 +77,17 @@ impl SlicedTube {
     /// Whether its slices have arcs.
     pub(super) fn is_round(&self) -> bool {
         self.ends == Ends::Round
+    }
+    /// Whether both have a round end that is the same but for rounding.
+    pub(super) fn same_end(&self, other: &Self) -> bool {
+        let close = 1e-9 * (self.radius + other.radius);
+        let near = |x: f64, y: f64| (x - y).abs() <= close;
+        let ends = |tube: &Self| [1.0, -1.0].map(|sign| tube.centre + tube.axis * (sign * tube.half));
+        self.is_round()
+            && other.is_round()
+            && near(self.radius, other.radius)
+            && near(self.low, other.low)
+            && ends(self).iter().any(|x| ends(other).iter().any(|y| (x - y).norm() <= close))
     }
     pub(super) fn lift(&mut self, by: f64) {
         (self.low, self.high) = (self.high + by - 2.0 * self.radius, self.high + by);

@@ -84,6 +84,25 @@ fn parallel_cylinders() {
 }
 
 #[test]
+fn parallel_capsules() {
+    let (long, short) = (capsule(0.5, 1.4), capsule(0.35, 0.6));
+    for x in [0.8, 0.5, 0.2, 0.05, 0.0] {
+        for z in [0.0, 0.2, 0.4, 0.9, 1.3] {
+            for turn in [0.0, 1e-12, 1e-5] {
+                let at = pose([0.6 * x, 0.8 * x, z], [turn, 0.0, 0.4]);
+                let o = slices(1e-9, &long, here(), &short, at).map_or(0.0, |o| o.volume);
+                let mut ends = [-1.2, -0.7, 0.7, 1.2, z - 0.65, z - 0.3, z + 0.3, z + 0.65];
+                ends.sort_by(f64::total_cmp);
+                let slice = |h: f64| lens(radius(&long, h), radius(&short, h - z), x);
+                let exact: f64 = ends.windows(2).map(|w| integral(w[0], w[1], slice)).sum();
+                let bound = 1e-7 + 2.0 * turn;
+                assert!((o - exact).abs() < bound * short.inertia(1.0).volume, "{x} {z} {turn}: {o} {exact}");
+            }
+        }
+    }
+}
+
+#[test]
 fn spheres_in_bodies_of_revolution() {
     let shapes: [&dyn Shape; 2] = [&cylinder(0.5, 1.2), &capsule(0.4, 0.8)];
     for shape in shapes {

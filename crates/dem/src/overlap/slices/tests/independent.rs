@@ -95,7 +95,6 @@ fn all_is_smooth_between_known_heights() {
             errors.extend(known::integrate(tubes, 1.0).map(|found| (found.sums.volume / exact - 1.0).abs()));
         }
         errors.sort_by(f64::total_cmp);
-        println!("{kinds} {:?}", [0.5, 0.9, 0.99, 0.999].map(|q| errors[(q * 400.0) as usize]));
         assert!(errors[200] < 2e-5 && errors[396] < 2e-4, "{} {}", errors[200], errors[396]);
     }
 }

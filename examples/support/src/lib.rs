@@ -8,6 +8,7 @@ pub mod cpu;
 pub mod duct_cylinder;
 pub mod eccentric_cylinders;
 pub mod free_stream;
+pub mod granular;
 pub mod moved_body;
 pub mod picture;
 pub mod prescribed_bodies;

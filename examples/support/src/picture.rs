@@ -10,6 +10,7 @@ mod canvas;
 mod colour;
 pub mod plot;
 pub mod sketch;
+pub mod solids;
 pub mod summary;
 mod text;
 

@@ -75,23 +75,34 @@ impl Progress {
         if step.is_multiple_of(STRIDE) {
             let now = Instant::now();
             if now.duration_since(self.shown) >= PAUSE {
-                self.show(step, status(), now);
+                let s = status();
+                let text = format!("dt {:.2e} s  Co {:.2}  div {:.1e}", s.dt, s.courant, s.divergence);
+                self.show(step, s.time, &text, now);
             }
         }
     }
 
-    fn show(&mut self, step: u64, status: Status, now: Instant) {
+    /// The same for runs that tell something else: `text` at the simulated `time`.
+    #[inline]
+    pub fn tell(&mut self, step: u64, time: f64, text: impl FnOnce() -> String) {
+        let now = Instant::now();
+        if now.duration_since(self.shown) >= PAUSE {
+            self.show(step, time, &text(), now);
+        }
+    }
+
+    fn show(&mut self, step: u64, time: f64, text: &str, now: Instant) {
         let seconds = now.duration_since(self.shown).as_secs_f64();
         if let Some(before) = self.shown_step {
             // Rates forget with a time of two seconds; the first one takes what it sees.
             let keep = if self.steps_per_second == 0.0 { 0.0 } else { (-seconds / 2.0).exp() };
             let blend = |old: f64, new: f64| keep * old + (1.0 - keep) * new / seconds;
             self.steps_per_second = blend(self.steps_per_second, step.saturating_sub(before) as f64);
-            self.simulated_per_second = blend(self.simulated_per_second, status.time - self.shown_time);
+            self.simulated_per_second = blend(self.simulated_per_second, time - self.shown_time);
         }
-        (self.shown, self.shown_step, self.shown_time) = (now, Some(step), status.time);
+        (self.shown, self.shown_step, self.shown_time) = (now, Some(step), time);
 
-        let done = ((status.time - self.begin) / (self.end - self.begin)).clamp(0.0, 1.0);
+        let done = ((time - self.begin) / (self.end - self.begin)).clamp(0.0, 1.0);
         let line = self.bar.is_none() && done >= self.next_line;
         if line {
             self.next_line = ((done * LINES).floor() + 1.0) / LINES;
@@ -99,13 +110,10 @@ impl Progress {
         if self.bar.is_none() && !line {
             return;
         }
-        let position = format!("t = {:.4} of {:.4} s", status.time, self.end);
-        let left = (self.end - status.time) / self.simulated_per_second;
+        let position = format!("t = {:.4} of {:.4} s", time, self.end);
+        let left = (self.end - time) / self.simulated_per_second;
         let left = Duration::try_from_secs_f64(left).map_or_else(|_| "?".into(), readable);
-        let message = format!(
-            "step {step}  dt {:.2e} s  Co {:.2}  div {:.1e}  {:.0} steps/s  {left} left",
-            status.dt, status.courant, status.divergence, self.steps_per_second
-        );
+        let message = format!("step {step}  {text}  {:.0} steps/s  {left} left", self.steps_per_second);
         match &self.bar {
             Some(bar) => {
                 bar.set_prefix(position);

@@ -1,0 +1,69 @@
+//! The contact law that a flag chooses.
+use clap::ValueEnum;
+use dem::{Chen, ContactLaw, DemError, Material, Memory, PairProperties, Potential, Push, RigidBodies, Rolling, Touch};
+use interfaces::Vector;
+
+/// The bodies of all these examples.
+pub type Granulate = RigidBodies<Rolling<Law>>;
+
+/// What flags call the laws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Ways {
+    /// The law of Chen (2012), as in Isoz et al. (2023): for bodies with flat faces.
+    Chen,
+    /// The law that has a potential and gives back exactly what --restitution says: for round bodies.
+    Potential,
+}
+
+/// One of two laws, chosen when the program runs.
+#[derive(Clone, Copy, Debug)]
+pub enum Law {
+    /// [`Chen`].
+    Chen(Chen),
+    /// [`Potential`].
+    Potential(Potential),
+}
+
+impl From<Ways> for Law {
+    fn from(way: Ways) -> Self {
+        match way {
+            Ways::Chen => Self::Chen(Chen::default()),
+            Ways::Potential => Self::Potential(Potential::default()),
+        }
+    }
+}
+
+impl ContactLaw for Law {
+    /// What each of them keeps.
+    type Memory = (Vector, <Potential as ContactLaw>::Memory);
+    const MOBILITY: bool = true;
+
+    fn properties(&self, a: &Material, b: &Material) -> PairProperties {
+        match self {
+            Self::Chen(law) => law.properties(a, b),
+            Self::Potential(law) => law.properties(a, b),
+        }
+    }
+    fn length(&self, arms: [f64; 2]) -> f64 {
+        match self {
+            Self::Chen(law) => law.length(arms),
+            Self::Potential(law) => law.length(arms),
+        }
+    }
+    #[inline]
+    fn push(&self, p: &PairProperties, touch: &Touch<'_>, memory: &mut Self::Memory) -> Push {
+        match self {
+            Self::Chen(law) => law.push(p, touch, &mut memory.0),
+            Self::Potential(law) => law.push(p, touch, &mut memory.1),
+        }
+    }
+    fn check(&self) -> Result<(), DemError> {
+        match self {
+            Self::Chen(law) => law.check(),
+            Self::Potential(law) => law.check(),
+        }
+    }
+}
+
+// The memory of both is one memory, for restarts.
+const _: () = assert!(<<Law as ContactLaw>::Memory as Memory>::N == 9);

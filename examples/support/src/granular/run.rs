@@ -1,0 +1,243 @@
+//! The time loop.
+use super::album::Album;
+use super::law::Granulate;
+use super::measures::{Totals, totals};
+use super::options::RunOptions;
+use super::record::History;
+use super::scene::Scene;
+use crate::Outcome;
+use crate::progress::Progress;
+use coupling::CheckpointError;
+use dem::placing::{BodyRow, write_bodies};
+use interfaces::{Checkpoint, Dynamics, Kinematics, RestartError};
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Did the run come to its end?
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// Yes.
+    Whole,
+    /// It was stopped, and its state is saved.
+    Stopped,
+}
+
+/// Stable steps in one advance.
+const STEPS: f64 = 20.0;
+/// Time between two saved states.
+const SAVE_EVERY: Duration = Duration::from_secs(60);
+/// What the shell is told after Ctrl-C.
+const INTERRUPTED: u8 = 130;
+
+/// The frame of an example's `main`: Ctrl-C sets the flag, a second one ends the program at once; errors are told.
+pub fn main_of(threads: usize, run: impl FnOnce(&AtomicBool) -> Outcome<Ending> + Send) -> ExitCode {
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = stop.clone();
+    let handler = move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(INTERRUPTED.into());
+        }
+    };
+    let result = || -> Outcome<Ending> {
+        ctrlc::set_handler(handler)?;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.clamp(1, 256)).build()?;
+        pool.install(|| run(&stop))
+    };
+    match result() {
+        Ok(Ending::Whole) => ExitCode::SUCCESS,
+        Ok(Ending::Stopped) => ExitCode::from(INTERRUPTED),
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Where a run is: rows and parts of the next row done, into how many parts that one is divided, steps so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Clock {
+    row: usize,
+    part: usize,
+    parts: usize,
+    steps: u64,
+}
+
+/// What is saved: the bodies, the clock, and a number for the set-up.
+struct Whole<'a> {
+    bodies: &'a mut Granulate,
+    clock: Clock,
+    setup: u64,
+}
+
+impl Whole<'_> {
+    /// All bits of a number as numbers that a state can hold.
+    fn setup(&self) -> [f64; 2] {
+        [f64::from((self.setup >> 32) as u32), f64::from(self.setup as u32)]
+    }
+}
+
+impl Checkpoint for Whole<'_> {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        let Clock { row, part, parts, steps } = self.clock;
+        sink("setup", &self.setup());
+        sink("clock", &[row as f64, part as f64, parts as f64, steps as f64]);
+        self.bodies.save(&mut |name, values| sink(&format!("bodies.{name}"), values));
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        if RestartError::take(source, "setup", 2)? != self.setup() {
+            return Err(RestartError::Differs("flags".into()));
+        }
+        self.bodies.restore(&|name| source(&format!("bodies.{name}")))
+    }
+}
+
+/// Reads only the clock of a saved state.
+struct ClockOnly(Clock);
+impl Checkpoint for ClockOnly {
+    fn save(&self, _: &mut dyn FnMut(&str, &[f64])) {}
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        let c = RestartError::take(source, "clock", 4)?;
+        self.0 = Clock { row: c[0] as usize, part: c[1] as usize, parts: c[2] as usize, steps: c[3] as u64 };
+        Ok(())
+    }
+}
+
+/// FNV-1a of what the flags say.
+fn fingerprint(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
+}
+
+/// Runs the scene from 0 to `end` \[s\] and writes, to `out`: `motion.csv`, `bodies.pvd` with `bodies/*.vtp`, `frames/*.png`, `state.bin`, and in
+/// the end `bodies.csv`. `setup` tells all that a run that goes on must have in common with the one before.
+///
+/// # Errors
+/// Those of the bodies, with the time at which they came up, and of the disk.
+pub fn run(
+    scene: &mut impl Scene,
+    bodies: &mut Granulate,
+    options: &RunOptions,
+    (end, out, setup): (f64, &Path, &str),
+    stop: &AtomicBool,
+) -> Outcome<(Ending, History)> {
+    options.check(end)?;
+    std::fs::create_dir_all(out).map_err(|e| format!("{}: {e}", out.display()))?;
+    let frames = options.frames.min(options.rows);
+    let every = options.rows.div_ceil(frames);
+    let rows = every * frames;
+    let setup = fingerprint(&format!("{setup} {end:?} {rows}"));
+    let state = out.join("state.bin");
+    let time_of = |row: usize| end * row as f64 / rows as f64;
+    let columns: Vec<String> = std::iter::once("time")
+        .chain(Totals::COLUMNS)
+        .chain(scene.columns())
+        .map(str::to_owned)
+        .collect();
+
+    let mut clock = Clock::default();
+    let motion = out.join("motion.csv");
+    let (mut history, mut album);
+    if options.resume {
+        clock = load(&state, scene, bodies, setup, &time_of)?;
+        history = History::resume(&motion, columns, clock.row + 1)?;
+        album = Album::new(out, !options.no_images, !options.no_vtk, Some(time_of(clock.row)))?;
+    } else {
+        for old in ["state.bin", "bodies.csv", "summary.png", "result.json"] {
+            let _ = std::fs::remove_file(out.join(old));
+        }
+        history = History::new(&motion, columns)?;
+        album = Album::new(out, !options.no_images, !options.no_vtk, None)?;
+        scene.feed(bodies, 0.0)?;
+        bodies.check_overlaps()?;
+        history.push(row_of(scene, bodies, 0.0))?;
+        album.add(0, 0.0, scene, bodies)?;
+    }
+
+    let mut progress = Progress::new(time_of(clock.row), end);
+    let (mut ending, mut saved) = (Ending::Whole, Instant::now());
+    'rows: while clock.row < rows {
+        let (begin, until) = (time_of(clock.row), time_of(clock.row + 1));
+        if clock.parts == 0 {
+            if clock.row > 0 {
+                scene.feed(bodies, begin)?;
+            }
+            clock.parts = ((until - begin) / (STEPS * bodies.stable_dt())).ceil().max(1.0) as usize;
+        }
+        let dt = (until - begin) / clock.parts as f64;
+        while clock.part < clock.parts {
+            let time = begin + dt * clock.part as f64;
+            scene.steer(bodies, time);
+            bodies.advance(dt).map_err(|e| format!("at t = {time:.6} s: {e}"))?;
+            clock.part += 1;
+            clock.steps += (dt / bodies.stable_dt()).ceil().max(1.0) as u64;
+            progress.tell(clock.steps, time + dt, || {
+                let (n, contacts) = (bodies.n_bodies() - scene.first_grain(), bodies.n_contacts());
+                let energy = totals(bodies, scene.first_grain(), &scene.domain()).kinetic;
+                format!("dt {:.1e} s  {n} grains  {contacts} contacts  E {energy:.2e} J", bodies.stable_dt())
+            });
+            let stopped = stop.load(Ordering::Relaxed);
+            if stopped || saved.elapsed() > SAVE_EVERY {
+                coupling::save(&state, &Whole { bodies, clock, setup })?;
+                saved = Instant::now();
+            }
+            if stopped {
+                ending = Ending::Stopped;
+                break 'rows;
+            }
+        }
+        clock = Clock { row: clock.row + 1, part: 0, parts: 0, ..clock };
+        history.push(row_of(scene, bodies, until))?;
+        if clock.row.is_multiple_of(every) {
+            album.add(clock.row / every, until, scene, bodies)?;
+        }
+    }
+    progress.finish(clock.steps, if ending == Ending::Whole { "done" } else { "stopped" });
+    if ending == Ending::Whole {
+        coupling::save(&state, &Whole { bodies, clock, setup })?;
+        table(&out.join("bodies.csv"), scene, bodies)?;
+    } else {
+        eprintln!("the state is saved; give the same flags with --resume to go on");
+    }
+    Ok((ending, history))
+}
+
+fn row_of(scene: &mut impl Scene, bodies: &Granulate, time: f64) -> Vec<f64> {
+    let sums = totals(bodies, scene.first_grain(), &scene.domain()).values();
+    std::iter::once(time).chain(sums).chain(scene.measure(bodies, time)).collect()
+}
+
+/// Brings in what had come in, then takes up the saved state.
+fn load(
+    state: &Path,
+    scene: &mut impl Scene,
+    bodies: &mut Granulate,
+    setup: u64,
+    time_of: &dyn Fn(usize) -> f64,
+) -> Outcome<Clock> {
+    let hint = |e: CheckpointError| format!("{e}; without an interrupted run of this scene there, leave out --resume");
+    let mut only = ClockOnly(Clock::default());
+    coupling::load(state, &mut only).map_err(hint)?;
+    let clock = only.0;
+    // Those of the row that had just been done come with the next one.
+    let fed = if clock.parts > 0 || clock.row == 0 { clock.row } else { clock.row - 1 };
+    for row in 0..=fed {
+        scene.feed(bodies, time_of(row))?;
+    }
+    coupling::load(state, &mut Whole { bodies, clock, setup }).map_err(hint)?;
+    Ok(clock)
+}
+
+/// All grains with their motion, as a table that `settling --table` reads.
+fn table(path: &Path, scene: &impl Scene, bodies: &Granulate) -> Outcome<()> {
+    let row = |b: interfaces::BodyId| {
+        let (size, kind) = scene.tells(b);
+        BodyRow { pose: bodies.pose(b), twist: Some(bodies.twist(b)), size, kind: kind.into() }
+    };
+    let rows: Vec<BodyRow> = bodies.ids().skip(scene.first_grain()).map(row).collect();
+    write_bodies(BufWriter::new(File::create(path)?), &rows)?;
+    Ok(())
+}

@@ -30,10 +30,9 @@ pub(crate) struct Tray {
     staves: Vec<Stave>,
     radius: f64,
     spout: f64,
-    /// Grains that come in at once, where, and how fast \[m/s\].
-    batch: usize,
-    every: usize,
-    asked: usize,
+    /// Grains come in so often \[s\], there, and so fast \[m/s\].
+    interval: f64,
+    last_turn: Option<u64>,
     places: Vec<Point>,
     speed: f64,
     next: usize,
@@ -93,8 +92,23 @@ impl Tray {
             bodies.add(stave.shape.clone(), wall, stave.pose, Twist::default(), Freedom::NONE)?;
         }
         let turns = Orientations::Random.of(cli.grains.seed).take(grains.len()).collect();
-        let tray = Self { grains, turns, material, staves, radius, spout, batch, every: every as usize, asked: 0, places, speed, next: 0, widest };
+        let tray = Self { grains, turns, material, staves, radius, spout, interval, last_turn: None, places, speed, next: 0, widest };
         Ok((tray, bodies))
+    }
+
+    /// The number of the batch at `time`, from 0.
+    fn turn(&self, time: f64) -> u64 {
+        (time / self.interval + 1e-6) as u64
+    }
+
+    /// The next grain, if there is one.
+    fn add(&mut self, bodies: &mut Granulate, position: Point) -> Outcome<()> {
+        let Some(grain) = self.grains.get(self.next) else { return Ok(()) };
+        let pose = Pose { position, orientation: self.turns[self.next] };
+        let twist = Twist { linear: Vector::new(0.0, 0.0, -self.speed), ..Twist::default() };
+        bodies.add(grain.shape.clone(), self.material, pose, twist, Freedom::FREE)?;
+        self.next += 1;
+        Ok(())
     }
 }
 
@@ -106,21 +120,33 @@ impl Scene for Tray {
         let far = (YARD * self.radius + self.widest) / (PI / STAVES as f64).cos();
         Aabb { min: [-far, -far, 0.0].into(), max: [far, far, 1.5 * self.spout].into() }
     }
-    fn feed(&mut self, bodies: &mut Granulate, _: f64) -> Outcome<()> {
-        self.asked += 1;
-        if !(self.asked - 1).is_multiple_of(self.every) {
+    fn feed(&mut self, bodies: &mut Granulate, time: f64) -> Outcome<()> {
+        let turn = self.turn(time);
+        if self.last_turn == Some(turn) {
             return Ok(());
         }
-        let until = (self.next + self.batch).min(self.grains.len());
-        // Each batch turned against the one before.
-        let turned = Rotation::from_euler_angles(0.0, 0.0, 2.4 * self.next as f64);
-        for (i, place) in (self.next..until).zip(&self.places) {
-            let position = turned * place + Vector::z() * self.spout;
-            let pose = Pose { position, orientation: self.turns[i] };
-            let twist = Twist { linear: Vector::new(0.0, 0.0, -self.speed), ..Twist::default() };
-            bodies.add(self.grains[i].shape.clone(), self.material, pose, twist, Freedom::FREE)?;
+        self.last_turn = Some(turn);
+        let turned = Rotation::from_euler_angles(0.0, 0.0, 2.4 * turn as f64);
+        let places: Vec<Point> = self.places.iter().map(|p| turned * p + Vector::z() * self.spout).collect();
+        // What has been thrown up to the spout is in the way.
+        let near: Vec<Point> = bodies
+            .ids()
+            .skip(self.first_grain())
+            .map(|b| bodies.pose(b).position)
+            .filter(|p| p.z > self.spout - APART * self.widest)
+            .collect();
+        let widest = self.widest;
+        let clear = |p: &&Point| near.iter().all(|q| (*p - q).norm() > widest);
+        for place in places.iter().filter(clear) {
+            self.add(bodies, *place)?;
         }
-        self.next = until;
+        Ok(())
+    }
+    fn refill(&mut self, bodies: &mut Granulate, number: usize, time: f64) -> Outcome<()> {
+        self.last_turn = Some(self.turn(time));
+        while bodies.n_bodies() < number && self.next < self.grains.len() {
+            self.add(bodies, Point::new(0.0, 0.0, self.spout))?;
+        }
         Ok(())
     }
     fn columns(&self) -> Vec<&'static str> {

@@ -143,9 +143,19 @@ impl OverlapSolver {
     fn pair(&mut self, a: &dyn Shape, at_a: &Pose, b: &dyn Shape, at_b: &Pose) -> Result<(), DemError> {
         let (form_a, form_b) = (a.form(), b.form());
         if let Form::Union(parts) = form_a {
+            // Of many parts most are far away, as spheres around them tell; of long ones, their boxes tell more.
+            let turn = at_a.orientation.to_rotation_matrix();
+            let reach = b.bounding_radius();
             for part in parts {
+                let place = at_a.position + turn * part.pose.position.coords;
+                let within = part.shape.bounding_radius() + reach;
+                if (place - at_b.position).norm_squared() > within * within {
+                    continue;
+                }
                 let at_part = at_a.of(&part.pose);
-                if near(&*part.shape, &at_part, b, at_b) {
+                let (at, bounds) = (at_part.to_body(at_b.position), part.shape.aabb());
+                let gap = (bounds.min - at).sup(&(at - bounds.max)).map(|g| g.max(0.0));
+                if gap.norm_squared() <= reach * reach {
                     self.pair(&*part.shape, &at_part, b, at_b)?;
                 }
             }
@@ -313,12 +323,6 @@ pub(super) fn check(shape: &dyn Shape, at: &Pose) -> Result<(), DemError> {
     } else {
         Err(DemError::Pose { name: shape.name(), position: at.position.into() })
     }
-}
-
-/// Do the spheres around two shapes meet?
-fn near(a: &dyn Shape, at_a: &Pose, b: &dyn Shape, at_b: &Pose) -> bool {
-    let within = a.bounding_radius() + b.bounding_radius();
-    (at_a.position - at_b.position).norm_squared() <= within * within
 }
 
 /// [`OverlapSolver::solve`] once, with memory of its own.

@@ -26,7 +26,7 @@ pub struct GrainOptions {
     #[arg(long, default_value_t = 2500.0, allow_negative_numbers = true)]
     pub density: f64,
     /// Young's modulus [Pa]. Steps get shorter with its root; a soft one makes grains sink into one another (column `overlap`).
-    #[arg(long, default_value_t = 2e7, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1e7, allow_negative_numbers = true)]
     pub youngs_modulus: f64,
     /// Poisson's ratio.
     #[arg(long, default_value_t = 0.3, allow_negative_numbers = true)]
@@ -43,8 +43,8 @@ pub struct GrainOptions {
     /// Coefficient of restitution (law `potential`).
     #[arg(long, default_value_t = 0.5, allow_negative_numbers = true)]
     pub restitution: f64,
-    /// Damping coefficient (law `chen`).
-    #[arg(long, default_value_t = 3.0, allow_negative_numbers = true)]
+    /// Damping coefficient (law `chen`); flat faces need little, and a large one makes steps short.
+    #[arg(long, default_value_t = 0.5, allow_negative_numbers = true)]
     pub damping: f64,
     /// Contact law; without it `potential` for spheres and ellipsoids, `chen` for others.
     #[arg(long, value_enum)]

@@ -65,6 +65,8 @@ struct Clock {
     part: usize,
     parts: usize,
     steps: u64,
+    /// Bodies that are there, walls included.
+    bodies: usize,
 }
 
 /// What is saved: the bodies, the clock, and a number for the set-up.
@@ -83,9 +85,9 @@ impl Whole<'_> {
 
 impl Checkpoint for Whole<'_> {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
-        let Clock { row, part, parts, steps } = self.clock;
+        let Clock { row, part, parts, steps, .. } = self.clock;
         sink("setup", &self.setup());
-        sink("clock", &[row as f64, part as f64, parts as f64, steps as f64]);
+        sink("clock", &[row as f64, part as f64, parts as f64, steps as f64, self.bodies.n_bodies() as f64]);
         self.bodies.save(&mut |name, values| sink(&format!("bodies.{name}"), values));
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
@@ -101,8 +103,9 @@ struct ClockOnly(Clock);
 impl Checkpoint for ClockOnly {
     fn save(&self, _: &mut dyn FnMut(&str, &[f64])) {}
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
-        let c = RestartError::take(source, "clock", 4)?;
-        self.0 = Clock { row: c[0] as usize, part: c[1] as usize, parts: c[2] as usize, steps: c[3] as u64 };
+        let c = RestartError::take(source, "clock", 5)?;
+        let [row, part, parts, steps, bodies] = [0, 1, 2, 3, 4].map(|i| c[i] as usize);
+        self.0 = Clock { row, part, parts, steps: steps as u64, bodies };
         Ok(())
     }
 }
@@ -224,8 +227,10 @@ fn load(
     let clock = only.0;
     // Those of the row that had just been done come with the next one.
     let fed = if clock.parts > 0 || clock.row == 0 { clock.row } else { clock.row - 1 };
-    for row in 0..=fed {
-        scene.feed(bodies, time_of(row))?;
+    scene.refill(bodies, clock.bodies, time_of(fed))?;
+    if bodies.n_bodies() != clock.bodies {
+        let (n, saved) = (bodies.n_bodies(), clock.bodies);
+        return Err(format!("{}: {saved} bodies were saved, this scene has {n}; give the same flags", state.display()).into());
     }
     coupling::load(state, &mut Whole { bodies, clock, setup }).map_err(hint)?;
     Ok(clock)

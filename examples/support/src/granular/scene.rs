@@ -14,13 +14,22 @@ pub trait Scene {
     }
     /// Where grains should be.
     fn domain(&self) -> Aabb;
-    /// Bodies that come in at `time`; a run that goes on asks again for those of all earlier times, so they may depend on nothing else.
+    /// Bodies that come in at `time`, asked at the beginning of every row of the table of motion.
     ///
     /// # Errors
     /// Those of the bodies.
     fn feed(&mut self, bodies: &mut Granulate, time: f64) -> Outcome<()> {
         let _ = (bodies, time);
         Ok(())
+    }
+    /// Adds, anywhere, what had come in until a run was saved that is to go on, so that there are `number` bodies; the last ones came in at
+    /// `time`.
+    ///
+    /// # Errors
+    /// Those of the bodies.
+    fn refill(&mut self, bodies: &mut Granulate, number: usize, time: f64) -> Outcome<()> {
+        let _ = number;
+        self.feed(bodies, time)
     }
     /// Moves walls as they should move from `time` on; asked before every short advance.
     fn steer(&mut self, bodies: &mut Granulate, time: f64) {

@@ -35,7 +35,9 @@ impl Barrel {
         let widest = grains.iter().map(|g| 2.0 * g.shape.bounding_radius()).fold(0.0, f64::max);
         for (flag, value, least) in [("--radius", radius, 3.0 * widest), ("--length", length, 2.0 * widest)] {
             if !(value >= least && value.is_finite()) {
-                return Err(format!("{flag} {value}: give at least {least} m for grains {widest} m wide").into());
+                return Err(
+                    format!("{flag} {value}: give at least {least} m for grains {widest} m wide").into()
+                );
             }
         }
         if !cli.speed.is_finite() {
@@ -48,13 +50,16 @@ impl Barrel {
 
         let half = 0.5 * length * (1.0 - GAP);
         let (outer, ridge) = (radius + 1.5 * widest, radius - RIDGE * cli.grains.diameter);
-        let ring = |inner: f64| ring_of_staves(STAVES, [[inner, -half], [outer, -half], [inner, half], [outer, half]]);
+        let ring = |inner: f64| {
+            ring_of_staves(STAVES, [[inner, -half], [outer, -half], [inner, half], [outer, half]])
+        };
         let (low, high) = (ring(radius)?, ring(ridge)?);
         let pieces = low.into_iter().zip(high).enumerate();
         let parts = pieces.map(|(i, (l, h))| if i % 2 == 0 { l } else { h });
         let drum = Union::new(parts.map(|s| Part { shape: s.shape, pose: s.pose }).collect())?;
         let pose = Pose {
-            position: Point::origin(),
+            // Where grains are drawn: from 0 to the length.
+            position: Point::new(0.0, 0.5 * length, 0.0),
             // The axis of the staves, z, becomes y.
             orientation: Rotation::from_euler_angles(-0.5 * PI, 0.0, 0.0),
         };
@@ -98,14 +103,18 @@ fn places(grains: &[Grain], radius: f64, length: f64, widest: f64, seed: u64) ->
     let distance = length / rows;
     let lattice = CrystalLattice::new(LatticeKind::SimpleCubic, distance)?;
     let play = lattice.play(widest, 0.02 * widest)?;
-    let bounds = Aabb { min: [-radius, 0.0, -radius].into(), max: [radius, length - 0.5 * distance, radius].into() };
+    let bounds =
+        Aabb { min: [-radius, 0.0, -radius].into(), max: [radius, length - 0.5 * distance, radius].into() };
     let mut points = lattice.in_box(&bounds, 0.0)?;
     let reach = radius - 0.5 * widest - play - 0.02 * widest;
     points.retain(|p| p.x.hypot(p.z) < reach * (PI / STAVES as f64).cos());
     points.sort_by(|p, q| p.z.total_cmp(&q.z));
     if points.len() < grains.len() {
         let (n, room) = (grains.len(), points.len());
-        return Err(format!("--number {n}: there is room for {room} in the drum; give fewer, or a larger --radius").into());
+        return Err(format!(
+            "--number {n}: there is room for {room} in the drum; give fewer, or a larger --radius"
+        )
+        .into());
     }
     points.truncate(grains.len());
     lattice.jitter(&mut points, play, seed)?;
@@ -167,4 +176,3 @@ impl Scene for Barrel {
         (Some(grain.size), grain.kind)
     }
 }
-

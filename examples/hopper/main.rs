@@ -21,7 +21,9 @@ mod silo;
 
 use clap::Parser;
 use example_support::Outcome;
-use example_support::granular::{Ending, GRAVITY, GrainOptions, History, RunOptions, Start, line, main_of, run};
+use example_support::granular::{
+    Ending, GRAVITY, GrainOptions, History, RunOptions, Start, line, main_of, run,
+};
 use example_support::picture::sketch::{Drawing, Paint, draw};
 use example_support::table::{Table, number, write_json};
 use silo::Silo;
@@ -66,7 +68,8 @@ fn fill_and_empty(cli: &Cli, stop: &AtomicBool) -> Outcome<Ending> {
     let (mut silo, mut bodies) = Silo::build(cli)?;
     let end = cli.run.end.unwrap_or(cli.open + 1.25 * silo.foreseen());
     let out = cli.run.out.clone().unwrap_or_else(|| "out/hopper".into());
-    let setup = format!("{:?}", (cli.number, cli.width, cli.orifice, cli.slope, cli.open, cli.start, &cli.grains));
+    let setup =
+        format!("{:?}", (cli.number, cli.width, cli.orifice, cli.slope, cli.open, cli.start, &cli.grains));
     let (ending, history) = run(&mut silo, &mut bodies, &cli.run, (end, &out, &setup), stop)?;
     tell(cli, &silo, &history, &out)?;
     Ok(ending)
@@ -125,7 +128,8 @@ fn figure(
     flow: Option<(f64, f64)>,
     density: Option<f64>,
 ) -> Vec<Drawing> {
-    let points = |name: &str, by: f64| history.over_time(name).iter().map(|(t, v)| [*t, by * v]).collect::<Vec<_>>();
+    let points =
+        |name: &str, by: f64| history.over_time(name).iter().map(|(t, v)| [*t, by * v]).collect::<Vec<_>>();
     let end = history.column("time").last().copied().unwrap_or(1.0);
     let over_time = |title: &str, label: &str, line: Vec<[f64; 2]>| {
         let top = line.iter().map(|p| p[1]).fold(0.0, f64::max);
@@ -140,7 +144,8 @@ fn figure(
     let mut mass = over_time("Mass that has come out", "kg", points("discharged", 1.0));
     mass.range[1].1 = 1.08 * silo.mass;
     if let (Some((start, flow)), Some(density)) = (flow, density) {
-        let law = 0.58 * density * GRAVITY.sqrt() * (cli.orifice - 1.4 * cli.grains.diameter).max(0.0).powf(2.5);
+        let law =
+            0.58 * density * GRAVITY.sqrt() * (cli.orifice - 1.4 * cli.grains.diameter).max(0.0).powf(2.5);
         // Through the same first point.
         let from = (0.15 * silo.mass - start) / flow;
         let to = from + 0.6 * silo.mass / law;

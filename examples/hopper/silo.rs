@@ -43,7 +43,9 @@ impl Silo {
         let grains = cli.grains.grains(cli.number)?;
         let largest = grains.iter().map(|g| 2.0 * g.shape.bounding_radius()).fold(0.0, f64::max);
         if !(cli.orifice > 0.0 && cli.orifice < width && width.is_finite()) {
-            return Err(format!("--orifice {} --width {width}: the opening must be narrower", cli.orifice).into());
+            return Err(
+                format!("--orifice {} --width {width}: the opening must be narrower", cli.orifice).into()
+            );
         }
         if !(0.0..=75.0).contains(&cli.slope) {
             return Err(format!("--slope {}: give 0 to 75 degrees", cli.slope).into());
@@ -94,7 +96,8 @@ impl Silo {
         let starts: Vec<f64> = poses.iter().map(|p| p.position.z).collect();
         let lowest = starts.iter().copied().fold(f64::MAX, f64::min);
         let filled = starts.iter().copied().fold(bottom, f64::max) + d;
-        let layer = |z: &f64| (LAYERS * (z - lowest) / (filled - d - lowest).max(d)).floor().min(LAYERS - 1.0) + 1.0;
+        let layer =
+            |z: &f64| (LAYERS * (z - lowest) / (filled - d - lowest).max(d)).floor().min(LAYERS - 1.0) + 1.0;
         let silo = Self {
             width,
             orifice: cli.orifice,
@@ -131,7 +134,8 @@ impl Silo {
         heights.sort_unstable_by(f64::total_cmp);
         // The surface is not level.
         let top = heights.get(heights.len() * 9 / 10).copied()? - d;
-        let corners = self.shoulder * (0.71 * self.width - 0.5 * self.orifice) / (0.5 * (self.width - self.orifice));
+        let corners =
+            self.shoulder * (0.71 * self.width - 0.5 * self.orifice) / (0.5 * (self.width - self.orifice));
         let low = corners.max(d);
         (top > low + 2.0 * d)
             .then(|| solid_fraction(bodies, self.first_grain(), self.width * self.width, low, top))

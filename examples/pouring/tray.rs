@@ -52,7 +52,9 @@ impl Tray {
         for (flag, value) in [("--radius", radius), ("--spout", spout)] {
             if !(value > 2.0 * widest && value.is_finite()) {
                 let least = 2.0 * widest;
-                return Err(format!("{flag} {value}: give more than two diameters of a grain, {least} m").into());
+                return Err(
+                    format!("{flag} {value}: give more than two diameters of a grain, {least} m").into()
+                );
             }
         }
         let row = end / cli.run.rows as f64;
@@ -92,7 +94,20 @@ impl Tray {
             bodies.add(stave.shape.clone(), wall, stave.pose, Twist::default(), Freedom::NONE)?;
         }
         let turns = Orientations::Random.of(cli.grains.seed).take(grains.len()).collect();
-        let tray = Self { grains, turns, material, staves, radius, spout, interval, last_turn: None, places, speed, next: 0, widest };
+        let tray = Self {
+            grains,
+            turns,
+            material,
+            staves,
+            radius,
+            spout,
+            interval,
+            last_turn: None,
+            places,
+            speed,
+            next: 0,
+            widest,
+        };
         Ok((tray, bodies))
     }
 
@@ -161,7 +176,8 @@ impl Scene for Tray {
             let p = bodies.pose(b).position;
             [p.x, p.y, p.z + 0.5 * self.grains[b.0 - self.first_grain()].size]
         };
-        let slope = cone_slope(grains().filter(lies).map(top), 0.25 * self.radius, 0.85 * self.radius, self.widest);
+        let slope =
+            cone_slope(grains().filter(lies).map(top), 0.25 * self.radius, 0.85 * self.radius, self.widest);
         let over = grains().filter(|b| bodies.pose(*b).position.coords.xy().norm() > self.radius).count();
         vec![slope.unwrap_or(0.0).to_degrees(), over as f64]
     }

@@ -36,6 +36,9 @@ impl Heap {
             Some(rows) => cli.grains.grains_of(rows)?,
             None => cli.grains.grains(cli.number)?,
         };
+        if grains.is_empty() {
+            return Err("the table has no bodies".into());
+        }
         let volume: f64 = grains.iter().map(|g| g.shape.inertia(1.0).volume).sum();
         let width = cli.width.unwrap_or((volume / (0.58 * 1.25)).cbrt());
         if !(width > 0.0 && width.is_finite()) {
@@ -56,9 +59,12 @@ impl Heap {
         bodies.add_wall(HalfSpace::new(Point::origin(), Vector::z())?, wall)?;
         if !cli.periodic {
             let far = Point::new(width, width, 0.0);
-            for (at, normal) in
-                [(Point::origin(), Vector::x()), (Point::origin(), Vector::y()), (far, -Vector::x()), (far, -Vector::y())]
-            {
+            for (at, normal) in [
+                (Point::origin(), Vector::x()),
+                (Point::origin(), Vector::y()),
+                (far, -Vector::x()),
+                (far, -Vector::y()),
+            ] {
                 bodies.add_wall(HalfSpace::new(at, normal)?, wall)?;
             }
         }
@@ -129,7 +135,9 @@ impl Scene for Heap {
         match self.colour {
             Colour::Height => ("height at the start, cm", (0.0, 100.0 * self.tall)),
             Colour::Speed => ("speed, m/s", (0.0, self.fall_speed)),
-            Colour::Size => ("diameter, mm", (sizes.clone().fold(f64::MAX, f64::min), sizes.fold(0.0, f64::max))),
+            Colour::Size => {
+                ("diameter, mm", (sizes.clone().fold(f64::MAX, f64::min), sizes.fold(0.0, f64::max)))
+            }
         }
     }
     fn tells(&self, b: BodyId) -> (Option<f64>, &'static str) {

@@ -30,7 +30,7 @@ use std::sync::atomic::AtomicBool;
 
 /// Bodies of any shape fall into a box and come to rest.
 #[derive(Clone, Debug, Parser)]
-#[command(version, mut_arg("shape", |a| a.default_value("mixed")))]
+#[command(version, mut_arg("shape", |a| a.default_value("mixed")), mut_arg("youngs_modulus", |a| a.default_value("5e6")))]
 pub(crate) struct Cli {
     /// How many grains.
     #[arg(long, default_value_t = 400)]
@@ -74,7 +74,7 @@ fn main() -> ExitCode {
 
 fn settle(cli: &Cli, stop: &AtomicBool) -> Outcome<Ending> {
     let (mut heap, mut bodies) = Heap::build(cli)?;
-    let end = cli.run.end.unwrap_or(0.5);
+    let end = cli.run.end.unwrap_or(0.4);
     let out = cli.run.out.clone().unwrap_or_else(|| "out/settling".into());
     let setup = format!("{:?}", (cli.number, &cli.table, cli.width, cli.periodic, cli.start, &cli.grains));
     let (ending, history) = run(&mut heap, &mut bodies, &cli.run, (end, &out, &setup), stop)?;

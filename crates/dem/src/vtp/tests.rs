@@ -134,6 +134,40 @@ fn other_shapes() {
     assert!((0..3).all(|a| (far(a) - (a + 1) as f64).abs() < 1e-12), "{} {} {}", far(0), far(1), far(2));
 }
 
+/// Points of some of the bodies, and outlines of the others.
+#[test]
+fn points_for_glyphs() {
+    let quarter = Rotation::from_scaled_axis(Vector::z() * 0.5 * std::f64::consts::PI);
+    let twist = Twist { linear: Vector::new(1.0, 2.0, 3.0), angular: Vector::new(4.0, 5.0, 6.0) };
+    let mut bodies = RigidBodies::new(Periods::new([Some(10.0), None, None]));
+    let (cube, egg) = (Cuboid::new([2.0; 3]).unwrap(), Ellipsoid::new([1.0, 2.0, 0.5]).unwrap());
+    let (material, still) = (Material::default(), Twist::default());
+    bodies.add(cube, material, Pose::at([0.0; 3]), still, Freedom::NONE).unwrap();
+    let pose = Pose { position: Point::new(-3.0, 1.0, 2.0), orientation: quarter };
+    bodies.add(egg, material, pose, twist, Freedom::FREE).unwrap();
+    let mut file = Vec::new();
+    bodies.write_vtp_points(&mut file, Point::origin(), [BodyId(1)]).unwrap();
+    let (piece, arrays) = read(&file);
+    assert_eq!((attribute(&piece, "NumberOfPoints"), attribute(&piece, "NumberOfVerts")), ("1", "1"));
+    assert_eq!(arrays["points"].floats(), [7.0, 1.0, 2.0], "one period on");
+    assert_eq!(arrays["body"].ints(), [1]);
+    assert!(
+        (arrays["diameter"].floats()[0] - 2.0).abs() < 1e-12,
+        "semi-axes 1, 2 and a half: a unit ball's volume"
+    );
+    assert_eq!(arrays["extent"].floats(), [2.0, 4.0, 1.0]);
+    let half = 0.5_f64.sqrt();
+    let q = arrays["orientation"].floats();
+    assert!(q.iter().zip([half, 0.0, 0.0, half]).all(|(a, b)| (a - b).abs() < 1e-14), "{q:?}");
+    assert_eq!(arrays["velocity"].floats(), [1.0, 2.0, 3.0]);
+    assert_eq!(arrays["angular_velocity"].floats(), [4.0, 5.0, 6.0]);
+    assert_eq!((arrays["connectivity"].ints(), arrays["offsets"].ints()), (vec![0], vec![1]));
+
+    let mut walls = Vec::new();
+    bodies.write_vtp_of(&mut walls, Point::origin(), [BodyId(0)]).unwrap();
+    assert_eq!(read(&walls).1["body"].ints(), [0; 12]);
+}
+
 #[test]
 fn no_bodies_are_a_valid_file() {
     let mut file = Vec::new();

@@ -44,58 +44,85 @@ fn wrapped(bodies: &Granulate, b: BodyId, corner: Point, grain: bool) -> Pose {
     if grain { Pose { position: bodies.periods().wrap(pose.position, corner), ..pose } } else { pose }
 }
 
-/// `bodies.pvd` and the files it lists.
+/// What is written for ParaView: its name, and whether that are grains.
+const SERIES: [(&str, bool); 2] = [("grains", true), ("walls", false)];
+
+/// `grains.pvd`, `walls.pvd` and the files that they list; pictures.
 pub(super) struct Album {
     folder: PathBuf,
-    series: Option<fv_mesh::TimeSeries>,
+    series: Vec<(&'static str, bool, fv_mesh::TimeSeries)>,
     pictures: bool,
-    /// Seconds that it took.
-    pub(super) seconds: f64,
 }
 
 impl Album {
-    /// A new one; or the one of an earlier run, up to `time`.
-    pub(super) fn new(folder: &Path, pictures: bool, vtk: bool, resumed: Option<f64>) -> Outcome<Self> {
-        for (name, wanted) in [("frames", pictures), ("bodies", vtk)] {
-            let folder = folder.join(name);
-            if resumed.is_none() && folder.exists() {
-                // What an earlier run left there is not this run's.
-                for file in std::fs::read_dir(&folder)?.flatten() {
-                    let path = file.path();
-                    if path.extension().is_some_and(|e| e == "png" || e == "vtp") {
-                        std::fs::remove_file(path)?;
-                    }
-                }
+    /// A new one; or the one of an earlier run, up to `time`. `walls`: are there bodies that are none of the grains?
+    pub(super) fn new(
+        folder: &Path,
+        pictures: bool,
+        vtk: bool,
+        walls: bool,
+        resumed: Option<f64>,
+    ) -> Outcome<Self> {
+        let mut series = Vec::new();
+        for (name, grains) in SERIES {
+            let path = folder.join(format!("{name}.pvd"));
+            if resumed.is_none() {
+                let _ = std::fs::remove_file(&path);
+                clear(&folder.join(name))?;
             }
-            if wanted {
-                std::fs::create_dir_all(folder)?;
+            if vtk && (grains || walls) {
+                std::fs::create_dir_all(folder.join(name))?;
+                let one = match resumed {
+                    None => fv_mesh::TimeSeries::new(path),
+                    Some(time) => fv_mesh::TimeSeries::resume(path, time)?,
+                };
+                series.push((name, grains, one));
             }
         }
-        let path = folder.join("bodies.pvd");
-        let series = match (vtk, resumed) {
-            (false, _) => None,
-            (true, None) => Some(fv_mesh::TimeSeries::new(path)),
-            (true, Some(time)) => Some(fv_mesh::TimeSeries::resume(path, time)?),
-        };
-        Ok(Self { folder: folder.into(), series, pictures, seconds: 0.0 })
+        if resumed.is_none() {
+            clear(&folder.join("frames"))?;
+        }
+        if pictures {
+            std::fs::create_dir_all(folder.join("frames"))?;
+        }
+        Ok(Self { folder: folder.into(), series, pictures })
     }
 
     /// Adds a frame.
-    pub(super) fn add(&mut self, index: usize, time: f64, scene: &impl Scene, bodies: &Granulate) -> Outcome<()> {
-        let watch = crate::cpu::Stopwatch::start();
-        if let Some(series) = &mut self.series {
-            let name = format!("bodies/{index:05}.vtp");
-            let mut file = BufWriter::new(File::create(self.folder.join(&name))?);
-            bodies.write_vtp(&mut file, corner(scene))?;
+    pub(super) fn add(
+        &mut self,
+        index: usize,
+        time: f64,
+        scene: &impl Scene,
+        bodies: &Granulate,
+    ) -> Outcome<()> {
+        let first = scene.first_grain();
+        for (name, grains, series) in &mut self.series {
+            let path = format!("{name}/{index:05}.vtp");
+            let mut file = BufWriter::new(File::create(self.folder.join(&path))?);
+            if *grains {
+                bodies.write_vtp_points(&mut file, corner(scene), bodies.ids().skip(first))?;
+            } else {
+                bodies.write_vtp_of(&mut file, corner(scene), bodies.ids().take(first))?;
+            }
             file.flush()?;
-            series.push(time, name)?;
+            series.push(time, path)?;
         }
         if self.pictures {
-            let grains = bodies.n_bodies() - scene.first_grain();
-            let title = format!("t = {time:.3} s, {grains} grains");
+            let title = format!("t = {time:.3} s, {} grains", bodies.n_bodies() - first);
             picture(&self.folder.join(format!("frames/{index:05}.png")), scene, bodies, &title)?;
         }
-        self.seconds += watch.elapsed().wall;
         Ok(())
     }
+}
+
+/// Removes what an earlier run left there.
+fn clear(folder: &Path) -> Outcome<()> {
+    for file in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = file.path();
+        if path.extension().is_some_and(|e| e == "png" || e == "vtp") {
+            std::fs::remove_file(path)?;
+        }
+    }
+    Ok(())
 }

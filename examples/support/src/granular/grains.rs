@@ -102,14 +102,18 @@ impl GrainOptions {
             let file = |e| format!("{}: {e}", path.display());
             let soup = TriangleSoup::from_stl(path, 1.0).map_err(file)?;
             let volume = TriangleMesh::try_from(soup.clone()).map_err(file)?.volume();
-            return shared(&sizes, |_| 0, "stl", |_, size| {
-                let unit = size * (PI / 6.0 / volume).cbrt();
-                Ok(Arc::new(TriangleMesh::from_stl(path, unit).map_err(file)?))
-            });
+            return shared(
+                &sizes,
+                |_| 0,
+                "stl",
+                |_, size| {
+                    let unit = size * (PI / 6.0 / volume).cbrt();
+                    Ok(Arc::new(TriangleMesh::from_stl(path, unit).map_err(file)?))
+                },
+            );
         }
         let different = if self.shape == Kind::Mixed { 4 * DIFFERENT } else { DIFFERENT };
-        let mut grains =
-            shared(&sizes, |i| i % different, "", |i, size| self.shape.shape(i, size))?;
+        let mut grains = shared(&sizes, |i| i % different, "", |i, size| self.shape.shape(i, size))?;
         grains.iter_mut().enumerate().for_each(|(i, g)| g.kind = self.shape.of(i).word());
         Ok(grains)
     }
@@ -134,7 +138,9 @@ impl GrainOptions {
             let kind = match row.kind.as_str() {
                 "" => self.shape,
                 name => Kind::named(name).ok_or_else(|| {
-                    format!("body {i} of the table is a \"{name}\"; give sphere, cube, polyhedron or ellipsoid")
+                    format!(
+                        "body {i} of the table is a \"{name}\"; give sphere, cube, polyhedron or ellipsoid"
+                    )
                 })?,
             };
             Ok(Grain { shape: kind.shape(i, size)?, size, kind: kind.of(i).word() })

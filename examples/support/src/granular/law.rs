@@ -1,6 +1,9 @@
 //! The contact law that a flag chooses.
 use clap::ValueEnum;
-use dem::{Chen, ContactLaw, DemError, Material, Memory, PairProperties, Potential, Push, RigidBodies, Rolling, Touch};
+use dem::{
+    Chen, ContactLaw, DemError, Material, Memory, PairProperties, Potential, Push, RigidBodies, Rolling,
+    Touch,
+};
 use interfaces::Vector;
 
 /// The bodies of all these examples.

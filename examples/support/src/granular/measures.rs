@@ -61,7 +61,8 @@ pub fn totals(bodies: &Granulate, first: usize, domain: &Aabb) -> Totals {
     for b in bodies.ids().skip(first) {
         let (inertia, pose, twist) = (bodies.inertia(b), bodies.pose(b), bodies.twist(b));
         let spin = pose.orientation.inverse_transform_vector(&twist.angular);
-        t.kinetic += 0.5 * inertia.mass * twist.linear.norm_squared() + 0.5 * spin.dot(&(inertia.tensor * spin));
+        t.kinetic +=
+            0.5 * inertia.mass * twist.linear.norm_squared() + 0.5 * spin.dot(&(inertia.tensor * spin));
         t.potential += inertia.mass * GRAVITY * pose.position.z;
         t.fastest = t.fastest.max(twist.linear.norm());
         let p = pose.position;
@@ -123,7 +124,8 @@ pub fn cone_slope(tops: impl Iterator<Item = [f64; 3]>, from: f64, to: f64, widt
         if ring >= 0.0
             && let Some(top) = highest.get_mut(ring as usize)
         {
-            *top = Some(top.map_or((z, x.hypot(y)), |t: (f64, f64)| if z > t.0 { (z, x.hypot(y)) } else { t }));
+            *top =
+                Some(top.map_or((z, x.hypot(y)), |t: (f64, f64)| if z > t.0 { (z, x.hypot(y)) } else { t }));
         }
     }
     let points: Vec<(f64, f64)> = highest.into_iter().flatten().map(|(z, r)| (r, z)).collect();
@@ -134,7 +136,8 @@ pub fn cone_slope(tops: impl Iterator<Item = [f64; 3]>, from: f64, to: f64, widt
 pub fn line(points: &[(f64, f64)]) -> (f64, f64) {
     let n = points.len() as f64;
     let (mx, my) = points.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + x / n, b + y / n));
-    let (xx, xy) = points.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + (x - mx) * (x - mx), b + (x - mx) * (y - my)));
+    let (xx, xy) =
+        points.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + (x - mx) * (x - mx), b + (x - mx) * (y - my)));
     let slope = if xx > 0.0 { xy / xx } else { 0.0 };
     (my - slope * mx, slope)
 }

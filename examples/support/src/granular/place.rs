@@ -56,7 +56,11 @@ pub fn starts(
             points.truncate(grains.len());
             lattice.jitter(&mut points, play, seed)?;
             let turns = Orientations::Random.of(seed);
-            return Ok(points.into_iter().zip(turns).map(|(position, orientation)| Pose { position, orientation }).collect());
+            return Ok(points
+                .into_iter()
+                .zip(turns)
+                .map(|(position, orientation)| Pose { position, orientation })
+                .collect());
         }
         let share = grains.len() as f64 / points.len() as f64;
         room.max.z += (lattice.cell().z).max((share - 1.0) * room.extent().z);

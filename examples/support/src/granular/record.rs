@@ -26,14 +26,20 @@ impl History {
     /// What the disk answers; `InvalidData` if it is another table, or shorter.
     pub fn resume(path: &Path, columns: Vec<String>, rows: usize) -> io::Result<Self> {
         let text = std::fs::read_to_string(path)?;
-        let wrong = |what: &str| io::Error::new(io::ErrorKind::InvalidData, format!("{}: {what}", path.display()));
+        let wrong =
+            |what: &str| io::Error::new(io::ErrorKind::InvalidData, format!("{}: {what}", path.display()));
         let mut lines = text.lines();
         if lines.next() != Some(columns.join(",").as_str()) {
             return Err(wrong("it has other columns"));
         }
         let kept: Vec<Vec<f64>> = lines
             .take(rows)
-            .map(|l| l.split(',').map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong("a field is no number")))
+            .map(|l| {
+                l.split(',')
+                    .map(str::parse)
+                    .collect::<Result<_, _>>()
+                    .map_err(|_| wrong("a field is no number"))
+            })
             .collect::<io::Result<_>>()?;
         if kept.len() < rows {
             return Err(wrong("it is shorter than the saved run"));

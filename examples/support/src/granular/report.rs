@@ -11,7 +11,10 @@ pub fn over_time(history: &History, column: &str, by: f64, title: &str, label: &
     let air = if high > low { 0.08 * (high - low) } else { 1.0 };
     Drawing {
         title: title.into(),
-        range: [(0.0, if end > 0.0 { end } else { 1.0 }), (if low < 0.0 { low - air } else { 0.0 }, high + air)],
+        range: [
+            (0.0, if end > 0.0 { end } else { 1.0 }),
+            (if low < 0.0 { low - air } else { 0.0 }, high + air),
+        ],
         labels: Some(["time, s".into(), label.into()]),
         lines: vec![(line, 3.0, Paint::Kind(0, 0.0))],
         ..Drawing::default()

@@ -115,7 +115,7 @@ fn fingerprint(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
 }
 
-/// Runs the scene from 0 to `end` \[s\] and writes, to `out`: `motion.csv`, `bodies.pvd` with `bodies/*.vtp`, `frames/*.png`, `state.bin`, and in
+/// Runs the scene from 0 to `end` \[s\] and writes, to `out`: `motion.csv`, `grains.pvd` and `walls.pvd` with their `.vtp` files, `frames/*.png`, `state.bin`, and in
 /// the end `bodies.csv`. `setup` tells all that a run that goes on must have in common with the one before.
 ///
 /// # Errors
@@ -135,11 +135,8 @@ pub fn run(
     let setup = fingerprint(&format!("{setup} {end:?} {rows}"));
     let state = out.join("state.bin");
     let time_of = |row: usize| end * row as f64 / rows as f64;
-    let columns: Vec<String> = std::iter::once("time")
-        .chain(Totals::COLUMNS)
-        .chain(scene.columns())
-        .map(str::to_owned)
-        .collect();
+    let columns: Vec<String> =
+        std::iter::once("time").chain(Totals::COLUMNS).chain(scene.columns()).map(str::to_owned).collect();
 
     let mut clock = Clock::default();
     let motion = out.join("motion.csv");
@@ -147,13 +144,19 @@ pub fn run(
     if options.resume {
         clock = load(&state, scene, bodies, setup, &time_of)?;
         history = History::resume(&motion, columns, clock.row + 1)?;
-        album = Album::new(out, !options.no_images, !options.no_vtk, Some(time_of(clock.row)))?;
+        album = Album::new(
+            out,
+            !options.no_images,
+            !options.no_vtk,
+            scene.first_grain() > 0,
+            Some(time_of(clock.row)),
+        )?;
     } else {
         for old in ["state.bin", "bodies.csv", "summary.png", "result.json"] {
             let _ = std::fs::remove_file(out.join(old));
         }
         history = History::new(&motion, columns)?;
-        album = Album::new(out, !options.no_images, !options.no_vtk, None)?;
+        album = Album::new(out, !options.no_images, !options.no_vtk, scene.first_grain() > 0, None)?;
         scene.feed(bodies, 0.0)?;
         bodies.check_overlaps()?;
         history.push(row_of(scene, bodies, 0.0))?;
@@ -221,7 +224,9 @@ fn load(
     setup: u64,
     time_of: &dyn Fn(usize) -> f64,
 ) -> Outcome<Clock> {
-    let hint = |e: CheckpointError| format!("{e}; without an interrupted run of this scene there, leave out --resume");
+    let hint = |e: CheckpointError| {
+        format!("{e}; without an interrupted run of this scene there, leave out --resume")
+    };
     let mut only = ClockOnly(Clock::default());
     coupling::load(state, &mut only).map_err(hint)?;
     let clock = only.0;
@@ -230,7 +235,11 @@ fn load(
     scene.refill(bodies, clock.bodies, time_of(fed))?;
     if bodies.n_bodies() != clock.bodies {
         let (n, saved) = (bodies.n_bodies(), clock.bodies);
-        return Err(format!("{}: {saved} bodies were saved, this scene has {n}; give the same flags", state.display()).into());
+        return Err(format!(
+            "{}: {saved} bodies were saved, this scene has {n}; give the same flags",
+            state.display()
+        )
+        .into());
     }
     coupling::load(state, &mut Whole { bodies, clock, setup }).map_err(hint)?;
     Ok(clock)

@@ -126,7 +126,9 @@ impl Portrait<'_> {
             .models
             .iter()
             .map(|m| match m.tint {
-                Tint::Value(v) => light::linear(map.at(if span > 0.0 { (v - self.range.0) / span } else { 0.0 })),
+                Tint::Value(v) => {
+                    light::linear(map.at(if span > 0.0 { (v - self.range.0) / span } else { 0.0 }))
+                }
                 Tint::Grey(share) => light::linear([(255.0 * share.clamp(0.0, 1.0)) as u8; 3]),
             })
             .collect();
@@ -136,7 +138,9 @@ impl Portrait<'_> {
         let rect = Rect::new(MARGIN, TITLE, w as f64, h as f64);
         let mut canvas = Canvas::new((rect.right() + bar) as usize, (rect.bottom() + MARGIN) as usize);
         for (y, row) in rgb.chunks_exact(3 * w).enumerate() {
-            canvas.row(rect.top as usize + y, rect.left as usize, rect.left as usize + w).copy_from_slice(row);
+            canvas
+                .row(rect.top as usize + y, rect.left as usize, rect.left as usize + w)
+                .copy_from_slice(row);
         }
         if let Some(label) = self.label {
             let range = if span > 0.0 { self.range } else { (self.range.0, self.range.0 + 1.0) };
@@ -155,7 +159,8 @@ impl Portrait<'_> {
         let length = [5.0, 2.0, 1.0].map(|k| k * power).into_iter().find(|l| *l <= longest).unwrap_or(power);
         let (x, y) = (rect.left + 14.0, rect.bottom() - 16.0);
         let end = x + scale * length;
-        for (from, to) in [((x, y), (end, y)), ((x, y - 5.0), (x, y + 5.0)), ((end, y - 5.0), (end, y + 5.0))] {
+        for (from, to) in [((x, y), (end, y)), ((x, y - 5.0), (x, y + 5.0)), ((end, y - 5.0), (end, y + 5.0))]
+        {
             canvas.line(&[from, to], 2.0, INK);
         }
         let (number, unit) = match length {
@@ -215,7 +220,8 @@ mod tests {
             width: 0.1,
             height: 0.05,
         };
-        let mut portrait = Portrait { view, models: &models, range: (0.0, 1.0), label: Some("m/s"), title: "t" };
+        let mut portrait =
+            Portrait { view, models: &models, range: (0.0, 1.0), label: Some("m/s"), title: "t" };
         let path = std::env::temp_dir().join(format!("siltflow-portrait-{}.png", std::process::id()));
         portrait.draw(&path).unwrap();
         let bytes = std::fs::read(&path).unwrap();

@@ -88,7 +88,8 @@ impl Light {
         }
         let (n, depth) = (buffer.normal[at], buffer.depth[at]);
         let open = self.openness(buffer, x, y, n, depth);
-        let facing = n[0] * self.towards.x as f32 + n[1] * self.towards.y as f32 + n[2] * self.towards.z as f32;
+        let facing =
+            n[0] * self.towards.x as f32 + n[1] * self.towards.y as f32 + n[2] * self.towards.z as f32;
         let lit = if facing > 0.0 { facing * self.lit(x, y, f64::from(depth), n) } else { 0.0 };
         let light = AMBIENT * open * (0.85 + 0.15 * n[1]) + DIRECT * lit * (0.5 + 0.5 * open);
         colours[buffer.owner[at] as usize].map(|c| c * light)
@@ -145,7 +146,8 @@ impl Light {
             let (sin, cos) = (TAU * (start + 0.618_034 * k as f32)).sin_cos();
             let (i, j) = (p.x + f64::from(away * cos), p.y + f64::from(away * sin));
             let out = i < 0.0 || j < 0.0 || i >= self.seen.width as f64 || j >= self.seen.height as f64;
-            let clear = out || f64::from(self.seen.depth[j as usize * self.seen.width + i as usize]) <= p.z + 1.0;
+            let clear =
+                out || f64::from(self.seen.depth[j as usize * self.seen.width + i as usize]) <= p.z + 1.0;
             open += usize::from(clear);
         }
         open as f32 / TAPS as f32

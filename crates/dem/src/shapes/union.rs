@@ -158,9 +158,53 @@ mod tests {
     use super::*;
     use crate::{Cuboid, Sphere};
     use approx::assert_relative_eq;
+    use interfaces::Rotation;
 
     fn part(shape: impl Shape + 'static, position: [f64; 3]) -> Part {
         Part { shape: Arc::new(shape), pose: Pose::at(position) }
+    }
+
+    /// Parts are left out by the spheres and the boxes around them, but none that touches: what is found is what all parts find alone.
+    #[test]
+    fn no_part_is_left_out_that_touches() {
+        let parts: Vec<Part> = (0..6)
+            .map(|i| {
+                let turn = f64::from(i);
+                let orientation = Rotation::from_euler_angles(0.3 * turn, 0.2, turn);
+                let position = orientation * Vector::new(1.2, 0.0, 0.0) + Vector::z() * (3.0 * turn);
+                let shape: Arc<dyn Shape> = Arc::new(Cuboid::new([0.4, 3.0, 1.0]).unwrap());
+                Part { shape, pose: Pose { position: position.into(), orientation } }
+            })
+            .collect();
+        let union = Union::new(parts).unwrap();
+        let at = Pose {
+            position: Point::new(0.3, -0.2, 0.1),
+            orientation: Rotation::from_euler_angles(1.0, 2.0, 0.5),
+        };
+        let others: [Box<dyn Shape>; 2] =
+            [Box::new(Sphere::new(0.7).unwrap()), Box::new(Cuboid::new([0.9, 0.3, 0.5]).unwrap())];
+        let (mut solver, mut touched) = (OverlapSolver::new(), 0);
+        for k in 0..4000 {
+            let spread = |i: i32| f64::from((k * i) % 997) / 997.0 - 0.5;
+            let place = union.aabb().extent() + Vector::repeat(1.0);
+            let inner = Vector::new(spread(113), spread(271), spread(619)).component_mul(&place);
+            let orientation =
+                Rotation::from_euler_angles(spread(31) * 6.0, spread(77) * 6.0, spread(5) * 6.0);
+            let pose = Pose { position: at.to_world(inner.into()), orientation };
+            let other = &*others[k as usize % 2];
+            let found: f64 = solver.solve(&union, &at, other, &pose).unwrap().iter().map(|o| o.volume).sum();
+            let alone: f64 = union
+                .parts()
+                .iter()
+                .map(|p| {
+                    let patches = solver.solve(&*p.shape, &at.of(&p.pose), other, &pose).unwrap();
+                    patches.iter().map(|o| o.volume).sum::<f64>()
+                })
+                .sum();
+            assert_eq!(found, alone, "case {k}");
+            touched += usize::from(found > 0.0);
+        }
+        assert!((200..3800).contains(&touched), "{touched}");
     }
 
     /// Two boxes make a longer one.

@@ -12,7 +12,7 @@
 //!
 //! Sample runs:
 //! ```text
-//! cargo run --release --example hopper                                     # 2000 spheres, about two minutes
+//! cargo run --release --example hopper                                     # 1500 spheres, about two minutes
 //! cargo run --release --example hopper -- --slope 0 --orifice 0.042        # against Beverloo's law
 //! cargo run --release --example hopper -- --shape polyhedron --number 500  # slower: 26 vertices each
 //! cargo run --release --example hopper -- --help
@@ -36,7 +36,7 @@ use std::sync::atomic::AtomicBool;
 #[command(version)]
 pub(crate) struct Cli {
     /// How many grains.
-    #[arg(long, default_value_t = 2000)]
+    #[arg(long, default_value_t = 1500)]
     pub(crate) number: usize,
     /// Width of the silo [m].
     #[arg(long, default_value_t = 0.08, allow_negative_numbers = true)]

@@ -255,3 +255,93 @@ fn table(path: &Path, scene: &impl Scene, bodies: &Granulate) -> Outcome<()> {
     write_bodies(BufWriter::new(File::create(path)?), &rows)?;
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::granular::{Law, Ways};
+    use crate::picture::solids::View;
+    use clap::Parser;
+    use dem::{HalfSpace, Material, RigidBodies, Rolling, Sphere};
+    use interfaces::{Aabb, BodyId, Freedom, Periods, Point, Pose, Twist, Vector};
+
+    /// One ball after the other falls onto a floor; Ctrl-C comes at a given time.
+    struct Balls<'a> {
+        stop: &'a AtomicBool,
+        at: f64,
+    }
+
+    fn add(bodies: &mut Granulate) -> Outcome<()> {
+        let n = bodies.n_bodies() as f64;
+        let pose = Pose::at([0.004 * n, 0.0, 0.05]);
+        let twist = Twist { angular: Vector::new(1.0, 2.0, 3.0), ..Twist::default() };
+        bodies.add(Sphere::new(0.005)?, Material::default(), pose, twist, Freedom::FREE)?;
+        Ok(())
+    }
+
+    impl Scene for Balls<'_> {
+        fn domain(&self) -> Aabb {
+            Aabb::around(Point::origin(), Vector::repeat(1.0))
+        }
+        fn feed(&mut self, bodies: &mut Granulate, time: f64) -> Outcome<()> {
+            if time < 0.1 { add(bodies) } else { Ok(()) }
+        }
+        fn refill(&mut self, bodies: &mut Granulate, number: usize, _: f64) -> Outcome<()> {
+            (bodies.n_bodies()..number).try_for_each(|_| add(bodies))
+        }
+        fn steer(&mut self, _: &mut Granulate, time: f64) {
+            if time >= self.at {
+                self.stop.store(true, Ordering::Relaxed);
+            }
+        }
+        fn view(&self) -> View {
+            View { middle: Point::origin(), along: Vector::y(), up: Vector::z(), width: 0.1, height: 0.1 }
+        }
+        fn value(&self, _: &Granulate, _: BodyId) -> f64 {
+            0.0
+        }
+        fn scale(&self) -> (&'static str, (f64, f64)) {
+            ("", (0.0, 1.0))
+        }
+        fn tells(&self, _: BodyId) -> (Option<f64>, &'static str) {
+            (Some(0.01), "sphere")
+        }
+    }
+
+    #[derive(Parser)]
+    struct Cli {
+        #[command(flatten)]
+        run: RunOptions,
+    }
+
+    fn go(out: &Path, setup: &str, at: f64, flags: &[&str]) -> Outcome<Ending> {
+        let law = Rolling(Law::from(Ways::Potential));
+        let mut bodies = RigidBodies::with_law(Periods::default(), law);
+        bodies.set_gravity(Vector::new(0.0, 0.0, -9.81));
+        bodies.add_wall(HalfSpace::new(Point::origin(), Vector::z())?, Material::default())?;
+        let stop = AtomicBool::new(false);
+        let mut scene = Balls { stop: &stop, at };
+        let cli = Cli::parse_from([&["", "--rows", "20", "--frames", "4", "--no-images"], flags].concat());
+        Ok(run(&mut scene, &mut bodies, &cli.run, (0.2, out, setup), &stop)?.0)
+    }
+
+    /// Stopped amid a row while bodies come in, and again later: what is written is, bit for bit, what a run that was not stopped writes.
+    #[test]
+    fn a_stopped_run_goes_on() {
+        let folder = std::env::temp_dir().join(format!("siltflow-granular-{}", std::process::id()));
+        let (whole, parts) = (folder.join("whole"), folder.join("parts"));
+        assert_eq!(go(&whole, "a", 9.0, &[]).unwrap(), Ending::Whole);
+        assert_eq!(go(&parts, "a", 0.0613, &[]).unwrap(), Ending::Stopped);
+        assert!(go(&parts, "b", 9.0, &["--resume"]).unwrap_err().to_string().contains("flags"));
+        assert_eq!(go(&parts, "a", 0.15, &["--resume"]).unwrap(), Ending::Stopped);
+        assert_eq!(go(&parts, "a", 9.0, &["--resume"]).unwrap(), Ending::Whole);
+        for file in ["motion.csv", "bodies.csv", "grains.pvd", "grains/00003.vtp"] {
+            let [a, b] = [&whole, &parts].map(|f| std::fs::read(f.join(file)).unwrap());
+            assert!(a == b, "{file} differs");
+        }
+        let table = dem::placing::read_bodies(File::open(parts.join("bodies.csv")).unwrap()).unwrap();
+        assert_eq!((table.len(), table[0].size), (10, Some(0.01)));
+        assert!(go(&folder.join("empty"), "a", 9.0, &["--resume"]).is_err());
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}

@@ -1,7 +1,7 @@
 //! Grains are poured onto a tray and make a heap: its angle of repose.
 //!
 //! Grains come in at a spout, during the run, and fall onto the middle of a round tray with a low rim; what does not stay on the heap rolls over the
-//! rim. The angle is that of the line through the highest tops in rings around the axis, between 0.25 and 0.85 of the tray's radius. It rises with
+//! rim. The angle is that of the line through the highest tops in rings around the axis, between 0.35 and 0.95 of the tray's radius. It rises with
 //! friction, and more with rolling friction (Zhou et al. 2002, Powder Technology 125, 45).
 //!
 //! Sample runs:

@@ -177,7 +177,7 @@ impl Scene for Tray {
             [p.x, p.y, p.z + 0.5 * self.grains[b.0 - self.first_grain()].size]
         };
         let slope =
-            cone_slope(grains().filter(lies).map(top), 0.25 * self.radius, 0.85 * self.radius, self.widest);
+            cone_slope(grains().filter(lies).map(top), 0.35 * self.radius, 0.95 * self.radius, self.widest);
         let over = grains().filter(|b| bodies.pose(*b).position.coords.xy().norm() > self.radius).count();
         vec![slope.unwrap_or(0.0).to_degrees(), over as f64]
     }

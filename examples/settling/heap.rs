@@ -18,6 +18,7 @@ pub(crate) struct Heap {
     /// Of the picture.
     tall: f64,
     colour: Colour,
+    from_table: bool,
     fall_speed: f64,
 }
 
@@ -80,6 +81,7 @@ impl Heap {
             heights,
             tall: top,
             colour: cli.colour,
+            from_table: cli.table.is_some(),
             fall_speed: (GRAVITY * top).sqrt(),
         };
         Ok((heap, bodies))
@@ -91,6 +93,9 @@ impl Scene for Heap {
         let beyond = if self.periodic { f64::INFINITY } else { 0.0 };
         let (low, high) = (-beyond, self.width + beyond);
         Aabb { min: [low, low, 0.0].into(), max: [high, high, 3.0 * self.tall].into() }
+    }
+    fn may_touch(&self) -> bool {
+        self.from_table
     }
     fn columns(&self) -> Vec<&'static str> {
         vec!["fraction", "height"]

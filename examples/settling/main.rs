@@ -8,7 +8,7 @@
 //! ```text
 //! cargo run --release --example settling                                       # 400 spheres, cubes, ellipsoids, polyhedra: about a minute
 //! cargo run --release --example settling -- --shape sphere --spread 1.4 --number 2000
-//! cargo run --release --example settling -- --table out/settling/bodies.csv --end 0.1    # goes on from a table
+//! cargo run --release --example settling -- --table out/settling/bodies.csv --out out/again  # goes on from a table
 //! cargo run --release --example settling -- --stl rock.stl --number 50
 //!
 //! # random close packing, several minutes each

@@ -44,10 +44,16 @@ fn wrapped(bodies: &Granulate, b: BodyId, corner: Point, grain: bool) -> Pose {
     if grain { Pose { position: bodies.periods().wrap(pose.position, corner), ..pose } } else { pose }
 }
 
-/// What is written for ParaView: its name, and whether that are grains.
-const SERIES: [(&str, bool); 2] = [("grains", true), ("walls", false)];
+/// What is written for ParaView: its name, and whether that are points, one for each grain, or outlines of walls and of grains that are made of
+/// triangles.
+const SERIES: [(&str, bool); 2] = [("grains", true), ("outlines", false)];
 
-/// `grains.pvd`, `walls.pvd` and the files that they list; pictures.
+/// Is a body among those whose outlines are written?
+pub(super) fn is_outlined(scene: &impl Scene, bodies: &Granulate, b: BodyId) -> bool {
+    b.0 < scene.first_grain() || bodies.shape(b).polyhedron().is_some()
+}
+
+/// `grains.pvd`, `outlines.pvd` and the files that they list; pictures.
 pub(super) struct Album {
     folder: PathBuf,
     series: Vec<(&'static str, bool, fv_mesh::TimeSeries)>,
@@ -55,28 +61,28 @@ pub(super) struct Album {
 }
 
 impl Album {
-    /// A new one; or the one of an earlier run, up to `time`. `walls`: are there bodies that are none of the grains?
+    /// A new one; or the one of an earlier run, up to `time`. `outlines`: are there any?
     pub(super) fn new(
         folder: &Path,
         pictures: bool,
         vtk: bool,
-        walls: bool,
+        outlines: bool,
         resumed: Option<f64>,
     ) -> Outcome<Self> {
         let mut series = Vec::new();
-        for (name, grains) in SERIES {
+        for (name, points) in SERIES {
             let path = folder.join(format!("{name}.pvd"));
             if resumed.is_none() {
                 let _ = std::fs::remove_file(&path);
                 clear(&folder.join(name))?;
             }
-            if vtk && (grains || walls) {
+            if vtk && (points || outlines) {
                 std::fs::create_dir_all(folder.join(name))?;
                 let one = match resumed {
                     None => fv_mesh::TimeSeries::new(path),
                     Some(time) => fv_mesh::TimeSeries::resume(path, time)?,
                 };
-                series.push((name, grains, one));
+                series.push((name, points, one));
             }
         }
         if resumed.is_none() {
@@ -97,13 +103,14 @@ impl Album {
         bodies: &Granulate,
     ) -> Outcome<()> {
         let first = scene.first_grain();
-        for (name, grains, series) in &mut self.series {
+        for (name, points, series) in &mut self.series {
             let path = format!("{name}/{index:05}.vtp");
             let mut file = BufWriter::new(File::create(self.folder.join(&path))?);
-            if *grains {
+            if *points {
                 bodies.write_vtp_points(&mut file, corner(scene), bodies.ids().skip(first))?;
             } else {
-                bodies.write_vtp_of(&mut file, corner(scene), bodies.ids().take(first))?;
+                let which = bodies.ids().filter(|b| is_outlined(scene, bodies, *b));
+                bodies.write_vtp_of(&mut file, corner(scene), which)?;
             }
             file.flush()?;
             series.push(time, path)?;

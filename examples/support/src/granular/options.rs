@@ -16,16 +16,16 @@ pub struct GrainOptions {
     /// A closed triangle mesh instead (STL); it is scaled to the diameter.
     #[arg(long, value_name = "FILE", conflicts_with = "shape")]
     pub stl: Option<PathBuf>,
-    /// Diameter of a sphere of the same volume [m]; the median, if sizes differ.
+    /// Diameter of a sphere of the same volume, in m; the median, if sizes differ.
     #[arg(long, default_value_t = 6e-3, allow_negative_numbers = true)]
     pub diameter: f64,
     /// Geometric standard deviation of the sizes (log-normal, cut off at a half and at twice the diameter); 1: all alike.
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     pub spread: f64,
-    /// Density [kg/m³].
+    /// Density in kg/m³.
     #[arg(long, default_value_t = 2500.0, allow_negative_numbers = true)]
     pub density: f64,
-    /// Young's modulus [Pa]. Steps get shorter with its root; a soft one makes grains sink into one another (column `overlap`).
+    /// Young's modulus in Pa. Steps get shorter with its root; a soft one makes grains sink into one another (column `overlap`).
     #[arg(long, default_value_t = 1e7, allow_negative_numbers = true)]
     pub youngs_modulus: f64,
     /// Poisson's ratio.
@@ -100,7 +100,7 @@ impl GrainOptions {
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Run and files")]
 pub struct RunOptions {
-    /// End time [s].
+    /// End time in s.
     #[arg(long, allow_negative_numbers = true)]
     pub end: Option<f64>,
     /// Rows of motion.csv, evenly spaced from 0 to the end, besides the first.

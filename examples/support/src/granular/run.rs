@@ -1,5 +1,5 @@
 //! The time loop.
-use super::album::Album;
+use super::album::{Album, is_outlined};
 use super::law::Granulate;
 use super::measures::{Totals, totals};
 use super::options::RunOptions;
@@ -115,7 +115,7 @@ fn fingerprint(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
 }
 
-/// Runs the scene from 0 to `end` \[s\] and writes, to `out`: `motion.csv`, `grains.pvd` and `walls.pvd` with their `.vtp` files, `frames/*.png`, `state.bin`, and in
+/// Runs the scene from 0 to `end` \[s\] and writes, to `out`: `motion.csv`, `grains.pvd` and `outlines.pvd` with their `.vtp` files, `frames/*.png`, `state.bin`, and in
 /// the end `bodies.csv`. `setup` tells all that a run that goes on must have in common with the one before.
 ///
 /// # Errors
@@ -141,24 +141,24 @@ pub fn run(
     let mut clock = Clock::default();
     let motion = out.join("motion.csv");
     let (mut history, mut album);
+    let vtk = !options.no_vtk;
+    let outlines = bodies.ids().any(|b| is_outlined(scene, bodies, b));
     if options.resume {
         clock = load(&state, scene, bodies, setup, &time_of)?;
         history = History::resume(&motion, columns, clock.row + 1)?;
-        album = Album::new(
-            out,
-            !options.no_images,
-            !options.no_vtk,
-            scene.first_grain() > 0,
-            Some(time_of(clock.row)),
-        )?;
+        album = Album::new(out, !options.no_images, vtk, outlines, Some(time_of(clock.row)))?;
     } else {
         for old in ["state.bin", "bodies.csv", "summary.png", "result.json"] {
             let _ = std::fs::remove_file(out.join(old));
         }
         history = History::new(&motion, columns)?;
-        album = Album::new(out, !options.no_images, !options.no_vtk, scene.first_grain() > 0, None)?;
+        album = Album::new(out, !options.no_images, vtk, outlines, None)?;
         scene.feed(bodies, 0.0)?;
-        bodies.check_overlaps()?;
+        if scene.may_touch() {
+            check_depth(scene, bodies)?;
+        } else {
+            bodies.check_overlaps()?;
+        }
         history.push(row_of(scene, bodies, 0.0))?;
         album.add(0, 0.0, scene, bodies)?;
     }
@@ -209,6 +209,24 @@ pub fn run(
         eprintln!("the state is saved; give the same flags with --resume to go on");
     }
     Ok((ending, history))
+}
+
+/// Depth of overlaps at the start by the smaller radius beyond which bodies do not touch but are in one another.
+const DEEPEST: f64 = 0.5;
+
+/// Grains may touch at the start, but no more than that.
+fn check_depth(scene: &impl Scene, bodies: &Granulate) -> Outcome<()> {
+    let mut soon = bodies.clone();
+    soon.advance(1e-6 * bodies.stable_dt())?;
+    let deepest = totals(&soon, scene.first_grain(), &scene.domain()).overlap[1];
+    if deepest > DEEPEST {
+        return Err(format!(
+            "grains overlap one another or walls at the start, by up to {:.0} % of a radius; move them apart",
+            100.0 * deepest
+        )
+        .into());
+    }
+    Ok(())
 }
 
 fn row_of(scene: &mut impl Scene, bodies: &Granulate, time: f64) -> Vec<f64> {

@@ -14,6 +14,10 @@ pub trait Scene {
     }
     /// Where grains should be.
     fn domain(&self) -> Aabb;
+    /// Do grains touch at the start, as those of a heap at rest?
+    fn may_touch(&self) -> bool {
+        false
+    }
     /// Bodies that come in at `time`, asked at the beginning of every row of the table of motion.
     ///
     /// # Errors

@@ -1,8 +1,7 @@
 //! The contact law that a flag chooses.
 use clap::ValueEnum;
 use dem::{
-    Chen, ContactLaw, DemError, Material, Memory, PairProperties, Potential, Push, RigidBodies, Rolling,
-    Touch,
+    Chen, ContactLaw, DemError, Material, PairProperties, Potential, Push, RigidBodies, Rolling, Touch,
 };
 use interfaces::Vector;
 
@@ -67,6 +66,3 @@ impl ContactLaw for Law {
         }
     }
 }
-
-// The memory of both is one memory, for restarts.
-const _: () = assert!(<<Law as ContactLaw>::Memory as Memory>::N == 9);

@@ -39,7 +39,7 @@ pub(crate) struct Cli {
     #[arg(long, default_value_t = 1500)]
     pub(crate) number: usize,
     /// Width of the silo [m].
-    #[arg(long, default_value_t = 0.08, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0.07, allow_negative_numbers = true)]
     pub(crate) width: f64,
     /// Diameter of the opening [m].
     #[arg(long, default_value_t = 0.036, allow_negative_numbers = true)]
@@ -112,6 +112,11 @@ fn tell(cli: &Cli, silo: &Silo, history: &History, out: &Path) -> Outcome<()> {
         result["flow"] = flow.into();
         result["bulk_density"] = density.into();
         result["beverloo_c"] = (flow / unit).into();
+    }
+    if flow.is_none() || density.is_none() {
+        table.note(
+            "no mass flow against Beverloo's law: too few grains above the opening, or too few have come out",
+        );
     }
     println!("{table}\n  pictures and files: {}", out.display());
     write_json(&out.join("result.json"), &result)?;

@@ -6,7 +6,7 @@
 //!
 //! Sample runs:
 //! ```text
-//! cargo run --release --example settling                                       # 400 spheres, cubes, ellipsoids, polyhedra: about a minute
+//! cargo run --release --example settling                                       # 400 spheres, cubes, ellipsoids, polyhedra: about two minutes
 //! cargo run --release --example settling -- --shape sphere --spread 1.4 --number 2000
 //! cargo run --release --example settling -- --table out/settling/bodies.csv --out out/again  # goes on from a table
 //! cargo run --release --example settling -- --stl rock.stl --number 50

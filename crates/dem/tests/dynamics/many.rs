@@ -1,6 +1,6 @@
 //! Laws and scenes beyond two spheres.
 use super::*;
-use dem::{Chen, Cuboid, DemError, HalfSpace, Means, Rolling};
+use dem::{Chen, Cuboid, DemError, HalfSpace, Means, Partner, Rolling};
 use interfaces::{Checkpoint, Dynamics, Point, Rotation};
 
 const G: f64 = 9.81;
@@ -148,7 +148,7 @@ fn bodies_come_in() {
     assert_eq!(run(true), run(false));
 }
 
-/// So fast that it would fly over a plate within one foreseen sub-step: the plate is met all the same.
+/// So fast that it would fly over a plate within one foreseen sub-step: the plate is met all the same, and as it is too soft, that is told.
 #[test]
 fn nothing_flies_past_unseen() {
     let soft = Material { youngs_modulus: 1e3, ..Material::default() };
@@ -161,10 +161,13 @@ fn nothing_flies_past_unseen() {
     bodies.add(sphere().shape(), soft, ball, fast, Freedom::FREE).unwrap();
     let dt = bodies.stable_dt();
     assert!(speed * dt > 4.0 * R, "it would be past it after one step");
-    bodies.advance(dt).unwrap();
-    // It takes 2.2 R to pass.
-    let passing = 2.2 * R / speed;
-    assert!((bodies.contact_time() / passing - 1.0).abs() < 0.1, "{} of {passing} s", bodies.contact_time());
+    let error = bodies.advance(dt).unwrap_err();
+    let plate = Partner::Body(BodyId(1), [0; 3]);
+    assert!(matches!(error, DemError::PassedThrough { partner, .. } if partner == plate), "{error}");
+    // Told of half way through, after 1.1 R.
+    let half = 1.1 * R / speed;
+    assert!((bodies.contact_time() / half - 1.0).abs() < 0.1, "{} of {half} s", bodies.contact_time());
+    assert!(bodies.pose(BodyId(1)).position.x.abs() < 0.1 * R);
 }
 
 /// Two feet of one body have a spring each: it stands on an incline. (Without them, dashpots alone, it would creep.)

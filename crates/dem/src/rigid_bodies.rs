@@ -51,8 +51,6 @@ pub struct RigidBodies<L: ContactLaw = Chen> {
     boxes: Vec<Aabb>,
     movable: Vec<bool>,
     pairs: PairList,
-    /// Scratch: who went astray.
-    strays: Vec<u32>,
     /// Pairs of bodies, then of bodies and (numbered from the top down) walls, each in ascending order; and those listed before.
     near: Vec<NearPair>,
     last_near: Vec<NearPair>,
@@ -135,7 +133,6 @@ impl<L: ContactLaw> RigidBodies<L> {
             boxes: Vec::new(),
             movable: Vec::new(),
             pairs: PairList::new(periods),
-            strays: Vec::new(),
             near: Vec::new(),
             last_near: Vec::new(),
             chunks: Vec::new(),

@@ -34,7 +34,7 @@ impl<L: ContactLaw> RigidBodies<L> {
         let half = 0.5 * dt;
         self.drift(half);
         if self.strayed() {
-            self.list_strayed(left)?;
+            self.list(left)?;
         }
         let mut pushed = self.push(dt);
         while pushed.is_ok() && self.wake_touched() {

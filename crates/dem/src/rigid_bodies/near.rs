@@ -10,8 +10,6 @@ use interfaces::{Aabb, BodyId, Load, Point, Pose, Rotation, Vector, Wrench};
 
 /// Sub-steps for which pairs are listed.
 const HORIZON: f64 = 40.0;
-/// All are listed anew unless fewer than one in so many went astray.
-const FEW: usize = 8;
 /// Radii by which bodies may go astray besides, having been pushed.
 const SKIN: f64 = 0.02;
 
@@ -128,7 +126,8 @@ impl<L: ContactLaw> RigidBodies<L> {
         own.grown(margin)
     }
 
-    /// Lists the pairs whose boxes may meet within `dt`, or within some sub-steps.
+    /// Lists the pairs whose boxes may meet within `dt`, or within some sub-steps: of all bodies, so that long passes before it has to be done again.
+    /// (Of a few only, by `PairList::refresh`, it would have to be done for others soon after, and costs as much for all pairs.)
     pub(super) fn list(&mut self, dt: f64) -> Result<(), DemError> {
         let dt = self.horizon(dt);
         self.listed_for = dt;
@@ -136,28 +135,6 @@ impl<L: ContactLaw> RigidBodies<L> {
             self.listed[b] = self.listing(b, dt);
         }
         self.list_again()
-    }
-
-    /// Lists anew those that have gone farther than foreseen, if they are few; all otherwise.
-    pub(super) fn list_strayed(&mut self, dt: f64) -> Result<(), DemError> {
-        let ahead = self.horizon(dt);
-        let mut strayed = std::mem::take(&mut self.strays);
-        strayed.clear();
-        let few = self.bodies.len() / FEW;
-        let all = (0..self.bodies.len()).filter(|b| self.listed[*b].is_left(&self.bodies[*b]));
-        strayed.extend(all.take(few + 1).map(|b| b as u32));
-        let result = if strayed.len() > few || self.boxes.len() != self.bodies.len() {
-            self.list(dt)
-        } else {
-            for b in strayed.iter().map(|b| *b as usize) {
-                self.listed[b] = self.listing(b, ahead);
-                self.boxes[b] = self.listed_box(b);
-            }
-            let refreshed = self.pairs.refresh(&self.boxes, &self.movable, &strayed);
-            self.gather(refreshed)
-        };
-        self.strays = strayed;
-        result
     }
 
     /// Lists the pairs by where bodies are listed to be.

@@ -32,7 +32,7 @@ pub use cylinder::Cylinder;
 pub use disc::Disc;
 pub use ellipsoid::Ellipsoid;
 pub use facets::Facets;
-pub(crate) use facets::{Leaf, Node, WIDTH, moved};
+pub(crate) use facets::{Leaf, Patches, WIDTH, bits, moved};
 pub use half_space::HalfSpace;
 #[cfg(any(test, feature = "mesh"))]
 pub(crate) use icosphere::icosphere;

@@ -1,9 +1,12 @@
 //! A closed surface of triangles, as overlaps need it.
 mod leaf;
+mod patches;
 mod tree;
 
 pub(crate) use leaf::{Leaf, moved};
-pub(crate) use tree::{Node, WIDTH};
+pub(crate) use patches::{Patches, bits};
+use tree::Node;
+pub(crate) use tree::WIDTH;
 
 use super::Moments;
 use interfaces::Vector;
@@ -26,6 +29,8 @@ pub struct Facets {
     /// The shell of every vertex.
     pub(crate) shell_of: Vec<u32>,
     pub(crate) tree: Vec<Node>,
+    /// Boxes along the surface around the tree's nodes.
+    pub(crate) patches: Vec<Patches>,
     /// The faces, eight by eight.
     pub(crate) leaves: Vec<Leaf>,
     /// The box around all, as [low, high].
@@ -58,7 +63,7 @@ impl Facets {
     /// A face that breaks this rule.
     pub(crate) fn new(mut vertices: Vec<Vector>, mut corners: Vec<[u32; 3]>) -> Result<Self, usize> {
         drop_unused(&mut vertices, &mut corners);
-        let tree = tree::build(&vertices, &mut corners);
+        let (tree, patches) = tree::build(&vertices, &mut corners);
         let mut edges = Vec::with_capacity(corners.len() * 3 / 2);
         let mut faces: Vec<Face> = corners.iter().map(|c| Face { corners: *c, edges: [0; 3] }).collect();
         let mut open: HashMap<(u32, u32), u32> = HashMap::with_capacity(corners.len() * 3 / 2);
@@ -103,6 +108,7 @@ impl Facets {
             shells,
             shell_of,
             tree,
+            patches,
             leaves,
             bounds,
             radius,

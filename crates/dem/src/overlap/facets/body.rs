@@ -1,5 +1,5 @@
 //! One of the two bodies, and the marks that an overlap leaves on it.
-use crate::shapes::{Facets, Leaf, Node, WIDTH, moved};
+use crate::shapes::{Facets, Leaf, Patches, moved};
 use interfaces::Vector;
 use nalgebra::Matrix3;
 
@@ -7,7 +7,7 @@ use nalgebra::Matrix3;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Marks {
     run: u32,
-    nodes: Vec<Marked<Node>>,
+    patches: Vec<Marked<Patches>>,
     leaves: Vec<Marked<Leaf>>,
     edges: Vec<Marked<Crossed>>,
     /// Of faces that the other body's surface crosses: where they are in `cut`.
@@ -73,7 +73,7 @@ impl Marks {
         fit(&mut self.crossed_at, facets.vertices.len());
         fit(&mut self.faces, facets.faces.len());
         fit(&mut self.edges, facets.edges.len());
-        fit(&mut self.nodes, facets.tree.len());
+        fit(&mut self.patches, facets.patches.len());
         fit(&mut self.leaves, facets.leaves.len());
         self.cut.clear();
         self.found.clear();
@@ -110,36 +110,43 @@ impl Body<'_> {
     pub(super) fn corners(&self, f: u32) -> [Vector; 3] {
         self.facets.faces[f as usize].corners.map(|v| self.place(v))
     }
-    /// Sees to it that [`node`](Self::node), and [`leaf`](Self::leaf) if it is one, can be asked for.
+    /// Sees to it that [`patches`](Self::patches) can be asked for.
     #[inline(always)]
-    pub(super) fn prepare(&mut self, n: u32) {
+    pub(super) fn prepare_patches(&mut self, n: u32) {
         let Some((turn, shift)) = &self.moved else { return };
-        let (at, marks) = (n as usize, &mut *self.marks);
-        if marks.nodes[at].run == marks.run {
-            return;
+        let own = &mut self.marks.patches[n as usize];
+        if own.run != self.marks.run {
+            own.run = self.marks.run;
+            own.value.move_from(&self.facets.patches[n as usize], turn, shift, self.facets.radius);
         }
-        let node = &self.facets.tree[at];
-        let value = if node.is_leaf {
-            let at = node.children[0] as usize / WIDTH;
-            let leaf = self.facets.leaves[at].moved(turn, shift);
-            let value = node.around(&leaf);
-            marks.leaves[at] = Marked { run: marks.run, value: leaf };
-            value
+    }
+    /// Boxes along the surface, in the common frame.
+    #[inline(always)]
+    pub(super) fn patches(&self, n: u32) -> &Patches {
+        if self.moved.is_some() {
+            &self.marks.patches[n as usize].value
         } else {
-            node.moved(turn, shift, self.facets.radius)
-        };
-        marks.nodes[at] = Marked { run: marks.run, value };
+            &self.facets.patches[n as usize]
+        }
     }
-    /// A node of the tree, its boxes in the common frame.
+    /// Sees to it that [`leaf`](Self::leaf) can be asked for.
     #[inline(always)]
-    pub(super) fn node(&self, n: u32) -> &Node {
-        if self.moved.is_some() { &self.marks.nodes[n as usize].value } else { &self.facets.tree[n as usize] }
+    pub(super) fn prepare_leaf(&mut self, n: u32) {
+        let Some((turn, shift)) = &self.moved else { return };
+        let own = &mut self.marks.leaves[n as usize];
+        if own.run != self.marks.run {
+            own.run = self.marks.run;
+            own.value.move_from(&self.facets.leaves[n as usize], turn, shift);
+        }
     }
-    /// The faces from number `first` on, in the common frame.
+    /// Eight faces, in the common frame.
     #[inline(always)]
-    pub(super) fn leaf(&self, first: u32) -> &Leaf {
-        let at = first as usize / WIDTH;
-        if self.moved.is_some() { &self.marks.leaves[at].value } else { &self.facets.leaves[at] }
+    pub(super) fn leaf(&self, n: u32) -> &Leaf {
+        if self.moved.is_some() {
+            &self.marks.leaves[n as usize].value
+        } else {
+            &self.facets.leaves[n as usize]
+        }
     }
     /// The number among the cut faces of face `f`, with a corner and the normal.
     #[inline]

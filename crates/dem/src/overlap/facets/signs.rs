@@ -35,20 +35,8 @@ pub(super) fn is_behind(of: Side, p: Vector, [a, b, c]: [Vector; 3]) -> bool {
 }
 
 /// Sign of (q − p)×(s − r)·(r − p): how the line from `p` to `q` on the first body passes that from `r` to `s` on the second.
-#[inline(always)]
-pub(super) fn passes(p: Vector, q: Vector, r: Vector, s: Vector) -> f64 {
-    let (u, v, w) = (q - p, s - r, r - p);
-    let near = u.cross(&v).dot(&w);
-    // Sums and products are rounded by ε each.
-    let size = |v: Vector| v.x.abs() + v.y.abs() + v.z.abs();
-    if near.abs() > 64.0 * f64::EPSILON * size(u) * size(v) * size(w) {
-        return near;
-    }
-    passes_nearly(p, q, r, s)
-}
-
 #[cold]
-fn passes_nearly(p: Vector, q: Vector, r: Vector, s: Vector) -> f64 {
+pub(super) fn passes(p: Vector, q: Vector, r: Vector, s: Vector) -> f64 {
     let passes = orient(p, q, r, s);
     if passes != 0.0 {
         return passes;

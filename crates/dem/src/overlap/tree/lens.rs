@@ -55,8 +55,7 @@ impl Lens {
         let x = self.root.axes.transpose() * (x - self.centre);
         let Outline { wide, rim, poles, beyond } = &self.shape;
         let (u, v) = (x.x / wide[0], x.y / wide[1]);
-        let turn = v.atan2(u).rem_euclid(std::f64::consts::TAU) * FIRST as f64 / std::f64::consts::TAU;
-        let (k, share) = (turn as usize % FIRST, turn.fract());
+        let (k, share) = eighths(u, v);
         let [r, z] = [0, 1].map(|i| (1.0 - share) * rim[k][i] + share * rim[(k + 1) % FIRST][i]);
         let out = u.hypot(v) / r;
         let s = (out * out).min(1.0);
@@ -315,10 +314,11 @@ impl Lenses {
         let mut x = [Vector::zeros(); FINEST];
         x[..n].iter_mut().enumerate().for_each(|(k, x)| *x = place(k));
         for k in 0..n {
+            // Weights of places as far ahead as behind differ by their sign; that of the opposite one is zero.
             let mut along = Vector::zeros();
-            for other in 1..n {
+            for other in 1..n / 2 {
                 let sign = if other % 2 == 0 { -per } else { per };
-                along += (sign * self.cot[other * step]) * x[(k + other) % n];
+                along += (sign * self.cot[other * step]) * (x[(k + other) % n] - x[(k + n - other) % n]);
             }
             area += 0.5 * x[k].cross(&along);
             moment -= 0.5 * x[k].norm_squared() * along;
@@ -359,6 +359,24 @@ impl Lenses {
     }
 }
 
+/// The azimuth of (u, v) in eighths of a turn: whole ones, and the rest to 0.005.
+fn eighths(u: f64, v: f64) -> (usize, f64) {
+    let (x, y) = (u.abs(), v.abs());
+    let steep = y > x;
+    let slope = if x.max(y) > 0.0 { x.min(y) / x.max(y) } else { 0.0 };
+    // atan t ≈ t π/4 + 0.273 t (1 − t) (Rajan et al. 2006, IEEE Signal Process. Mag. 23, 108).
+    let angle = slope * (1.0 + 0.273 * 4.0 / std::f64::consts::PI * (1.0 - slope));
+    // Upwards from the u axis or downwards to it, quarter by quarter.
+    let (quarter, falls) = match (u >= 0.0, v >= 0.0) {
+        (true, true) => (0, false),
+        (false, true) => (1, true),
+        (false, false) => (2, false),
+        (true, false) => (3, true),
+    };
+    let (second, share) = if steep != falls { (1, 1.0 - angle) } else { (0, angle) };
+    (2 * quarter + second, share)
+}
+
 /// A frame whose third axis is `n`.
 fn across(n: Vector) -> Matrix3<f64> {
     let u = n.cross(&Vector::ith(n.iamin(), 1.0)).normalize();
@@ -384,4 +402,24 @@ fn first_rim(sight: &Sight<'_>, d: [f64; 2], poles: [[f64; 2]; 2]) -> Option<Rim
         }
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::eighths;
+
+    #[test]
+    fn eighths_of_a_turn() {
+        for i in 0..8000 {
+            let angle = f64::from(i) / 1000.0;
+            let (sin, cos) = (angle * std::f64::consts::FRAC_PI_4).sin_cos();
+            let (k, share) = eighths(3.0 * cos, 3.0 * sin);
+            let off = (k as f64 + share - angle).abs();
+            assert!(
+                k < 8 && (0.0..=1.0).contains(&share) && off.min(8.0 - off) < 0.006,
+                "{angle}: {k} {share}"
+            );
+        }
+        assert_eq!(eighths(0.0, 0.0), (0, 0.0));
+    }
 }

@@ -125,9 +125,12 @@ impl Search<'_> {
     fn divided(&self, cell: &Cell) -> Option<Divided> {
         let half = self.half * 0.5_f64.powi(i32::from(cell.level) + 1);
         let reach = half.norm();
-        let sides: [Vector; 8] =
-            std::array::from_fn(|i| Vector::from_fn(|a, _| if i >> a & 1 == 1 { 1.0 } else { -1.0 }));
-        let centres = sides.map(|s| cell.centre + s.component_mul(&half));
+        let mut centres = [cell.centre; 8];
+        for (i, centre) in centres.iter_mut().enumerate() {
+            for a in 0..3 {
+                centre[a] += if i >> a & 1 == 1 { half[a] } else { -half[a] };
+            }
+        }
         let mut d = [[0.0; 8]; 2];
         for (d, body) in d.iter_mut().zip(&self.bodies) {
             *d = body.distances(&centres, 8.0 * reach);
@@ -135,30 +138,50 @@ impl Search<'_> {
                 return None;
             }
         }
-        let mut may_share: [bool; 8] = std::array::from_fn(|i| d[0][i].max(d[1][i]) <= reach);
-        // d = m + g·s at the eight centres, s from −1 to 1, but for what is `off`.
-        let models = [0, 1].map(|k| {
-            let mean = d[k].iter().sum::<f64>() / 8.0;
-            let slope = sides.iter().zip(&d[k]).map(|(s, d)| s * (d / 8.0)).sum::<Vector>();
-            let off = |(s, d): (&Vector, &f64)| (d - mean - slope.dot(s)).abs();
-            let most = sides.iter().zip(&d[k]).map(off).fold(0.0, f64::max);
-            (slope, most + (mean - cell.distances[k]).abs())
-        });
+        let mut may_share = [false; 8];
+        for i in 0..8 {
+            may_share[i] = d[0][i].max(d[1][i]) <= reach;
+        }
+        let models = [linear(&d[0], cell.distances[0]), linear(&d[1], cell.distances[1])];
         let straight =
             cell.level > 0 && models.iter().all(|(slope, off)| *off <= STRAIGHT * slope.abs().sum());
         if cell.level >= COARSE - 1 {
             let [(a, p), (b, q)] = models;
+            let mut above = [f64::NEG_INFINITY; 8];
             for w in 1..8 {
                 let w = f64::from(w) / 8.0;
                 let v = 1.0 - w;
                 let most = (w * a + v * b).abs().sum() + CURVED * (w * p + v * q) + SLACK * reach;
                 for i in 0..8 {
-                    may_share[i] &= w * d[0][i] + v * d[1][i] <= most;
+                    let gap = w * d[0][i] + v * d[1][i] - most;
+                    above[i] = if gap > above[i] { gap } else { above[i] };
                 }
+            }
+            for i in 0..8 {
+                may_share[i] &= above[i] <= 0.0;
             }
         }
         Some(Divided { centres, distances: d, may_share, straight })
     }
+}
+
+/// g of m + g·s, s from −1 to 1 along each axis, through distances `d` at the centres of eight boxes, and what they and that in the
+/// `middle` are off.
+#[inline]
+fn linear(d: &[f64; 8], middle: f64) -> (Vector, f64) {
+    let mean = 0.125 * (((d[0] + d[1]) + (d[2] + d[3])) + ((d[4] + d[5]) + (d[6] + d[7])));
+    let slope = 0.125
+        * Vector::new(
+            ((d[1] - d[0]) + (d[3] - d[2])) + ((d[5] - d[4]) + (d[7] - d[6])),
+            ((d[2] - d[0]) + (d[3] - d[1])) + ((d[6] - d[4]) + (d[7] - d[5])),
+            ((d[4] - d[0]) + (d[5] - d[1])) + ((d[6] - d[2]) + (d[7] - d[3])),
+        );
+    let mut most = 0.0_f64;
+    for (i, d) in d.iter().enumerate() {
+        let side = |a: usize| if i >> a & 1 == 1 { slope[a] } else { -slope[a] };
+        most = most.max((d - mean - (side(0) + side(1) + side(2))).abs());
+    }
+    (slope, most + (mean - middle).abs())
 }
 
 /// Is value `i` of a grid no more than those around?

@@ -35,7 +35,10 @@ impl<'a> Seen<'a> {
     #[inline]
     pub(crate) fn distances<const N: usize>(&self, points: &[Vector; N], band: f64) -> [f64; N] {
         const { assert!(N <= BLOCK) };
-        let places = points.map(|y| self.place(y));
+        let mut places = [Point::origin(); N];
+        for (place, y) in places.iter_mut().zip(points) {
+            *place = self.place(*y);
+        }
         let mut out = [0.0; N];
         self.solid.signed_distances(&places, band, &mut out);
         out

@@ -62,8 +62,8 @@ impl Facets {
     /// # Errors
     /// A face that breaks this rule.
     pub(crate) fn new(mut vertices: Vec<Vector>, mut corners: Vec<[u32; 3]>) -> Result<Self, usize> {
-        drop_unused(&mut vertices, &mut corners);
         let (tree, patches) = tree::build(&vertices, &mut corners);
+        number_by_use(&mut vertices, &mut corners);
         let mut edges = Vec::with_capacity(corners.len() * 3 / 2);
         let mut faces: Vec<Face> = corners.iter().map(|c| Face { corners: *c, edges: [0; 3] }).collect();
         let mut open: HashMap<(u32, u32), u32> = HashMap::with_capacity(corners.len() * 3 / 2);
@@ -208,18 +208,20 @@ impl Facets {
     }
 }
 
-/// Keeps the vertices that faces have.
-fn drop_unused(vertices: &mut Vec<Vector>, corners: &mut [[u32; 3]]) {
+/// Numbers vertices as faces come upon them, and drops those of none: what is near in space, and asked for together, is near in
+/// memory.
+fn number_by_use(vertices: &mut Vec<Vector>, corners: &mut [[u32; 3]]) {
     let mut numbers = vec![u32::MAX; vertices.len()];
-    corners.as_flattened().iter().for_each(|v| numbers[*v as usize] = 0);
-    let used = numbers.iter_mut().filter(|n| **n == 0);
-    used.zip(0..).for_each(|(n, number)| *n = number);
-    let mut at = 0;
-    vertices.retain(|_| {
-        at += 1;
-        numbers[at - 1] != u32::MAX
-    });
-    corners.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
+    let mut sorted = Vec::with_capacity(vertices.len());
+    for v in corners.as_flattened_mut() {
+        let number = &mut numbers[*v as usize];
+        if *number == u32::MAX {
+            *number = sorted.len() as u32;
+            sorted.push(vertices[*v as usize]);
+        }
+        *v = *number;
+    }
+    *vertices = sorted;
 }
 
 /// Sorts items by vertex: those of vertex v are at `starts[v]..starts[v + 1]`.

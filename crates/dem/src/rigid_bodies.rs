@@ -5,6 +5,7 @@ mod checkpoint;
 mod contacts;
 mod meeting;
 mod near;
+mod push;
 mod sleep;
 mod time_step;
 mod turning;

@@ -82,7 +82,7 @@ impl ContactLaw for Chen {
         let per_length = 1.0 / length;
         let elastic = p.stiffness * per_length;
         let dashpot = p.damping * (elastic * mass).sqrt() * per_length;
-        let pressure = elastic * t.overlap.volume + dashpot * t.overlap.rate(t.velocity, t.spin);
+        let pressure = elastic * t.overlap.volume + dashpot * t.rate;
         let pressure = if self.adhesion { pressure } else { pressure.max(0.0) };
         let stiffness = elastic * area;
         let viscosity = dashpot * area;

@@ -38,6 +38,8 @@ pub struct Touch<'a> {
     pub area: f64,
     /// Volume of all patches of the two \[m³\].
     pub volume: f64,
+    /// dV/dt of the patch \[m³/s\].
+    pub rate: f64,
     /// Velocity of the first body against the second at the centroid \[m/s\].
     pub velocity: Vector,
     /// Angular velocity of the first body against the second \[rad/s\].

@@ -163,7 +163,7 @@ impl ContactLaw for Potential {
             *memory = Loading::default();
             return Push { force: Vector::zeros(), couple: Vector::zeros(), stiffness: 0.0 };
         }
-        let rate = o.rate(t.velocity, t.spin);
+        let rate = t.rate;
         let (_, mut slope) = self.energy(p, t.sizes, t.face, t.volume, t.plane);
         // Where whole faces meet, the force begins like a root of the depth. The first and the last sub-step of such a contact do the work that
         // belongs to the whole way from and to V = 0, though the bodies touch in a part of a sub-step only.

@@ -30,6 +30,7 @@ pub(super) fn segment(r: f64, s: f64) -> Part {
 }
 
 /// Spherical cap: V = πs²(3r − s)/3, centroid at ¾(2r − s)²/(3r − s).
+#[inline]
 fn cap(r: f64, s: f64) -> Part {
     let s = s.clamp(0.0, 2.0 * r); // Round-off may lead beyond.
     Part {
@@ -73,13 +74,41 @@ pub(crate) fn spheres_to(ra: f64, a: Point, rb: f64, b: Point, mut add: impl FnM
         }
         return;
     }
+    add(lens(ra, a, rb, b).overlap);
+}
+
+/// What a sphere shares with another one or with a wall, and what is known about it because all lies along the normal.
+pub(crate) struct Lens {
+    pub(crate) overlap: Overlap,
+    /// Of the common circle.
+    pub(crate) area: f64,
+    /// Distances of the centroid from both centres; infinite for a wall.
+    pub(crate) arms: [f64; 2],
+}
+
+/// What two spheres share that overlap, neither within the other.
+#[inline(always)]
+pub(crate) fn lens(ra: f64, a: Point, rb: f64, b: Point) -> Lens {
+    let apart = a - b;
+    let d = apart.norm();
+    let depth = ra + rb - d;
     let per_distance = 1.0 / d;
     let [sa, sb] = [rb, ra].map(|other| 0.5 * depth * (2.0 * other - depth) * per_distance);
     let [va, vb] = [(ra, sa), (rb, sb)].map(|(r, s)| s * s * (r - s * (1.0 / 3.0)));
     let (s, r) = if sa < sb { (sa, ra) } else { (sb, rb) };
     let normal = apart * per_distance;
     let share = if va + vb > 0.0 { vb / (va + vb) } else { 0.5 };
-    add(overlap(PI * (va + vb), a - apart * share, normal, PI * s * (2.0 * r - s)));
+    let area = PI * s * (2.0 * r - s);
+    let overlap = overlap(PI * (va + vb), a - apart * share, normal, area);
+    Lens { overlap, area, arms: [share * d, d - share * d] }
+}
+
+/// What a sphere and a half-space share whose centre is `distance` above its plane, less than the radius in or out.
+#[inline(always)]
+pub(crate) fn cap_at_wall(r: f64, at: Point, distance: f64, normal: Vector) -> Lens {
+    let Part { volume, centroid, cut } = cap(r, r - distance);
+    let overlap = overlap(volume, at - normal * centroid, normal, cut);
+    Lens { overlap, area: cut, arms: [centroid, f64::INFINITY] }
 }
 
 pub(crate) fn disc_wall(r: f64, at: Point, distance: f64, normal: Vector) -> Option<Overlap> {

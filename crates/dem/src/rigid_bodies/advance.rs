@@ -1,6 +1,6 @@
 //! The time loop.
 use super::RigidBodies;
-use super::contacts::{CHUNK, Chunk, View};
+use super::contacts::{CHUNK, Chunk, View, add_to};
 use crate::DemError;
 use crate::contact::ContactLaw;
 use interfaces::{BodyId, Dynamics, Load, Twist, Wrench};
@@ -108,7 +108,10 @@ fn work<L: ContactLaw>(
     #[cfg(feature = "parallel")]
     if chunks.len() > 1 && rayon::current_num_threads() > 1 {
         use rayon::prelude::*;
-        chunks.par_iter_mut().enumerate().for_each(|(i, chunk)| view.fill(i * CHUNK, chunk, dt));
+        chunks
+            .par_iter_mut()
+            .enumerate()
+            .for_each(|(i, chunk)| view.fill(i * CHUNK, chunk, dt, |_, _, _| {}));
         if let Some(error) = chunks.iter_mut().find_map(|c| c.error.take()) {
             chunks.iter_mut().for_each(Chunk::undo);
             return Err(error);
@@ -117,12 +120,11 @@ fn work<L: ContactLaw>(
         return Ok(());
     }
     for i in 0..chunks.len() {
-        view.fill(i * CHUNK, &mut chunks[i], dt);
+        view.fill(i * CHUNK, &mut chunks[i], dt, |pair, on_a, on_b| add_to(wrenches, pair, on_a, on_b));
         if let Some(error) = chunks[i].error.take() {
             chunks[..=i].iter_mut().for_each(Chunk::undo);
             return Err(error);
         }
-        view.add(&chunks[i], wrenches);
     }
     Ok(())
 }

@@ -1,16 +1,16 @@
 //! Forces of the pairs that touch.
 use super::Partner;
 use super::body::{Body, Constants};
-use super::meeting::{Meeting, Other, shift};
+use super::meeting::Other;
+use super::push::larger;
 use crate::broad_phase::NearPair;
-use crate::contact::{ContactLaw, Push, Touch};
+use crate::contact::{ContactLaw, Push};
+use crate::overlap::closed;
 use crate::{DemError, HalfSpace, Overlap, OverlapSolver, PairProperties};
-use interfaces::{BodyId, Periods, Point, Twist, Vector, Wrench};
+use interfaces::{BodyId, Periods, Point, Vector, Wrench};
 
 /// Pairs that are worked on as one: their number does not depend on that of threads, and so does no sum.
 pub(super) const CHUNK: usize = 1024;
-/// Contacts count as no nearer to a body's centre than this part of its inner radius, or L_c would vanish there.
-const SHORTEST_ARM: f64 = 0.05;
 
 /// A patch of an overlap, and what it does to the first of the pair.
 #[derive(Clone, Copy, Debug)]
@@ -25,11 +25,19 @@ pub(super) struct Patch<M> {
     pub(super) memory: M,
 }
 
-impl<M> Patch<M> {
-    #[inline]
-    fn new(near: u32, overlap: &Overlap, push: &Push, memory: M) -> Self {
+/// The patches of one pair: those of the last sub-step and after, and where those of this one go.
+pub(super) struct Record<'a, M> {
+    pub(super) near: u32,
+    pub(super) before: &'a [Patch<M>],
+    pub(super) patches: &'a mut Vec<Patch<M>>,
+}
+
+impl<M> Record<'_, M> {
+    #[inline(always)]
+    pub(super) fn add(&mut self, overlap: &Overlap, push: &Push, memory: M) {
         let Overlap { volume, centroid, normal, .. } = *overlap;
-        Self { near, volume, point: centroid, normal, force: push.force, couple: push.couple, memory }
+        let Push { force, couple, .. } = *push;
+        self.patches.push(Patch { near: self.near, volume, point: centroid, normal, force, couple, memory });
     }
 }
 
@@ -96,141 +104,69 @@ pub(super) struct View<'a, L> {
 }
 
 impl<L: ContactLaw> View<'_, L> {
-    /// Forces of the pairs from `first` on that are this chunk's.
-    pub(super) fn fill(&self, first: usize, chunk: &mut Chunk<L::Memory>, dt: f64) {
+    /// Forces of the pairs from `first` on that are this chunk's. What each patch does to both of a pair is handed to `add`, too.
+    #[inline(always)]
+    pub(super) fn fill(
+        &self,
+        first: usize,
+        chunk: &mut Chunk<L::Memory>,
+        dt: f64,
+        mut add: impl FnMut(&NearPair, Wrench, Wrench),
+    ) {
         let Chunk { patches, last, solver, overlap_calls, stiffest, error } = chunk;
         std::mem::swap(patches, last);
         patches.clear();
         (*stiffest, *error) = (0.0, None);
-        let mut old = 0;
+        let mut before = &last[..];
         let end = self.near.len().min(first + CHUNK);
-        for (k, pair) in (first..).zip(&self.near[first..end]) {
+        for (k, pair) in (first as u32..).zip(&self.near[first..end]) {
             let meeting = self.meeting(pair);
             if meeting.is_apart() {
                 continue;
             }
             *overlap_calls += 1;
-            while last.get(old).is_some_and(|p| (p.near as usize) < k) {
-                old += 1;
+            while let [p, rest @ ..] = before
+                && p.near < k
+            {
+                before = rest;
             }
-            let mut failed = None;
-            if meeting.is_round() {
-                let Some(overlap) = meeting.lens() else { continue };
-                let before = last.get(old).filter(|p| p.near as usize == k);
-                if meeting.is_through(&overlap, before) {
-                    failed = Some(self.passed_through(*pair, overlap.volume));
-                } else {
-                    let (push, memory) = self.push::<true>(&meeting, &overlap, overlap.volume, before, dt);
-                    *stiffest = stiffest.max(push.stiffness);
-                    patches.push(Patch::new(k as u32, &overlap, &push, memory));
+            let known = patches.len();
+            let mut record = Record { near: k, before, patches };
+            let (a, place) = (meeting.a, meeting.a.pose.position);
+            let result = match meeting.other {
+                Other::Body(b, at_b) if meeting.is_of_balls() => {
+                    let lens = closed::lens(a.radius, place, b.radius, at_b);
+                    self.push_balls(&meeting, &lens, &mut record, dt, &mut add)
                 }
-            } else {
-                let same = last[old..].iter().take_while(|p| p.near as usize == k).count();
-                let before = &last[old..old + same];
-                match meeting.solve(solver) {
-                    Err(error) => failed = Some(error),
-                    Ok(shared) => {
-                        let volume = shared.iter().map(|o| o.volume).sum();
-                        for overlap in shared {
-                            let before = remembered(before, shared, overlap);
-                            if meeting.is_through(overlap, before) {
-                                failed = Some(self.passed_through(*pair, overlap.volume));
-                                break;
-                            }
-                            let (push, memory) = self.push::<false>(&meeting, overlap, volume, before, dt);
-                            *stiffest = stiffest.max(push.stiffness);
-                            patches.push(Patch::new(k as u32, overlap, &push, memory));
-                        }
+                Other::Wall(wall) if meeting.is_of_balls() => {
+                    let distance = wall.plane.signed_distance(place);
+                    let lens = closed::cap_at_wall(a.radius, place, distance, wall.plane.normal());
+                    self.push_balls(&meeting, &lens, &mut record, dt, &mut add)
+                }
+                _ => {
+                    let result = self.push(&meeting, &mut record, solver, dt);
+                    for p in &patches[known..] {
+                        let [on_a, on_b] = meeting.wrenches(p.point, p.force, p.couple);
+                        add(pair, on_a, on_b);
                     }
+                    result
                 }
-            }
-            if failed.is_some() {
-                *error = failed;
-                return;
+            };
+            match result {
+                Ok(stiffness) => *stiffest = larger(stiffness, *stiffest),
+                Err(failed) => {
+                    *error = Some(failed);
+                    return;
+                }
             }
         }
     }
 
-    /// What a patch does to the first of a pair (its stiffness over mass \[1/s²\]), and what the law keeps of it; `ROUND` where both are balls or discs, or one and a wall.
-    #[inline(always)]
-    fn push<const ROUND: bool>(
-        &self,
-        meeting: &Meeting<'_>,
-        overlap: &Overlap,
-        volume: f64,
-        before: Option<&Patch<L::Memory>>,
-        dt: f64,
-    ) -> (Push, L::Memory) {
-        let Meeting { a, constants, other, .. } = meeting;
-        let normal = overlap.normal;
-        let arm_a = overlap.centroid - a.pose.position;
-        // Contacts of round bodies are on the line of centres.
-        let length = |arm: &Vector, sign: f64| if ROUND { sign * arm.dot(&normal) } else { arm.norm() };
-        let area = if ROUND { -overlap.gradient.dot(&normal) } else { overlap.area() };
-        let (size_a, inner_a) = if ROUND { (a.radius, a.radius) } else { (constants.size, constants.inner) };
-        let (twist_b, arm_b, length_b, size_b, face_b, inverse_b, material_b) = match other {
-            Other::Body(b, constants, at_b) => {
-                let arm = overlap.centroid - at_b;
-                let (size, face) = if ROUND { (b.radius, 0.0) } else { (constants.size, constants.face) };
-                let inner = if ROUND { b.radius } else { constants.inner };
-                let length = length(&arm, 1.0).max(SHORTEST_ARM * inner);
-                (b.twist, arm, length, size, face, b.inverse_mass, b.material)
-            }
-            Other::Wall(w) => {
-                let far = f64::INFINITY;
-                (Twist::default(), Vector::zeros(), far, far, far, 0.0, w.material)
-            }
-        };
-        // Two that may turn but not move are to one another what they would be if they could.
-        let inverse_masses = match (a.inverse_mass, inverse_b, other) {
-            (0.0, 0.0, Other::Body(_, b, _)) => [1.0 / constants.inertia.mass, 1.0 / b.inertia.mass],
-            (0.0, 0.0, Other::Wall(_)) => [1.0 / constants.inertia.mass, 0.0],
-            (wa, wb, _) => [wa, wb],
-        };
-        let mobility = if L::MOBILITY {
-            let mut sum = area * area * (a.inverse_mass + inverse_b);
-            if !ROUND {
-                let of = |constants: &Constants, body: &Body, arm: &Vector| {
-                    let j = arm.cross(&overlap.gradient) + overlap.moment;
-                    constants.turning.mobility(&body.pose.orientation, &j)
-                };
-                sum += of(constants, a, &arm_a);
-                if let Other::Body(b, constants, _) = other {
-                    sum += of(constants, b, &arm_b);
-                }
-            }
-            sum
-        } else {
-            f64::NAN
-        };
-        let touch = Touch {
-            overlap,
-            area,
-            volume,
-            velocity: a.twist.at(arm_a) - twist_b.at(arm_b),
-            spin: a.twist.angular - twist_b.angular,
-            inverse_masses,
-            arms: [length(&arm_a, -1.0).max(SHORTEST_ARM * inner_a), length_b],
-            sizes: [size_a, size_b],
-            mobility,
-            face: if ROUND { 0.0 } else { constants.face.min(face_b) },
-            plane: a.is_plane(),
-            dt,
-        };
-        let mut memory = before.map_or_else(L::Memory::default, |p| p.memory);
-        let properties = &self.properties[a.material as usize * self.n_materials + material_b as usize];
-        let mut push = self.law.push(properties, &touch, &mut memory);
-        let inverse = inverse_masses[0] + inverse_masses[1];
-        let inverse = if L::MOBILITY && area > 0.0 { mobility / (area * area) } else { inverse };
-        push.stiffness *= inverse;
-        (push, memory)
-    }
-
     #[cold]
-    fn passed_through(&self, pair: NearPair, volume: f64) -> DemError {
+    pub(super) fn passed_through(&self, pair: &NearPair, volume: f64) -> DemError {
         let of = |b: u32| self.constants.get(b as usize).map_or(f64::INFINITY, |c| c.inertia.volume);
         let share = volume / of(pair.a).min(of(pair.b));
-        DemError::PassedThrough { body: BodyId(pair.a as usize), partner: self.partner(&pair), share }
+        DemError::PassedThrough { body: BodyId(pair.a as usize), partner: self.partner(pair), share }
     }
 
     /// What the first of a pair meets.
@@ -245,34 +181,19 @@ impl<L: ContactLaw> View<'_, L> {
 
     /// Adds the forces of a chunk to those on the bodies, always in the same order.
     pub(super) fn add(&self, chunk: &Chunk<L::Memory>, wrenches: &mut [Wrench]) {
-        for patch in &chunk.patches {
-            let pair = &self.near[patch.near as usize];
-            let Wrench { force, torque } = &mut wrenches[pair.a as usize];
-            let arm = patch.point - self.bodies[pair.a as usize].pose.position;
-            *force += patch.force;
-            *torque += arm.cross(&patch.force) + patch.couple;
-            if let Some(b) = self.bodies.get(pair.b as usize) {
-                let arm = patch.point - b.pose.position - shift(&self.periods, pair.image);
-                let Wrench { force, torque } = &mut wrenches[pair.b as usize];
-                *force -= patch.force;
-                *torque -= arm.cross(&patch.force) + patch.couple;
-            }
+        for p in &chunk.patches {
+            let pair = &self.near[p.near as usize];
+            let [on_a, on_b] = self.meeting(pair).wrenches(p.point, p.force, p.couple);
+            add_to(wrenches, pair, on_a, on_b);
         }
     }
 }
 
-/// The patch before that a patch goes on from: the pair's nearest one, unless another patch is nearer to it.
-#[inline]
-fn remembered<'a, M>(before: &'a [Patch<M>], now: &[Overlap], patch: &Overlap) -> Option<&'a Patch<M>> {
-    match (before, now) {
-        ([], _) => None,
-        ([only], [_]) => Some(only),
-        _ => {
-            let away = |p: &Patch<M>, o: &Overlap| (p.point - o.centroid).norm_squared();
-            before
-                .iter()
-                .min_by(|p, q| away(p, patch).total_cmp(&away(q, patch)))
-                .filter(|p| now.iter().all(|o| std::ptr::eq(o, patch) || away(p, o) > away(p, patch)))
-        }
+/// Adds what both of a pair feel to what else they feel.
+#[inline(always)]
+pub(super) fn add_to(wrenches: &mut [Wrench], pair: &NearPair, on_a: Wrench, on_b: Wrench) {
+    wrenches[pair.a as usize] += on_a;
+    if let Some(b) = wrenches.get_mut(pair.b as usize) {
+        *b += on_b;
     }
 }

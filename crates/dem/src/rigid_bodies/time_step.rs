@@ -64,6 +64,7 @@ impl<L: ContactLaw> RigidBodies<L> {
                 overlap: &overlap,
                 area,
                 volume,
+                rate: 0.0,
                 velocity: Vector::zeros(),
                 spin: Vector::zeros(),
                 inverse_masses: [least_mass, if wall { 0.0 } else { least_mass }],

@@ -7,23 +7,24 @@ mod meeting;
 mod near;
 mod push;
 mod sleep;
+mod sweep;
 mod time_step;
 mod turning;
 
 use crate::broad_phase::{NearPair, PairList};
 use crate::contact::{Chen, ContactLaw, Potential};
 use crate::{DemError, HalfSpace, Material, Overlap, OverlapSolver, PairProperties, Shape};
-use body::{Body, Constants, Kind};
+use body::{Body, Constants, Kind, Loads};
 use contacts::{Chunk, Patch, Wall, wall_of};
 use interfaces::{
-    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Load, Periods, Point, Pose, Solid, Twist, Vector,
-    Wrench,
+    Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Periods, Point, Pose, Solid, Twist, Vector, Wrench,
 };
 use meeting::shift;
 use near::Listed;
 pub use sleep::Sleep;
 use sleep::Sleepers;
 use std::sync::Arc;
+use sweep::Felt;
 
 /// Rigid bodies of any shape that touch one another and plane walls, in a box that may be periodic.
 ///
@@ -39,7 +40,7 @@ pub struct RigidBodies<L: ContactLaw = Chen> {
     gravity: Vector,
     bodies: Vec<Body>,
     constants: Vec<Constants>,
-    loads: Vec<Load>,
+    loads: Loads,
     /// Contact wrenches now, and their time integrals over the last advance.
     contact: Vec<Wrench>,
     impulse: Vec<Wrench>,
@@ -55,6 +56,8 @@ pub struct RigidBodies<L: ContactLaw = Chen> {
     /// Pairs of bodies, then of bodies and (numbered from the top down) walls, each in ascending order; and those listed before.
     near: Vec<NearPair>,
     last_near: Vec<NearPair>,
+    /// Where threads share the work.
+    felt: Felt,
     chunks: Vec<Chunk<L::Memory>>,
     carried: Vec<(NearPair, Patch<L::Memory>)>,
     sleepers: Sleepers<L::Memory>,
@@ -124,7 +127,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             gravity: Vector::zeros(),
             bodies: Vec::new(),
             constants: Vec::new(),
-            loads: Vec::new(),
+            loads: Loads::default(),
             contact: Vec::new(),
             impulse: Vec::new(),
             walls: Vec::new(),
@@ -136,6 +139,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             pairs: PairList::new(periods),
             near: Vec::new(),
             last_near: Vec::new(),
+            felt: Felt::default(),
             chunks: Vec::new(),
             carried: Vec::new(),
             sleepers: Sleepers::default(),
@@ -208,7 +212,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             kind,
         });
         self.constants.push(constants);
-        self.loads.push(Load::default());
+        self.loads.add();
         self.contact.push(Wrench::default());
         self.impulse.push(Wrench::default());
         self.listed.push(Listed::not_yet());

@@ -49,6 +49,16 @@ impl Chen {
     pub fn with_adhesion(self, adhesion: bool) -> Self {
         Self { adhesion, ..self }
     }
+
+    /// 1/L_c \[1/m\], by one division.
+    #[inline]
+    fn per_length(&self, [la, lb]: [f64; 2]) -> f64 {
+        let factor = match self.means {
+            Means::Series => self.factor,
+            Means::Literal => 2.0 * self.factor,
+        };
+        if lb == f64::INFINITY { 1.0 / (factor * la) } else { (la + lb) / (factor * la * lb) }
+    }
 }
 
 impl ContactLaw for Chen {
@@ -58,32 +68,23 @@ impl ContactLaw for Chen {
         PairProperties::by(self.means, a, b)
     }
 
-    #[inline]
-    fn length(&self, arms: [f64; 2]) -> f64 {
-        self.factor * self.means.of(arms[0], arms[1])
-    }
-
     #[inline(always)]
     fn push(&self, p: &PairProperties, t: &Touch<'_>, spring: &mut Vector) -> Push {
-        let length = self.length(t.arms);
         let (n, area) = (t.overlap.normal, t.area);
-        // A contact at a body's very centre has no length to divide by, and no way to push.
-        if length <= 0.0 {
-            return Push { force: Vector::zeros(), couple: Vector::zeros(), stiffness: 0.0 };
-        }
+        let per_length = self.per_length(t.arms);
         let [wa, wb] = t.inverse_masses;
-        let mut mass = 1.0 / (wa + wb);
+        // YM/L_c by one division; the mass of a plane scene is that of a slice as deep as L_c.
+        let mut elastic_mass = p.stiffness / (wa + wb);
+        if !t.plane {
+            elastic_mass *= per_length;
+        }
         if self.means == Means::Literal && wa > 0.0 && wb > 0.0 {
-            mass *= 2.0;
+            elastic_mass *= 2.0;
         }
-        if t.plane {
-            mass *= length;
-        }
-        let per_length = 1.0 / length;
         let elastic = p.stiffness * per_length;
-        let dashpot = p.damping * (elastic * mass).sqrt() * per_length;
+        let dashpot = p.damping * elastic_mass.sqrt() * per_length;
         let pressure = elastic * t.overlap.volume + dashpot * t.rate;
-        let pressure = if self.adhesion { pressure } else { pressure.max(0.0) };
+        let pressure = if self.adhesion || pressure > 0.0 { pressure } else { 0.0 };
         let stiffness = elastic * area;
         let viscosity = dashpot * area;
         let along = Friction {

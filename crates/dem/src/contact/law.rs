@@ -16,9 +16,6 @@ pub trait ContactLaw: Clone + Debug + Send + Sync {
     /// What the first body of a pair feels at the centroid of a patch.
     fn push(&self, p: &PairProperties, touch: &Touch<'_>, memory: &mut Self::Memory) -> Push;
 
-    /// L_c \[m\] of bodies whose centres are `arms` away from the contact.
-    fn length(&self, arms: [f64; 2]) -> f64;
-
     /// Does it ask for [`Touch::mobility`]?
     const MOBILITY: bool = false;
 

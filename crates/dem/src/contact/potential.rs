@@ -149,11 +149,6 @@ impl ContactLaw for Potential {
     type Memory = Loading;
     const MOBILITY: bool = true;
 
-    #[inline]
-    fn length(&self, arms: [f64; 2]) -> f64 {
-        self.factor * series(arms[0], arms[1])
-    }
-
     #[inline(always)]
     fn push(&self, p: &PairProperties, t: &Touch<'_>, memory: &mut Loading) -> Push {
         let o = t.overlap;

@@ -28,10 +28,6 @@ impl<L: ContactLaw> ContactLaw for Rolling<L> {
     fn properties(&self, a: &Material, b: &Material) -> PairProperties {
         self.0.properties(a, b)
     }
-    fn length(&self, arms: [f64; 2]) -> f64 {
-        self.0.length(arms)
-    }
-
     #[inline]
     fn push(&self, p: &PairProperties, t: &Touch<'_>, (memory, torque): &mut Self::Memory) -> Push {
         let mut push = self.0.push(p, t, memory);

@@ -1,6 +1,7 @@
 //! The time loop.
 use super::RigidBodies;
-use super::contacts::{CHUNK, Chunk, View, add_to};
+use super::contacts::{CHUNK, Chunk, View};
+use super::sweep;
 use crate::DemError;
 use crate::contact::ContactLaw;
 use interfaces::{BodyId, Dynamics, Load, Twist, Wrench};
@@ -19,86 +20,114 @@ impl<L: ContactLaw> RigidBodies<L> {
         }
     }
 
-    fn drift(&mut self, dt: f64) {
-        let asleep = &self.sleepers;
-        for (b, body) in self.bodies.iter_mut().enumerate() {
-            if asleep.n == 0 || !asleep.is_asleep(b) {
-                body.before(&self.constants[b], &self.loads[b], dt);
+    /// Moves all along with their twists, as long as forces are not known; have any gone farther than foreseen?
+    fn drift(&mut self, dt: f64) -> bool {
+        let Self { bodies, contact, impulse, constants, listed, loads, sleepers, .. } = self;
+        sweep::any(bodies, contact, impulse, |b, body, _, _| {
+            if sleepers.n == 0 || !sleepers.is_asleep(b) {
+                body.before(&constants[b], loads.of(b), dt);
             }
-        }
+            listed[b].is_left(body)
+        })
     }
 
     /// Half a drift, contacts where the bodies then are, a kick, half a drift; answers whether it was made. A step that turns out too long
-    /// for the contacts that it meets is taken back.
-    fn step(&mut self, dt: f64, left: f64) -> Result<bool, DemError> {
+    /// for the contacts that it meets is taken back. It is the `first` one within an advance, or not.
+    fn step(&mut self, dt: f64, left: f64, first: bool) -> Result<bool, DemError> {
         let half = 0.5 * dt;
-        self.drift(half);
-        if self.strayed() {
+        if self.drift(half) {
             self.list(left)?;
         }
         let mut pushed = self.push(dt);
         while pushed.is_ok() && self.wake_touched() {
+            self.feel_as_before();
             self.list(left)?;
             pushed = self.push(dt);
         }
         if let Err(error) = pushed {
             self.drift(-half);
+            self.feel_as_before();
             return Err(error);
         }
         if self.is_too_long(dt) {
             self.drift(-half);
             let used = self.near.len().div_ceil(CHUNK);
             self.chunks[..used].iter_mut().for_each(Chunk::undo);
+            self.feel_as_before();
             return Ok(false);
         }
         self.contact_time += if self.n_contacts() == 0 { 0.0 } else { dt };
-        let (mass_of, gravity) = (|c: &super::body::Constants| c.inertia.mass, self.gravity);
-        for (b, body) in self.bodies.iter_mut().enumerate() {
-            let (constants, load, contact) = (&self.constants[b], &self.loads[b], &self.contact[b]);
-            if self.sleepers.n > 0 && self.sleepers.is_asleep(b) {
-                // Its contacts bear what pulls at it.
-                let weight = Wrench { force: gravity * mass_of(constants), ..Wrench::default() };
-                self.impulse[b] += (load.wrench + weight) * -dt;
-                continue;
-            }
-            self.impulse[b] += *contact * dt;
-            let mut total = load.wrench + *contact;
-            total.force += gravity * mass_of(constants);
-            body.after(constants, load, &total, half);
-        }
-        Ok(true)
+        if self.kick(dt, first) { self.diverged() } else { Ok(true) }
     }
 
-    /// Contact wrenches on all bodies, as things stand.
-    fn push(&mut self, dt: f64) -> Result<(), DemError> {
-        self.contact.fill(Wrench::default());
-        self.stiffest = 0.0;
-        if self.near.is_empty() {
-            return Ok(());
+    /// Changes the twists by what the bodies feel, and moves them along for half the step; is any twist no longer finite?
+    fn kick(&mut self, dt: f64, first: bool) -> bool {
+        let apart = sweep::is_shared(self.near.len().div_ceil(CHUNK));
+        if apart {
+            self.felt.list(&self.near, self.bodies.len());
         }
+        let Self { bodies, contact, impulse, constants, loads, sleepers, chunks, felt, gravity, .. } = self;
+        sweep::any(bodies, contact, impulse, |b, body, contact, impulse| {
+            if apart {
+                *contact = felt.by(b, chunks);
+            }
+            if first {
+                *impulse = Wrench::default();
+            }
+            let (constants, load) = (&constants[b], loads.of(b));
+            let weight = *gravity * constants.mass;
+            if sleepers.n > 0 && sleepers.is_asleep(b) {
+                // Its contacts bear what pulls at it.
+                let weight = Wrench { force: weight, ..Wrench::default() };
+                *impulse += (load.wrench + weight) * -dt;
+                return false;
+            }
+            *impulse += *contact * dt;
+            let mut total = load.wrench + *contact;
+            total.force += weight;
+            body.after(constants, load, &total, 0.5 * dt);
+            !body.twist.linear.iter().chain(&body.twist.angular).all(|x| x.is_finite())
+        })
+    }
+
+    #[cold]
+    fn diverged(&self) -> Result<bool, DemError> {
+        let finite = |t: &Twist| t.linear.iter().chain(&t.angular).all(|x| x.is_finite());
+        match self.bodies.iter().position(|b| !finite(&b.twist)) {
+            Some(b) => {
+                Err(DemError::Diverged { body: BodyId(b), velocity: self.bodies[b].twist.linear.into() })
+            }
+            None => Ok(true),
+        }
+    }
+
+    /// Contact wrenches on all bodies, as things stand; but where threads share the work, these are added up by [`Self::kick`].
+    fn push(&mut self, dt: f64) -> Result<(), DemError> {
+        self.stiffest = 0.0;
         let mut chunks = std::mem::take(&mut self.chunks);
         let mut contact = std::mem::take(&mut self.contact);
         let used = self.near.len().div_ceil(CHUNK);
-        let view = self.view();
-        let result = work(&view, &mut chunks[..used], &mut contact, dt);
+        let result = work(&self.view(), &mut chunks[..used], &mut contact, dt);
         self.chunks = chunks;
         self.contact = contact;
-        if result.is_err() {
-            // What was last known.
-            let mut contact = std::mem::take(&mut self.contact);
-            contact.fill(Wrench::default());
-            self.chunks.iter().for_each(|c| self.view().add(c, &mut contact));
-            self.contact = contact;
-        }
         for chunk in &mut self.chunks[..used] {
             self.stiffest = self.stiffest.max(chunk.stiffest);
             self.overlap_calls += std::mem::take(&mut chunk.overlap_calls);
         }
         result
     }
+
+    /// Contact wrenches are what they were at the patches that are kept.
+    #[cold]
+    fn feel_as_before(&mut self) {
+        let mut contact = std::mem::take(&mut self.contact);
+        contact.fill(Wrench::default());
+        self.chunks.iter().for_each(|c| self.view().add(c, &mut contact));
+        self.contact = contact;
+    }
 }
 
-/// Fills the chunks, on as many threads as there are, and sums up in their order; after an error all are as they were.
+/// Fills the chunks, on as many threads as there are; after an error all are as they were.
 fn work<L: ContactLaw>(
     view: &View<'_, L>,
     chunks: &mut [Chunk<L::Memory>],
@@ -106,21 +135,18 @@ fn work<L: ContactLaw>(
     dt: f64,
 ) -> Result<(), DemError> {
     #[cfg(feature = "parallel")]
-    if chunks.len() > 1 && rayon::current_num_threads() > 1 {
+    if sweep::is_shared(chunks.len()) {
         use rayon::prelude::*;
-        chunks
-            .par_iter_mut()
-            .enumerate()
-            .for_each(|(i, chunk)| view.fill(i * CHUNK, chunk, dt, |_, _, _| {}));
-        if let Some(error) = chunks.iter_mut().find_map(|c| c.error.take()) {
+        chunks.par_iter_mut().enumerate().for_each(|(i, chunk)| view.fill_apart(i * CHUNK, chunk, dt));
+        let error = chunks.iter_mut().find_map(|c| c.error.take());
+        return error.map_or(Ok(()), |error| {
             chunks.iter_mut().for_each(Chunk::undo);
-            return Err(error);
-        }
-        chunks.iter().for_each(|c| view.add(c, wrenches));
-        return Ok(());
+            Err(error)
+        });
     }
+    wrenches.fill(Wrench::default());
     for i in 0..chunks.len() {
-        view.fill(i * CHUNK, &mut chunks[i], dt, |pair, on_a, on_b| add_to(wrenches, pair, on_a, on_b));
+        view.fill::<false>(i * CHUNK, &mut chunks[i], dt, |b, wrench| wrenches[b as usize] += wrench);
         if let Some(error) = chunks[i].error.take() {
             chunks[..=i].iter_mut().for_each(Chunk::undo);
             return Err(error);
@@ -134,10 +160,10 @@ impl<L: ContactLaw> Dynamics for RigidBodies<L> {
 
     /// The load is kept until another one is given.
     fn apply(&mut self, b: BodyId, load: Load) {
-        if load != self.loads[b.0] {
+        if load != *self.loads.of(b.0) {
             self.wake(self.sleepers.island[b.0]);
         }
-        self.loads[b.0] = load;
+        self.loads.set(b.0, load);
     }
 
     /// # Errors
@@ -148,22 +174,26 @@ impl<L: ContactLaw> Dynamics for RigidBodies<L> {
         if !(dt.is_finite() && dt > 0.0) {
             return Err(DemError::TimeStep { dt });
         }
-        self.impulse.fill(Wrench::default());
         // For a long step all pairs that may meet within it are listed; after one, fewer are again enough.
         let foreseen = self.horizon(dt);
-        if (dt > self.longest_step() && self.may_stray(dt)) || self.listed_for > 2.0 * foreseen {
+        if (dt >= foreseen && self.may_stray(dt)) || self.listed_for > 2.0 * foreseen {
             self.list(dt)?;
         }
         // Without near pairs there is nothing but loads, constant over the step.
         let alone = self.near.is_empty() && !self.may_stray(dt);
         let mut steps = if alone { 1.0 } else { self.n_steps(dt)? };
-        let mut left = dt;
+        let (mut left, mut first) = (dt, true);
         while left > 0.0 {
             let sub = left / steps;
-            if !self.step(sub, left)? {
+            let made = self.step(sub, left, first);
+            if first && !matches!(made, Ok(true)) {
+                self.impulse.fill(Wrench::default());
+            }
+            if !made? {
                 steps = self.n_steps(left)?.max(2.0 * steps);
                 continue;
             }
+            first = false;
             if steps <= 1.0 {
                 break;
             }
@@ -171,16 +201,8 @@ impl<L: ContactLaw> Dynamics for RigidBodies<L> {
             // Contacts may be stiffer, or softer again.
             steps = self.n_steps(left)?;
         }
-        let finite = |t: &Twist| t.linear.iter().chain(&t.angular).all(|x| x.is_finite());
-        match self.bodies.iter().position(|b| !finite(&b.twist)) {
-            Some(b) => {
-                Err(DemError::Diverged { body: BodyId(b), velocity: self.bodies[b].twist.linear.into() })
-            }
-            None => {
-                self.fall_asleep(dt);
-                Ok(())
-            }
-        }
+        self.fall_asleep(dt);
+        Ok(())
     }
 
     fn contact_impulse(&self, b: BodyId) -> Wrench {

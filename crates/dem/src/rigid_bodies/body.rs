@@ -27,13 +27,15 @@ pub(super) enum Kind {
     Other,
 }
 
-/// What does not change.
+/// What does not change; what balls need in every step is in the first cache line.
 #[derive(Clone)]
+#[repr(C, align(64))]
 pub(super) struct Constants {
-    pub(super) shape: Arc<dyn Shape>,
-    pub(super) inertia: Inertia,
+    pub(super) mass: f64,
     pub(super) freedom: Freedom,
     pub(super) turning: Turning,
+    pub(super) shape: Arc<dyn Shape>,
+    pub(super) inertia: Inertia,
     /// Radius of a sphere (in a plane scene a disc) as large as the body.
     pub(super) size: f64,
     /// Radius of a sphere around the centre of mass that is within the body; `size` if the centre is not.
@@ -80,7 +82,7 @@ impl Constants {
         let face = flat.unwrap_or(PI * inner * inner);
         let flat = flat.unwrap_or(0.0);
         let turning = Turning::new(&inertia.tensor, freedom.angular);
-        Self { inertia, freedom, turning, size, inner, flat, face, shape }
+        Self { mass: inertia.mass, inertia, freedom, turning, size, inner, flat, face, shape }
     }
     pub(super) fn kind(&self) -> Kind {
         match self.shape.form() {
@@ -98,6 +100,33 @@ impl Constants {
     #[inline]
     pub(super) fn movable(&self) -> bool {
         self.freedom != Freedom::NONE
+    }
+}
+
+/// What the surroundings do to the bodies.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Loads {
+    loads: Vec<Load>,
+    /// Has any ever been given? If not, none is read.
+    given: bool,
+}
+
+impl Loads {
+    pub(super) fn add(&mut self) {
+        self.loads.push(Load::default());
+    }
+    #[inline]
+    pub(super) fn of(&self, b: usize) -> &Load {
+        const NONE: &Load = &Load {
+            wrench: Wrench { force: Vector::new(0.0, 0.0, 0.0), torque: Vector::new(0.0, 0.0, 0.0) },
+            added_mass: 0.0,
+            added_moment: 0.0,
+        };
+        if self.given { &self.loads[b] } else { NONE }
+    }
+    pub(super) fn set(&mut self, b: usize, load: Load) {
+        self.given |= load != Load::default();
+        self.loads[b] = load;
     }
 }
 
@@ -123,7 +152,7 @@ impl Body {
         let Self { pose, twist, .. } = self;
         let spin = twist.angular;
         if constants.movable() {
-            let kick = total.force * (2.0 * half / (constants.inertia.mass + load.added_mass));
+            let kick = total.force * (2.0 * half / (constants.mass + load.added_mass));
             let free = constants.freedom.linear;
             twist.linear += Vector::from_fn(|i, _| if free[i] { kick[i] } else { 0.0 });
             let q = &pose.orientation;

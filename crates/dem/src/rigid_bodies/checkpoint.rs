@@ -19,7 +19,7 @@ impl<L: ContactLaw> Checkpoint for RigidBodies<L> {
         for (b, body) in self.bodies.iter().enumerate() {
             let q = body.pose.orientation;
             values.extend([q.w, q.i, q.j, q.k]);
-            let Load { wrench, added_mass, added_moment } = self.loads[b];
+            let Load { wrench, added_mass, added_moment } = *self.loads.of(b);
             let impulse = &self.impulse[b];
             for v in [
                 body.pose.position.coords,
@@ -73,7 +73,7 @@ impl<L: ContactLaw> Checkpoint for RigidBodies<L> {
             body.pose.position = Point::from(vector(0));
             (body.twist.linear, body.twist.angular) = (vector(1), vector(2));
             let wrench = Wrench { force: vector(3), torque: vector(4) };
-            self.loads[b] = Load { wrench, added_mass: v[25], added_moment: v[26] };
+            self.loads.set(b, Load { wrench, added_mass: v[25], added_moment: v[26] });
             self.impulse[b] = Wrench { force: vector(5), torque: vector(6) };
             let orientation = Rotation::new_unchecked(nalgebra::Quaternion::new(v[30], v[31], v[32], v[33]));
             self.listed[b] = Listed { centre: Point::new(v[27], v[28], v[29]), orientation, margin: v[34] };

@@ -46,6 +46,8 @@ impl<M> Record<'_, M> {
 pub(super) struct Chunk<M> {
     pub(super) patches: Vec<Patch<M>>,
     last: Vec<Patch<M>>,
+    /// What bodies feel, where it is added up later: of each pair the second, and after the last pair in a row of a body that body.
+    pub(super) felt: Vec<Wrench>,
     solver: OverlapSolver,
     pub(super) overlap_calls: u64,
     /// Largest stiffness over mass \[1/s²\].
@@ -65,6 +67,7 @@ impl<M> Default for Chunk<M> {
         Self {
             patches: Vec::new(),
             last: Vec::new(),
+            felt: Vec::new(),
             solver: OverlapSolver::new(),
             overlap_calls: 0,
             stiffest: 0.0,
@@ -104,24 +107,33 @@ pub(super) struct View<'a, L> {
 }
 
 impl<L: ContactLaw> View<'_, L> {
-    /// Forces of the pairs from `first` on that are this chunk's. What each patch does to both of a pair is handed to `add`, too.
+    /// Forces of the pairs from `first` on that are this chunk's. What the second of each pair feels is handed to `add`, and after a row of
+    /// pairs with the same first body what that one feels; `ALL`: of pairs that do not touch, too.
     #[inline(always)]
-    pub(super) fn fill(
+    pub(super) fn fill<const ALL: bool>(
         &self,
         first: usize,
         chunk: &mut Chunk<L::Memory>,
         dt: f64,
-        mut add: impl FnMut(&NearPair, Wrench, Wrench),
+        mut add: impl FnMut(u32, Wrench),
     ) {
-        let Chunk { patches, last, solver, overlap_calls, stiffest, error } = chunk;
+        let Chunk { patches, last, solver, overlap_calls, stiffest, error, .. } = chunk;
         std::mem::swap(patches, last);
         patches.clear();
         (*stiffest, *error) = (0.0, None);
         let mut before = &last[..];
         let end = self.near.len().min(first + CHUNK);
+        let (mut one, mut own) = (self.near[first].a, Wrench::default());
         for (k, pair) in (first as u32..).zip(&self.near[first..end]) {
+            if pair.a != one {
+                add(one, own);
+                (one, own) = (pair.a, Wrench::default());
+            }
             let meeting = self.meeting(pair);
             if meeting.is_apart() {
+                if ALL && matches!(meeting.other, Other::Body(..)) {
+                    add(pair.b, Wrench::default());
+                }
                 continue;
             }
             *overlap_calls += 1;
@@ -136,18 +148,30 @@ impl<L: ContactLaw> View<'_, L> {
             let result = match meeting.other {
                 Other::Body(b, at_b) if meeting.is_of_balls() => {
                     let lens = closed::lens(a.radius, place, b.radius, at_b);
-                    self.push_balls(&meeting, &lens, &mut record, dt, &mut add)
+                    self.push_balls(&meeting, &lens, &mut record, dt).map(|(stiffness, [on_a, on_b])| {
+                        own += on_a;
+                        add(pair.b, on_b);
+                        stiffness
+                    })
                 }
                 Other::Wall(wall) if meeting.is_of_balls() => {
                     let distance = wall.plane.signed_distance(place);
                     let lens = closed::cap_at_wall(a.radius, place, distance, wall.plane.normal());
-                    self.push_balls(&meeting, &lens, &mut record, dt, &mut add)
+                    self.push_balls(&meeting, &lens, &mut record, dt).map(|(stiffness, [on_a, _])| {
+                        own += on_a;
+                        stiffness
+                    })
                 }
                 _ => {
                     let result = self.push(&meeting, &mut record, solver, dt);
+                    let mut on_other = Wrench::default();
                     for p in &patches[known..] {
                         let [on_a, on_b] = meeting.wrenches(p.point, p.force, p.couple);
-                        add(pair, on_a, on_b);
+                        own += on_a;
+                        on_other += on_b;
+                    }
+                    if matches!(meeting.other, Other::Body(..)) && (ALL || patches.len() > known) {
+                        add(pair.b, on_other);
                     }
                     result
                 }
@@ -160,6 +184,16 @@ impl<L: ContactLaw> View<'_, L> {
                 }
             }
         }
+        add(one, own);
+    }
+
+    /// The same where threads share the work: what is felt is kept, to be added up by bodies.
+    #[cfg(feature = "parallel")]
+    pub(super) fn fill_apart(&self, first: usize, chunk: &mut Chunk<L::Memory>, dt: f64) {
+        let mut felt = std::mem::take(&mut chunk.felt);
+        felt.clear();
+        self.fill::<true>(first, chunk, dt, |_, wrench| felt.push(wrench));
+        chunk.felt = felt;
     }
 
     #[cold]
@@ -179,21 +213,15 @@ impl<L: ContactLaw> View<'_, L> {
         }
     }
 
-    /// Adds the forces of a chunk to those on the bodies, always in the same order.
+    /// Adds the forces of a chunk to those on the bodies.
     pub(super) fn add(&self, chunk: &Chunk<L::Memory>, wrenches: &mut [Wrench]) {
         for p in &chunk.patches {
             let pair = &self.near[p.near as usize];
             let [on_a, on_b] = self.meeting(pair).wrenches(p.point, p.force, p.couple);
-            add_to(wrenches, pair, on_a, on_b);
+            wrenches[pair.a as usize] += on_a;
+            if let Some(b) = wrenches.get_mut(pair.b as usize) {
+                *b += on_b;
+            }
         }
-    }
-}
-
-/// Adds what both of a pair feel to what else they feel.
-#[inline(always)]
-pub(super) fn add_to(wrenches: &mut [Wrench], pair: &NearPair, on_a: Wrench, on_b: Wrench) {
-    wrenches[pair.a as usize] += on_a;
-    if let Some(b) = wrenches.get_mut(pair.b as usize) {
-        *b += on_b;
     }
 }

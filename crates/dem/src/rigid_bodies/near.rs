@@ -44,7 +44,7 @@ impl Listed {
 
     /// Has the surface gone farther than the margin?
     #[inline]
-    fn is_left(&self, body: &Body) -> bool {
+    pub(super) fn is_left(&self, body: &Body) -> bool {
         let margin = if body.kind == Kind::Other { self.margin - self.turned(body) } else { self.margin };
         margin < 0.0 || (body.pose.position - self.centre).norm_squared() > margin * margin
     }
@@ -69,7 +69,7 @@ struct Pull<'a> {
 fn path(body: &Body, constants: &Constants, pull: &Pull<'_>, dt: f64) -> f64 {
     let mut speed = body.twist.linear.norm();
     if !constants.pinned() {
-        let mass = constants.inertia.mass;
+        let mass = constants.mass;
         let pulled = pull.load.wrench.force + pull.gravity * mass;
         let force = pulled.norm().min((pulled + pull.contact.force).norm());
         speed += 0.5 * dt * force / (mass + pull.load.added_mass);
@@ -97,7 +97,7 @@ impl<L: ContactLaw> RigidBodies<L> {
     }
 
     fn pull(&self, b: usize) -> Pull<'_> {
-        Pull { load: &self.loads[b], contact: &self.contact[b], gravity: &self.gravity }
+        Pull { load: self.loads.of(b), contact: &self.contact[b], gravity: &self.gravity }
     }
 
     /// Has a body gone farther than foreseen?
@@ -188,6 +188,7 @@ impl<L: ContactLaw> RigidBodies<L> {
         }
         self.near[pairs..].sort_unstable();
         self.carry_over();
+        self.felt.clear();
         self.fastest = self.fastest_approach();
         Ok(())
     }

@@ -2,7 +2,6 @@
 use super::body::{Body, Constants};
 use super::contacts::{Patch, Record, View};
 use super::meeting::{Meeting, Other};
-use crate::broad_phase::NearPair;
 use crate::contact::{ContactLaw, Push, Touch};
 use crate::overlap::closed::Lens;
 use crate::{DemError, Overlap, OverlapSolver};
@@ -18,7 +17,7 @@ pub(super) fn larger(a: f64, b: f64) -> f64 {
 }
 
 impl<L: ContactLaw> View<'_, L> {
-    /// Forces of a ball and a ball or wall; answers their stiffness over mass.
+    /// Forces of a ball and a ball or wall; answers their stiffness over mass, and what both feel.
     ///
     /// All lies along the normal n: the velocity at the contact is U_a − U_b + n × (l_a Ω_a + l_b Ω_b), the torques are −l n × F.
     #[inline(always)]
@@ -28,8 +27,7 @@ impl<L: ContactLaw> View<'_, L> {
         lens: &Lens,
         record: &mut Record<'_, L::Memory>,
         dt: f64,
-        add: &mut impl FnMut(&NearPair, Wrench, Wrench),
-    ) -> Result<f64, DemError> {
+    ) -> Result<(f64, [Wrench; 2]), DemError> {
         let before = record.before.first().filter(|p| p.near == record.near);
         if meeting.is_through(&lens.overlap, before) {
             return Err(self.passed_through(meeting.pair, lens.overlap.volume));
@@ -71,9 +69,8 @@ impl<L: ContactLaw> View<'_, L> {
             Other::Body(..) => Wrench { force: -push.force, torque: -push.couple - torque * arms[1] },
             Other::Wall(_) => Wrench::default(),
         };
-        add(meeting.pair, on_a, on_b);
         record.add(overlap, &push, memory);
-        Ok(push.stiffness)
+        Ok((push.stiffness, [on_a, on_b]))
     }
 
     /// Forces of any two, by patches; answers their largest stiffness over mass.

@@ -3,7 +3,7 @@ use interfaces::{Rotation, Vector};
 use nalgebra::{Matrix3, Quaternion, SymmetricEigen};
 
 /// How a body may turn.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) enum Turning {
     /// The spin is prescribed.
     Held,
@@ -11,8 +11,8 @@ pub(super) enum Turning {
     Alike { moment: f64 },
     /// Principal moments \[kg m²\], and the turn from the principal axes to the body's frame.
     Free { moments: Vector, axes: Rotation },
-    /// Only about some axes of the world.
-    Bound { tensor: Matrix3<f64>, free: [bool; 3] },
+    /// Only about some axes of the world. (In a box, so that the others are small.)
+    Bound { tensor: Box<Matrix3<f64>>, free: [bool; 3] },
 }
 
 impl Turning {
@@ -21,7 +21,7 @@ impl Turning {
         if free == [false; 3] {
             Self::Held
         } else if free != [true; 3] {
-            Self::Bound { tensor: *tensor, free }
+            Self::Bound { tensor: Box::new(*tensor), free }
         } else if (tensor - Matrix3::from_diagonal_element(mean)).amax() <= 1e-12 * mean {
             Self::Alike { moment: mean }
         } else {

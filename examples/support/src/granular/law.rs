@@ -46,12 +46,6 @@ impl ContactLaw for Law {
             Self::Potential(law) => law.properties(a, b),
         }
     }
-    fn length(&self, arms: [f64; 2]) -> f64 {
-        match self {
-            Self::Chen(law) => law.length(arms),
-            Self::Potential(law) => law.length(arms),
-        }
-    }
     #[inline]
     fn push(&self, p: &PairProperties, touch: &Touch<'_>, memory: &mut Self::Memory) -> Push {
         match self {

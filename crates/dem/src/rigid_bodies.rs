@@ -52,6 +52,8 @@ pub struct RigidBodies<L: ContactLaw = Chen> {
     listed: Vec<Listed>,
     boxes: Vec<Aabb>,
     movable: Vec<bool>,
+    /// Are all bodies balls or discs?
+    all_round: bool,
     pairs: PairList,
     /// Pairs of bodies, then of bodies and (numbered from the top down) walls, each in ascending order; and those listed before.
     near: Vec<NearPair>,
@@ -136,6 +138,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             listed: Vec::new(),
             boxes: Vec::new(),
             movable: Vec::new(),
+            all_round: true,
             pairs: PairList::new(periods),
             near: Vec::new(),
             last_near: Vec::new(),
@@ -202,6 +205,7 @@ impl<L: ContactLaw> RigidBodies<L> {
                 return Err(DemError::Period { body, axis, size: extent[axis], period });
             }
         }
+        self.all_round &= kind != Kind::Other;
         let number = self.number_of(material);
         self.bodies.push(Body {
             pose,

@@ -22,8 +22,9 @@ impl<L: ContactLaw> RigidBodies<L> {
 
     /// Moves all along with their twists, as long as forces are not known; have any gone farther than foreseen?
     fn drift(&mut self, dt: f64) -> bool {
+        let shared = self.is_shared();
         let Self { bodies, contact, impulse, constants, listed, loads, sleepers, .. } = self;
-        sweep::any(bodies, contact, impulse, |b, body, _, _| {
+        sweep::any(shared, bodies, contact, impulse, |b, body, _, _| {
             if sleepers.n == 0 || !sleepers.is_asleep(b) {
                 body.before(&constants[b], loads.of(b), dt);
             }
@@ -62,13 +63,13 @@ impl<L: ContactLaw> RigidBodies<L> {
 
     /// Changes the twists by what the bodies feel, and moves them along for half the step; is any twist no longer finite?
     fn kick(&mut self, dt: f64, first: bool) -> bool {
-        let apart = sweep::is_shared(self.near.len().div_ceil(CHUNK));
-        if apart {
+        let shared = self.is_shared();
+        if shared {
             self.felt.list(&self.near, self.bodies.len());
         }
         let Self { bodies, contact, impulse, constants, loads, sleepers, chunks, felt, gravity, .. } = self;
-        sweep::any(bodies, contact, impulse, |b, body, contact, impulse| {
-            if apart {
+        sweep::any(shared, bodies, contact, impulse, |b, body, contact, impulse| {
+            if shared {
                 *contact = felt.by(b, chunks);
             }
             if first {
@@ -90,6 +91,11 @@ impl<L: ContactLaw> RigidBodies<L> {
         })
     }
 
+    /// Do threads share the work?
+    fn is_shared(&self) -> bool {
+        sweep::is_shared(self.near.len(), self.all_round)
+    }
+
     #[cold]
     fn diverged(&self) -> Result<bool, DemError> {
         let finite = |t: &Twist| t.linear.iter().chain(&t.angular).all(|x| x.is_finite());
@@ -107,7 +113,7 @@ impl<L: ContactLaw> RigidBodies<L> {
         let mut chunks = std::mem::take(&mut self.chunks);
         let mut contact = std::mem::take(&mut self.contact);
         let used = self.near.len().div_ceil(CHUNK);
-        let result = work(&self.view(), &mut chunks[..used], &mut contact, dt);
+        let result = work(&self.view(), self.is_shared(), &mut chunks[..used], &mut contact, dt);
         self.chunks = chunks;
         self.contact = contact;
         for chunk in &mut self.chunks[..used] {
@@ -130,12 +136,13 @@ impl<L: ContactLaw> RigidBodies<L> {
 /// Fills the chunks, on as many threads as there are; after an error all are as they were.
 fn work<L: ContactLaw>(
     view: &View<'_, L>,
+    shared: bool,
     chunks: &mut [Chunk<L::Memory>],
     wrenches: &mut [Wrench],
     dt: f64,
 ) -> Result<(), DemError> {
     #[cfg(feature = "parallel")]
-    if sweep::is_shared(chunks.len()) {
+    if shared {
         use rayon::prelude::*;
         chunks.par_iter_mut().enumerate().for_each(|(i, chunk)| view.fill_apart(i * CHUNK, chunk, dt));
         let error = chunks.iter_mut().find_map(|c| c.error.take());
@@ -144,6 +151,7 @@ fn work<L: ContactLaw>(
             Err(error)
         });
     }
+    let _ = shared;
     wrenches.fill(Wrench::default());
     for i in 0..chunks.len() {
         view.fill::<false>(i * CHUNK, &mut chunks[i], dt, |b, wrench| wrenches[b as usize] += wrench);

@@ -10,7 +10,7 @@ use crate::{DemError, HalfSpace, Overlap, OverlapSolver, PairProperties};
 use interfaces::{BodyId, Periods, Point, Vector, Wrench};
 
 /// Pairs that are worked on as one: their number does not depend on that of threads, and so does no sum.
-pub(super) const CHUNK: usize = 1024;
+pub(super) const CHUNK: usize = 256;
 
 /// A patch of an overlap, and what it does to the first of the pair.
 #[derive(Clone, Copy, Debug)]

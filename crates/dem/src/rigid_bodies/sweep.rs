@@ -7,10 +7,14 @@ use interfaces::Wrench;
 /// Bodies that a thread takes at a time.
 #[cfg(feature = "parallel")]
 const BLOCK: usize = 1024;
+/// Work, in pairs of balls, from which on threads are worth their while; and that of a pair of other bodies, as little as it may be.
+const LITTLE: usize = 8192;
+const OF_OTHERS: usize = 16;
 
-/// Is the work on so many chunks or blocks worth more than one thread?
-pub(super) fn is_shared(parts: usize) -> bool {
-    cfg!(feature = "parallel") && parts > 1 && threads() > 1
+/// Is the work on so many pairs worth more than one thread?
+pub(super) fn is_shared(pairs: usize, all_round: bool) -> bool {
+    let work = pairs * if all_round { 1 } else { OF_OTHERS };
+    cfg!(feature = "parallel") && work >= LITTLE && threads() > 1
 }
 
 fn threads() -> usize {
@@ -20,8 +24,9 @@ fn threads() -> usize {
     return 1;
 }
 
-/// Calls `f` for every body, its number, contact wrench and impulse, on as many threads as there are; answers whether it did so for any.
+/// Calls `f` for every body, its number, contact wrench and impulse, if `shared` on as many threads as there are; answers whether it did so for any.
 pub(super) fn any(
+    shared: bool,
     bodies: &mut [Body],
     contact: &mut [Wrench],
     impulse: &mut [Wrench],
@@ -35,7 +40,7 @@ pub(super) fn any(
         any
     };
     #[cfg(feature = "parallel")]
-    if is_shared(bodies.len().div_ceil(BLOCK)) {
+    if shared {
         use rayon::prelude::*;
         return bodies
             .par_chunks_mut(BLOCK)
@@ -45,6 +50,7 @@ pub(super) fn any(
             .map(|(i, ((bodies, contact), impulse))| block(i * BLOCK, bodies, contact, impulse))
             .reduce(|| false, |one, other| one | other);
     }
+    let _ = shared;
     block(0, bodies, contact, impulse)
 }
 

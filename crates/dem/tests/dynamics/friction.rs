@@ -156,3 +156,30 @@ fn a_stack_of_ten() {
         }
     }
 }
+
+/// Wheels that turn against one another roll upon one another; wheels that turn the same way rub, and each slows the other.
+#[test]
+fn wheels_roll_or_rub() {
+    let force = |spins: [f64; 2]| {
+        let m = Material { friction: 10.0, ..Material::default() };
+        let bodies = [(-0.99 * R, spins[0]), (0.99 * R, spins[1])]
+            .map(|(x, w)| ([x, 0.0, 0.0], moving([0.0; 3], [0.0, 0.0, w])));
+        let mut bodies = scene(sphere(), m, &bodies);
+        let dt = 1e-3 * bodies.stable_dt();
+        bodies.advance(dt).unwrap();
+        let felt = bodies.contacts().next().unwrap().force;
+        let torques = [0, 1].map(|b| bodies.contact_impulse(BodyId(b)).torque.z / dt);
+        (felt.y, torques)
+    };
+    let (rolls, _) = force([5.0, -5.0]);
+    let (rubs, torques) = force([5.0, 5.0]);
+    assert!(rolls.abs() < 1e-12 * rubs.abs(), "{rolls:e} {rubs:e}");
+    // The surface of the first moves up where they touch.
+    assert!(rubs < 0.0, "{rubs:e}");
+    for torque in torques {
+        assert!((torque / (0.99 * R * rubs) - 1.0).abs() < 1e-9, "{torque:e} {rubs:e}");
+    }
+    // As much as if one alone turned twice as fast.
+    let (alone, _) = force([0.0, 10.0]);
+    assert!((alone / rubs - 1.0).abs() < 1e-9, "{alone:e} {rubs:e}");
+}

@@ -178,7 +178,7 @@ fn main() {
     if asked("spheres asleep") {
         let mut bodies = scene(Chen::default(), &ball, 1000, 1e9);
         bodies.set_sleep(Some(Sleep { speed: 0.02, time: 0.02 })).unwrap();
-        time("spheres asleep", bodies, 1.5, 1000);
+        time("spheres asleep", bodies, 3.0, 1000);
     }
     if asked("cubes") {
         time("cubes", scene(Chen::default(), &cube, 500, 1e9), 0.4, 100);

@@ -14,7 +14,7 @@ mod turning;
 use crate::broad_phase::{NearPair, PairList};
 use crate::contact::{Chen, ContactLaw, Potential};
 use crate::{DemError, HalfSpace, Material, Overlap, OverlapSolver, PairProperties, Shape};
-use body::{Body, Constants, Kind, Loads};
+use body::{Body, Constants, Kind, Loads, is_finite};
 use contacts::{Chunk, Patch, Wall, wall_of};
 use interfaces::{
     Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Periods, Point, Pose, Solid, Twist, Vector, Wrench,
@@ -183,7 +183,7 @@ impl<L: ContactLaw> RigidBodies<L> {
         if !place.into_iter().all(|x| x.is_finite()) {
             return Err(DemError::Start { body, position: pose.position.into() });
         }
-        if !twist.linear.iter().chain(&twist.angular).all(|x| x.is_finite()) {
+        if !is_finite(&twist) {
             let (linear, angular) = (twist.linear.into(), twist.angular.into());
             return Err(DemError::StartMotion { body, linear, angular });
         }

@@ -1,5 +1,6 @@
 //! The time loop.
 use super::RigidBodies;
+use super::body::is_finite;
 use super::contacts::{CHUNK, Chunk, View};
 use super::sweep;
 use crate::DemError;
@@ -87,7 +88,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             let mut total = load.wrench + *contact;
             total.force += weight;
             body.after(constants, load, &total, 0.5 * dt);
-            !body.twist.linear.iter().chain(&body.twist.angular).all(|x| x.is_finite())
+            !is_finite(&body.twist)
         })
     }
 
@@ -98,8 +99,7 @@ impl<L: ContactLaw> RigidBodies<L> {
 
     #[cold]
     fn diverged(&self) -> Result<bool, DemError> {
-        let finite = |t: &Twist| t.linear.iter().chain(&t.angular).all(|x| x.is_finite());
-        match self.bodies.iter().position(|b| !finite(&b.twist)) {
+        match self.bodies.iter().position(|b| !is_finite(&b.twist)) {
             Some(b) => {
                 Err(DemError::Diverged { body: BodyId(b), velocity: self.bodies[b].twist.linear.into() })
             }

@@ -167,6 +167,11 @@ impl Body {
     }
 }
 
+#[inline]
+pub(super) fn is_finite(twist: &Twist) -> bool {
+    twist.linear.iter().chain(&twist.angular).all(|x| x.is_finite())
+}
+
 /// Turns `q` by the small rotation vector `by`.
 #[inline]
 fn turned(q: &mut Rotation, by: Vector) {

@@ -5,7 +5,7 @@ use super::meeting::{Meeting, Other};
 use crate::contact::{ContactLaw, Push, Touch};
 use crate::overlap::closed::Lens;
 use crate::{DemError, Overlap, OverlapSolver};
-use interfaces::{Twist, Vector, Wrench};
+use interfaces::{Vector, Wrench};
 
 /// Contacts count as no nearer to a body's centre than this part of its inner radius, or L_c would vanish there.
 const SHORTEST_ARM: f64 = 0.05;
@@ -142,9 +142,8 @@ impl<L: ContactLaw> View<'_, L> {
         let material = match meeting.other {
             Other::Body(b, at_b) => {
                 let (second, arm) = (meeting.others(), overlap.centroid - at_b);
-                let Twist { linear, angular } = b.twist;
-                touch.velocity -= Twist { linear, angular }.at(arm);
-                touch.spin -= angular;
+                touch.velocity -= b.twist.at(arm);
+                touch.spin -= b.twist.angular;
                 touch.arms[1] = length(&arm, second);
                 touch.sizes[1] = second.size;
                 touch.face = first.face.min(second.face);

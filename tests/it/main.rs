@@ -10,6 +10,7 @@ mod moving;
 mod physics;
 mod restart;
 mod skipping;
+mod strategies;
 mod stretched;
 mod wall_rows;
 mod walls;

@@ -1,5 +1,5 @@
 //! The books of momentum and energy.
-use crate::{CouplingError, Observer, Particles, Simulation, StepInfo};
+use crate::{CouplingError, Observer, Particles, Simulation, StepInfo, Strategy};
 use ibm::Forcing;
 use interfaces::{BodyId, Dynamics, Twist, Vector};
 
@@ -67,8 +67,8 @@ impl Ledger {
         &self.report
     }
 
-    fn balance<const D: usize, F: Forcing, B: Dynamics>(
-        simulation: &mut Simulation<D, Particles<F, B>>,
+    fn balance<const D: usize, F: Forcing, B: Dynamics, S: Strategy>(
+        simulation: &mut Simulation<D, Particles<F, B, S>>,
     ) -> (Books, LedgerReport) {
         let force = simulation.body_force();
         let flow = simulation.flow.statistics();
@@ -96,8 +96,10 @@ impl Ledger {
     }
 }
 
-impl<const D: usize, F: Forcing, B: Dynamics> Observer<Simulation<D, Particles<F, B>>> for Ledger {
-    fn begin(&mut self, simulation: &mut Simulation<D, Particles<F, B>>) {
+impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy> Observer<Simulation<D, Particles<F, B, S>>>
+    for Ledger
+{
+    fn begin(&mut self, simulation: &mut Simulation<D, Particles<F, B, S>>) {
         let (books, report) = Self::balance(simulation);
         self.report = LedgerReport { energy: [books.energy; 2], divergence: 0.0, ..report };
         self.last = Some(books);
@@ -107,7 +109,7 @@ impl<const D: usize, F: Forcing, B: Dynamics> Observer<Simulation<D, Particles<F
 
     fn step(
         &mut self,
-        simulation: &mut Simulation<D, Particles<F, B>>,
+        simulation: &mut Simulation<D, Particles<F, B, S>>,
         info: &StepInfo,
     ) -> Result<(), CouplingError> {
         let (books, now) = Self::balance(simulation);

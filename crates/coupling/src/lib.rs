@@ -15,6 +15,7 @@ mod output;
 mod particles;
 mod run;
 mod simulation;
+mod strategy;
 
 pub use checkpoint::{CheckpointError, load, save};
 pub use error::CouplingError;
@@ -23,3 +24,4 @@ pub use output::FileOutput;
 pub use particles::{BodyReport, Particles};
 pub use run::{Observer, RunSummary, Schedule, StepInfo, run};
 pub use simulation::{Immersed, Module, Simulation, Timings, WeightBalance};
+pub use strategy::{Explicit, Iterated, OneSolve, Strategy};

@@ -1,6 +1,6 @@
 //! Files of a run: fields and bodies for ParaView, trajectories for everyone.
-use crate::{CouplingError, Observer, Particles, Simulation, StepInfo};
-use dem::RigidBodies;
+use crate::{CouplingError, Observer, Particles, Simulation, StepInfo, Strategy};
+use dem::{ContactLaw, RigidBodies};
 use fv_mesh::{CellWriter, TimeSeries};
 use ibm::{Forcing, SolidFraction};
 use interfaces::{BodyId, Kinematics, Point};
@@ -124,9 +124,9 @@ impl FileOutput {
         })
     }
 
-    fn write<const D: usize, F: Forcing>(
+    fn write<const D: usize, F: Forcing, L: ContactLaw, S: Strategy>(
         &mut self,
-        simulation: &Simulation<D, Particles<F, RigidBodies>>,
+        simulation: &Simulation<D, Particles<F, RigidBodies<L>, S>>,
         index: usize,
         info: &StepInfo,
     ) -> io::Result<()> {
@@ -186,10 +186,12 @@ impl Drop for FileOutput {
     }
 }
 
-impl<const D: usize, F: Forcing> Observer<Simulation<D, Particles<F, RigidBodies>>> for FileOutput {
+impl<const D: usize, F: Forcing, L: ContactLaw, S: Strategy>
+    Observer<Simulation<D, Particles<F, RigidBodies<L>, S>>> for FileOutput
+{
     fn snapshot(
         &mut self,
-        simulation: &mut Simulation<D, Particles<F, RigidBodies>>,
+        simulation: &mut Simulation<D, Particles<F, RigidBodies<L>, S>>,
         index: usize,
         info: &StepInfo,
     ) -> Result<(), CouplingError> {

@@ -1,58 +1,64 @@
-//! Bodies in a flow: one pressure solution per step.
+//! Bodies in a flow.
+use crate::strategy::{OneSolve, Strategy};
 use crate::{CouplingError, Immersed, Module, Timings};
 use fv_mesh::Projection;
-use ibm::Forcing;
-use interfaces::{BodyId, Checkpoint, Dynamics, Load, RestartError, Twist, Vector, VelocityField, Wrench};
+use ibm::{Forcing, Layer};
+use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Twist, Vector, VelocityField, Wrench};
 use nalgebra::{Matrix6, Vector6};
 
-/// Bodies `B` immersed by the forcing `F`, moved by the flow, gravity and one another.
+/// Bodies `B` immersed by the forcing `F`, moved by the flow, gravity and one another; `S` is the [`Strategy`] by which flow and
+/// bodies learn of each other, [`OneSolve`] unless told.
 ///
-/// The bodies' new velocity v = (U, Ω) follows from one linear system per body before the forcing,
-/// with the fluid's reaction predicted implicitly ([`ibm::Layer`]: M_l, b_l from the velocity u*):
+/// With generalised velocities v = (U, Ω) and M_s the bodies' masses, every strategy solves
 ///
 /// ```text
-/// (M_s + C + M_l) vⁿ⁺¹ = M_s vⁿ + C vⁿ + b_l + I(u*) − Iⁿ + δⁿ + dt [(ρ_s − ρ) V g + C ā] + J_contact
+/// M_s vⁿ⁺¹ = M_s vⁿ + J + dt (ρ_s − ρ) V g + J_contact,    J = −ρ∫f_ib dV dt + Iⁿ⁺¹ − Iⁿ,
 /// ```
 ///
-/// I is the momentum of the fluid inside, C a virtual mass that is given back through the
-/// last acceleration ā, and δⁿ the impulse by which the last prediction missed the true one,
-/// J = −ρ∫f_ib dV dt + Iⁿ⁺¹ − Iⁿ. So every impulse the fluid loses reaches a body, at the latest a
-/// step later, and the load includes the inertia of the fluid inside.
-pub struct Particles<F, B> {
+/// I being the momentum of the fluid inside a body: the load includes its inertia. What a strategy hands the bodies of J too late
+/// or too early is kept (`δ`) and handed on in the next step, so every impulse that the fluid loses reaches a body.
+pub struct Particles<F, B, S = OneSolve> {
     /// The bodies.
     pub bodies: B,
     /// How the fluid is made to follow them.
     pub forcing: F,
+    /// How flow and bodies learn of each other.
+    pub strategy: S,
     gravity: Vector,
     density: f64,
-    virtual_mass: Option<f64>,
-    states: Vec<State>,
+    pub(crate) states: Vec<State>,
     last_dt: f64,
     /// So many bodies have been put into the flow.
     started: usize,
-    /// Momentum (later: foreseen impulse) and velocity of every body before the step.
-    scratch: Vec<(Vector6<f64>, Vector6<f64>)>,
 }
 
 /// What is kept of one body from step to step, as (linear, angular).
 #[derive(Clone, Copy, Debug, Default)]
-struct State {
+pub struct State {
     /// Iⁿ.
-    internal: Vector6<f64>,
-    /// δⁿ.
-    deferred: Vector6<f64>,
+    pub internal: Vector6<f64>,
+    /// δⁿ: impulse of the fluid that the body has not been given yet.
+    pub deferred: Vector6<f64>,
     /// Momentum that the virtual mass holds back.
-    held: Vector6<f64>,
+    pub held: Vector6<f64>,
     /// ā.
-    acceleration: Vector6<f64>,
+    pub acceleration: Vector6<f64>,
     /// Force and torque over the last step, contacts left out.
-    load: Vector6<f64>,
+    pub load: Vector6<f64>,
     /// Mass and moment of inertia that the fluid adds.
-    added: [f64; 2],
+    pub added: [f64; 2],
     /// Impulse of the fluid over the last step, divided by its length.
-    hydrodynamic: Vector6<f64>,
+    pub hydrodynamic: Vector6<f64>,
     /// Impulse of what holds the components that are not free, over the last step.
-    constraint: Vector6<f64>,
+    pub constraint: Vector6<f64>,
+    /// Momentum M_s vⁿ and velocity vⁿ before the step under way.
+    pub momentum: Vector6<f64>,
+    pub before: Vector6<f64>,
+    /// Impulse of the fluid that the strategy foresaw in the step under way.
+    pub foreseen: Vector6<f64>,
+    /// What the equation of motion left in the last two rounds of the step under way, and how far the velocity was changed for it.
+    pub residuals: [Vector6<f64>; 2],
+    pub relaxation: f64,
 }
 
 /// What the flow does to a body.
@@ -64,10 +70,10 @@ pub struct BodyReport {
     pub contact: Wrench,
 }
 
-fn six(w: Wrench) -> Vector6<f64> {
+pub(crate) fn six(w: Wrench) -> Vector6<f64> {
     Vector6::new(w.force.x, w.force.y, w.force.z, w.torque.x, w.torque.y, w.torque.z)
 }
-fn wrench(v: Vector6<f64>) -> Wrench {
+pub(crate) fn wrench(v: Vector6<f64>) -> Wrench {
     Wrench { force: v.fixed_rows::<3>(0).into(), torque: v.fixed_rows::<3>(3).into() }
 }
 
@@ -75,52 +81,99 @@ impl<F: Forcing, B: Dynamics> Particles<F, B> {
     /// Bodies and their forcing in a fluid of `density` \[kg/m³\] under `gravity` \[m/s²\].
     pub fn new(bodies: B, forcing: F, density: f64, gravity: Vector) -> Self {
         let states = vec![State::default(); bodies.n_bodies()];
-        Self {
-            bodies,
-            forcing,
-            gravity,
-            density,
-            virtual_mass: None,
-            started: 0,
-            states,
-            last_dt: 0.0,
-            scratch: Vec::new(),
-        }
+        let strategy = OneSolve::default();
+        Self { bodies, forcing, strategy, gravity, density, started: 0, states, last_dt: 0.0 }
     }
-    /// The virtual mass C as a multiple of the displaced fluid's. Unless told, 0.3 for bodies lighter
-    /// than 0.7 of the fluid, which are unstable without, and none for others.
+    /// The same with a [virtual mass](OneSolve::virtual_mass).
     #[must_use]
     pub fn with_virtual_mass(mut self, factor: f64) -> Self {
-        self.virtual_mass = Some(factor);
+        self.strategy.virtual_mass = Some(factor);
         self
+    }
+}
+
+impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
+    /// The same by another strategy.
+    #[must_use]
+    pub fn with_strategy<T: Strategy>(self, strategy: T) -> Particles<F, B, T> {
+        let Self { bodies, forcing, gravity, density, states, last_dt, started, .. } = self;
+        Particles { bodies, forcing, strategy, gravity, density, states, last_dt, started }
     }
 
     /// Mass and inertia as they resist (U, Ω) in the world.
-    fn mass_matrix(&self, b: BodyId) -> Matrix6<f64> {
+    pub(crate) fn mass_matrix(&self, b: BodyId) -> Matrix6<f64> {
         let inertia = self.bodies.inertia(b);
         let r = self.bodies.pose(b).orientation.to_rotation_matrix();
         let mut m = Matrix6::from_diagonal_element(inertia.mass);
         m.fixed_view_mut::<3, 3>(3, 3).copy_from(&(r.matrix() * inertia.tensor * r.matrix().transpose()));
         m
     }
-
-    fn velocity(&self, b: BodyId) -> Vector6<f64> {
+    /// (U, Ω) of body `b`.
+    pub(crate) fn velocity(&self, b: BodyId) -> Vector6<f64> {
         let t = self.bodies.twist(b);
-        Vector6::new(t.linear.x, t.linear.y, t.linear.z, t.angular.x, t.angular.y, t.angular.z)
+        six(Wrench { force: t.linear, torque: t.angular })
+    }
+    /// Gives body `b` another velocity.
+    pub(crate) fn set_velocity(&mut self, b: BodyId, v: Vector6<f64>) {
+        let Wrench { force: linear, torque: angular } = wrench(v);
+        self.bodies.set_twist(b, Twist { linear, angular });
+    }
+    /// Which components of (U, Ω) are free.
+    pub(crate) fn freedom(&self, b: BodyId) -> [bool; 6] {
+        let f = self.bodies.freedom(b);
+        std::array::from_fn(|i| if i < 3 { f.linear[i] } else { f.angular[i - 3] })
+    }
+    /// Mass of the fluid that body `b` displaces.
+    pub(crate) fn displaced(&self, b: BodyId) -> f64 {
+        self.density * self.bodies.inertia(b).volume
+    }
+    /// The body's weight less its buoyancy, as (force, torque).
+    pub(crate) fn pull(&self, b: BodyId) -> Vector6<f64> {
+        six(Wrench { force: self.weight(b), torque: Vector::zeros() })
+    }
+    /// ρ∫(u, r × u) dV over body `b`.
+    pub(crate) fn inside(&mut self, velocity: &dyn VelocityField, b: BodyId) -> Vector6<f64> {
+        six(self.forcing.internal_momentum(velocity, &self.bodies, b))
+    }
+    /// How the fluid outside that the forcing drags along resists body `b`.
+    pub(crate) fn layer(&mut self, velocity: &dyn VelocityField, b: BodyId) -> Layer {
+        self.forcing.layer(velocity, &self.bodies, b)
     }
 
-    /// Moves the bodies to where they are at the end of the step.
+    /// Moves the bodies to where they are at the end of the step, under the loads that the strategy holds.
     fn advance(&mut self, dt: f64, time: f64) -> Result<(), CouplingError> {
-        // Differences over a much shorter step say nothing about this one: no load is held then.
+        // Differences over a much shorter step say nothing about this one.
         let known = dt <= LONGEST_GROWTH * self.last_dt;
         self.last_dt = dt;
-        for (b, s) in
-            self.states.iter().enumerate().map(|(b, s)| (b, if known { *s } else { State::default() }))
-        {
-            let load = Load { wrench: wrench(s.load), added_mass: s.added[0], added_moment: s.added[1] };
-            self.bodies.apply(BodyId(b), load);
+        for b in (0..self.states.len()).map(BodyId) {
+            let before = self.velocity(b);
+            let momentum = self.mass_matrix(b) * before;
+            let weight = self.pull(b);
+            let s = &mut self.states[b.0];
+            (s.momentum, s.before) = (momentum, before);
+            self.bodies.apply(b, S::held(s, weight, dt, known));
         }
         self.bodies.advance(dt).map_err(|e| CouplingError::Dynamics { time, source: Box::new(e) })
+    }
+
+    /// Makes the fluid follow the bodies and free of divergence, as often as the forcing asks for.
+    pub(crate) fn force<const D: usize>(
+        &mut self,
+        flow: &mut Projection<D>,
+        dt: f64,
+        timings: &mut Timings,
+    ) -> Result<(), CouplingError> {
+        for _ in 0..self.forcing.rounds() {
+            timings.measure(Module::Forcing, || self.forcing.force(flow.velocity_mut(), &self.bodies));
+            timings.measure(Module::Pressure, || flow.project(dt))?;
+        }
+        Ok(())
+    }
+
+    /// The impulse J that the fluid has put on body `b` so far in this step, and its momentum inside the body.
+    pub(crate) fn impulse(&mut self, velocity: &dyn VelocityField, b: BodyId) -> [Vector6<f64>; 2] {
+        let internal = self.inside(velocity, b);
+        [six(self.forcing.reaction(b)) + internal - self.states[b.0].internal, internal]
     }
 
     /// No body's centre may leave through a bounded side.
@@ -136,70 +189,6 @@ impl<F: Forcing, B: Dynamics> Particles<F, B> {
             }
         }
         Ok(())
-    }
-
-    /// Gives body `b` its velocity at the end of the step; answers the impulse J_pred it foresees.
-    fn solve(
-        &mut self,
-        b: BodyId,
-        momentum: Vector6<f64>,
-        before: Vector6<f64>,
-        velocity: &dyn VelocityField,
-        dt: f64,
-    ) -> Option<Vector6<f64>> {
-        let inertia = self.bodies.inertia(b);
-        let displaced = self.density * inertia.volume;
-        let layer = self.forcing.layer(velocity, &self.bodies, b);
-        let internal = six(self.forcing.internal_momentum(velocity, &self.bodies, b));
-        let mass = self.mass_matrix(b);
-        let light = inertia.mass < 0.7 * displaced;
-        let factor = self.virtual_mass.unwrap_or(if light { 0.3 } else { 0.0 });
-        let virtual_mass = mass * (factor * displaced / inertia.mass);
-        let weight =
-            six(Wrench { force: self.gravity * (inertia.mass - displaced), torque: Vector::zeros() });
-        let contact = six(self.bodies.contact_impulse(b));
-
-        let s = &mut self.states[b.0];
-        let mut matrix = mass + virtual_mass + layer.mass;
-        let mut free = momentum
-            + virtual_mass * (before + dt * s.acceleration)
-            + layer.momentum
-            + (internal - s.internal)
-            + s.deferred
-            + dt * weight;
-        let mut kick = contact;
-        let freedom = self.bodies.freedom(b);
-        for (i, may) in freedom.linear.into_iter().chain(freedom.angular).enumerate() {
-            if !may {
-                matrix.row_mut(i).fill(0.0);
-                matrix[(i, i)] = 1.0;
-                (free[i], kick[i]) = (before[i], 0.0);
-            }
-        }
-        let lu = matrix.lu();
-        let (free, kick) = (lu.solve(&free)?, lu.solve(&kick)?);
-        let after = free + kick;
-        if !after.iter().all(|v| v.is_finite()) {
-            return None;
-        }
-        // Contacts act again in the next step; what is left of the load is held on to.
-        let change = free - before;
-        s.added = [
-            (virtual_mass[(0, 0)] + (layer.mass[(0, 0)] + layer.mass[(1, 1)]) / 2.0),
-            virtual_mass[(5, 5)] + layer.mass[(5, 5)],
-        ];
-        let added = Vector6::from_fn(|i, _| s.added[i / 3]);
-        s.load = (mass * free - momentum + added.component_mul(&change)) / dt;
-        let given_back = virtual_mass * (dt * s.acceleration - (after - before));
-        s.held -= given_back;
-        let foreseen = layer.momentum - layer.mass * after + (internal - s.internal);
-        s.constraint = mass * after - momentum - foreseen - s.deferred - dt * weight - contact - given_back;
-        s.acceleration = (after - before) / dt;
-        self.bodies.set_twist(
-            b,
-            Twist { linear: after.fixed_rows::<3>(0).into(), angular: after.fixed_rows::<3>(3).into() },
-        );
-        Some(foreseen)
     }
 
     /// Fluid and contact loads of the last step on body `b`.
@@ -233,7 +222,7 @@ impl<F: Forcing, B: Dynamics> Particles<F, B> {
     }
 }
 
-impl<const D: usize, F: Forcing, B: Dynamics> Immersed<D> for Particles<F, B> {
+impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy> Immersed<D> for Particles<F, B, S> {
     fn couple(
         &mut self,
         flow: &mut Projection<D>,
@@ -241,43 +230,10 @@ impl<const D: usize, F: Forcing, B: Dynamics> Immersed<D> for Particles<F, B> {
         timings: &mut Timings,
     ) -> Result<(), CouplingError> {
         let time = flow.time();
-        let n = self.states.len();
-        let mut scratch = std::mem::take(&mut self.scratch);
-        scratch.clear();
-        scratch.extend((0..n).map(|b| {
-            let before = self.velocity(BodyId(b));
-            (self.mass_matrix(BodyId(b)) * before, before)
-        }));
-
         timings.measure(Module::Contact, || self.advance(dt, time))?;
         self.check_inside(flow)?;
         timings.measure(Module::SolidFraction, || self.forcing.place(flow.velocity(), &self.bodies))?;
-        timings.measure(Module::Forcing, || {
-            for (b, (momentum, before)) in scratch.iter_mut().enumerate() {
-                let body = BodyId(b);
-                // From here on `momentum` is the impulse that was foreseen.
-                *momentum = self
-                    .solve(body, *momentum, *before, flow.velocity(), dt)
-                    .ok_or(CouplingError::Motion { body, time })?;
-            }
-            Ok::<(), CouplingError>(())
-        })?;
-        for _ in 0..self.forcing.rounds() {
-            timings.measure(Module::Forcing, || self.forcing.force(flow.velocity_mut(), &self.bodies));
-            timings.measure(Module::Pressure, || flow.project(dt))?;
-        }
-        timings.measure(Module::Forcing, || {
-            for (b, (foreseen, _)) in scratch.iter().enumerate() {
-                let internal = six(self.forcing.internal_momentum(flow.velocity(), &self.bodies, BodyId(b)));
-                let s = &mut self.states[b];
-                let impulse = six(self.forcing.reaction(BodyId(b))) + internal - s.internal;
-                s.deferred = impulse - foreseen;
-                s.internal = internal;
-                s.hydrodynamic = impulse / dt;
-            }
-        });
-        self.scratch = scratch;
-        Ok(())
+        S::exchange(self, flow, dt, timings)
     }
 
     fn begin(&mut self, flow: &Projection<D>) -> Result<(), CouplingError> {
@@ -323,7 +279,7 @@ impl<const D: usize, F: Forcing, B: Dynamics> Immersed<D> for Particles<F, B> {
     }
 }
 
-impl<F: Forcing, B: Dynamics> Checkpoint for Particles<F, B> {
+impl<F: Forcing, B: Dynamics, S: Strategy> Checkpoint for Particles<F, B, S> {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         self.bodies.save(&mut |name, values| sink(&format!("bodies.{name}"), values));
         let mut values = Vec::with_capacity(self.states.len() * STATE);
@@ -353,6 +309,7 @@ impl<F: Forcing, B: Dynamics> Checkpoint for Particles<F, B> {
                 hydrodynamic: six(5),
                 constraint: six(6),
                 added: [v[42], v[43]],
+                ..State::default()
             });
         }
         Ok(())

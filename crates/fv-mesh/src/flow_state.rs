@@ -142,7 +142,9 @@ impl<const D: usize> FlowState<D> {
         sink("pressure", self.pressure.data());
         sink("clock", &[self.time, self.step as f64, self.last_dt]);
         sink("rates", &self.rates);
-        sink("sides", &self.boundaries.memory());
+        let mut sides = Vec::new();
+        self.boundaries.memory(&mut sides);
+        sink("sides", &sides);
     }
 
     /// Takes back what [`save`](Self::save) gave.
@@ -157,8 +159,9 @@ impl<const D: usize> FlowState<D> {
         let clock = RestartError::take(source, "clock", 3)?;
         (self.time, self.step, self.last_dt) = (clock[0], clock[1] as u64, clock[2]);
         restore_list(source, "rates", &mut self.rates)?;
-        let sides = RestartError::take(source, "sides", self.boundaries.memory().len())?;
-        self.boundaries.recall(sides);
+        let mut sides = Vec::new();
+        self.boundaries.memory(&mut sides);
+        self.boundaries.recall(RestartError::take(source, "sides", sides.len())?);
         Ok(())
     }
 }

@@ -69,7 +69,7 @@ pub use hooks::{BodyForce, Boussinesq, ClosureSlot, ForceField, Hooks, ImmersedF
 pub use output::{CellWriter, OutputError, Precision, TimeSeries};
 pub use piso::{Piso, PisoParams, TimeScheme};
 pub use pressure::PressureSolver;
-pub use projection::Projection;
+pub use projection::{Prediction, Projection};
 pub use sample::{Extreme, Integrals, Line, Norms, Plane, Probes, Quantity, SampleError, Sampler};
 pub use scalar::{Given, Scalar, ScalarBoundaries, ScalarPatch, ScalarSide, ScalarTransport};
 pub use simple::{Simple, SimpleInfo, SimpleParams};

@@ -133,11 +133,12 @@ impl<const D: usize> Boundaries<D> {
     }
 
     /// The velocities on the sides, which outlets and implicit diffusion remember; all sides one after the other.
-    pub(crate) fn memory(&self) -> Vec<f64> {
-        let states = self.states.iter().flatten().flat_map(|p| p.iter());
-        states
-            .flat_map(|s| s.normal.iter().chain(s.laws.iter().flat_map(|law| &law.value)).copied())
-            .collect()
+    pub(crate) fn memory(&self, memory: &mut Vec<f64>) {
+        memory.clear();
+        for state in self.states.iter().flatten().flat_map(|p| p.iter()) {
+            memory.extend_from_slice(&state.normal);
+            state.laws.iter().for_each(|law| memory.extend_from_slice(&law.value));
+        }
     }
 
     /// Takes back what [`memory`](Self::memory) gave.

@@ -1,6 +1,7 @@
 //! The flow algorithm for time-accurate runs.
 mod checkpoint;
 mod immersed;
+mod prediction;
 mod sources;
 
 use crate::cut::{Step, Walls};
@@ -14,6 +15,7 @@ use crate::poisson::{PoissonError, PoissonInfo};
 use crate::pressure::{Pressure, PressureSolver};
 use crate::{CartesianGrid, Convection, Diffusion, Field, FlowError, Fluid, Side, walls};
 use interfaces::Vector;
+pub use prediction::Prediction;
 use sources::Sources;
 
 /// Incompressible flow by incremental pressure projection on a staggered grid:

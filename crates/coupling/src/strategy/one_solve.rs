@@ -1,0 +1,124 @@
+//! One pressure solution per step, the fluid's reaction foreseen.
+use super::{Strategy, sealed};
+use crate::particles::{State, six, wrench};
+use crate::{CouplingError, Module, Particles, Timings};
+use fv_mesh::Projection;
+use ibm::Forcing;
+use interfaces::{BodyId, Dynamics, Load, VelocityField};
+use nalgebra::Vector6;
+
+/// The new velocity from one linear system per body before the forcing, with the fluid's reaction predicted implicitly
+/// ([`ibm::Layer`]: M_l, b_l from the velocity u*):
+///
+/// ```text
+/// (M_s + C + M_l) vⁿ⁺¹ = M_s vⁿ + C vⁿ + b_l + I(u*) − Iⁿ + δⁿ + dt [(ρ_s − ρ) V g + C ā] + J_contact
+/// ```
+///
+/// C is a virtual mass that is given back through the last acceleration ā, and δⁿ the impulse by which the last prediction missed the true
+/// one. One pressure solution per step, stable at any density ratio.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct OneSolve {
+    /// C as a multiple of the displaced fluid's mass. Unless told, 0.3 for bodies lighter than 0.7 of the fluid, which are unstable without,
+    /// and none for others.
+    pub virtual_mass: Option<f64>,
+}
+
+impl Strategy for OneSolve {}
+
+impl sealed::Strategy for OneSolve {
+    fn held(state: &State, _: Vector6<f64>, _: f64, known: bool) -> Load {
+        if !known {
+            return Load::default();
+        }
+        Load { wrench: wrench(state.load), added_mass: state.added[0], added_moment: state.added[1] }
+    }
+
+    fn exchange<const D: usize, F: Forcing, B: Dynamics>(
+        particles: &mut Particles<F, B, Self>,
+        flow: &mut Projection<D>,
+        dt: f64,
+        timings: &mut Timings,
+    ) -> Result<(), CouplingError> {
+        timings.measure(Module::Forcing, || foresee(particles, flow, dt, particles.strategy.virtual_mass))?;
+        particles.force(flow, dt, timings)?;
+        timings.measure(Module::Forcing, || {
+            for b in 0..particles.states.len() {
+                let [impulse, internal] = particles.impulse(flow.velocity(), BodyId(b));
+                let s = &mut particles.states[b];
+                s.deferred = impulse - s.foreseen;
+                s.internal = internal;
+                s.hydrodynamic = impulse / dt;
+            }
+        });
+        Ok(())
+    }
+}
+
+/// Gives all bodies the velocities that the linear systems foresee.
+pub(super) fn foresee<const D: usize, F: Forcing, B: Dynamics, S: Strategy>(
+    particles: &mut Particles<F, B, S>,
+    flow: &Projection<D>,
+    dt: f64,
+    virtual_mass: Option<f64>,
+) -> Result<(), CouplingError> {
+    for body in (0..particles.states.len()).map(BodyId) {
+        solve(particles, body, flow.velocity(), dt, virtual_mass)
+            .ok_or(CouplingError::Motion { body, time: flow.time() })?;
+    }
+    Ok(())
+}
+
+/// Gives body `b` its velocity at the end of the step, and notes the impulse of the fluid that it foresees.
+fn solve<F: Forcing, B: Dynamics, S: Strategy>(
+    particles: &mut Particles<F, B, S>,
+    b: BodyId,
+    velocity: &dyn VelocityField,
+    dt: f64,
+    virtual_mass: Option<f64>,
+) -> Option<()> {
+    let (own, displaced) = (particles.bodies.inertia(b).mass, particles.displaced(b));
+    let layer = particles.layer(velocity, b);
+    let internal = particles.inside(velocity, b);
+    let mass = particles.mass_matrix(b);
+    let factor = virtual_mass.unwrap_or(if own < 0.7 * displaced { 0.3 } else { 0.0 });
+    let virtual_mass = mass * (factor * displaced / own);
+    let (weight, contact) = (particles.pull(b), six(particles.bodies.contact_impulse(b)));
+    let freedom = particles.freedom(b);
+
+    let s = &mut particles.states[b.0];
+    let (momentum, before) = (s.momentum, s.before);
+    let mut matrix = mass + virtual_mass + layer.mass;
+    let mut free = momentum
+        + virtual_mass * (before + dt * s.acceleration)
+        + layer.momentum
+        + (internal - s.internal)
+        + s.deferred
+        + dt * weight;
+    let mut kick = contact;
+    for i in (0..6).filter(|&i| !freedom[i]) {
+        matrix.row_mut(i).fill(0.0);
+        matrix[(i, i)] = 1.0;
+        (free[i], kick[i]) = (before[i], 0.0);
+    }
+    let lu = matrix.lu();
+    let (free, kick) = (lu.solve(&free)?, lu.solve(&kick)?);
+    let after = free + kick;
+    if !after.iter().all(|v| v.is_finite()) {
+        return None;
+    }
+    // Contacts act again in the next step; what is left of the load is held on to.
+    let change = free - before;
+    s.added = [
+        (virtual_mass[(0, 0)] + (layer.mass[(0, 0)] + layer.mass[(1, 1)]) / 2.0),
+        virtual_mass[(5, 5)] + layer.mass[(5, 5)],
+    ];
+    let added = Vector6::from_fn(|i, _| s.added[i / 3]);
+    s.load = (mass * free - momentum + added.component_mul(&change)) / dt;
+    let given_back = virtual_mass * (dt * s.acceleration - (after - before));
+    s.held -= given_back;
+    s.foreseen = layer.momentum - layer.mass * after + (internal - s.internal);
+    s.constraint = mass * after - momentum - s.foreseen - s.deferred - dt * weight - contact - given_back;
+    s.acceleration = (after - before) / dt;
+    particles.set_velocity(b, after);
+    Some(())
+}

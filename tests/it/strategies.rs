@@ -1,0 +1,81 @@
+//! All ways to couple flow and bodies keep the same books and agree where they are stable.
+use crate::with_threads;
+use example_support::scene::{FLUID, Scene};
+use siltflow::coupling::{
+    self, Explicit, Iterated, Ledger, LedgerReport, OneSolve, Schedule, Simulation, Strategy,
+};
+use siltflow::ibm::SmoothForcing;
+use siltflow::interfaces::{BodyId, Kinematics};
+use std::sync::atomic::AtomicBool;
+
+fn run<S: Strategy>(
+    scene: &Scene,
+    schedule: &Schedule,
+    strategy: S,
+) -> Result<(Vec<f64>, LedgerReport), coupling::CouplingError> {
+    with_threads(1, || {
+        let Simulation { flow, particles, .. } = scene.build(SmoothForcing::new(FLUID.density)).unwrap();
+        let mut simulation = Simulation::new(flow, particles.with_strategy(strategy), scene.balance)?;
+        let mut ledger = Ledger::new();
+        coupling::run(&mut simulation, schedule, &mut ledger, &AtomicBool::new(false))?;
+        let bodies = &simulation.particles.bodies;
+        let speeds = (0..bodies.n_bodies()).map(|b| -bodies.twist(BodyId(b)).linear.y).collect();
+        Ok((speeds, *ledger.report()))
+    })
+}
+
+/// Measured: within 6e-4 of one another.
+#[test]
+fn heavy_discs_fall_alike_by_every_strategy() {
+    let scene = Scene { cells_per_diameter: 10, densities: vec![3000.0, 2000.0], ..Scene::default() };
+    let schedule = Schedule { end: 0.05, intervals: 5, ..Schedule::default() };
+    let one = run(&scene, &schedule, OneSolve::default()).unwrap();
+    let explicit = run(&scene, &schedule, Explicit).unwrap();
+    let iterated = run(&scene, &schedule, Iterated::default()).unwrap();
+    for (speeds, report) in [&one, &explicit, &iterated] {
+        assert!(report.momentum_step < 1e-10, "{report:?}");
+        assert!(report.energy_residual.abs() < 0.02 * report.work, "{report:?}");
+        for (a, b) in speeds.iter().zip(&iterated.0) {
+            assert!((a / b - 1.0).abs() < 1e-3, "{speeds:?} {iterated:?}");
+        }
+    }
+}
+
+/// Explicit coupling diverges; the other two differ by less than 2e-4.
+#[test]
+fn light_discs_need_the_reaction_within_the_step() {
+    for density in [1.0, 300.0] {
+        let scene = Scene { cells_per_diameter: 10, bodies: 1, densities: vec![density], ..Scene::default() };
+        let schedule = Schedule { end: 0.03, intervals: 3, ..Schedule::default() };
+        let one = run(&scene, &schedule, OneSolve::default()).unwrap();
+        let iterated = run(&scene, &schedule, Iterated::default()).unwrap();
+        let explicit = run(&scene, &schedule, Explicit);
+        assert!(iterated.1.momentum_step < 1e-10, "{iterated:?}");
+        assert!((one.0[0] / iterated.0[0] - 1.0).abs() < 1e-3, "{:?} {:?}", one.0, iterated.0);
+        assert!(explicit.is_err());
+    }
+}
+
+/// The fluid's reaction is linear in the bodies' velocities, so Aitken's relaxation finds a body's velocity in three rounds; what the body
+/// gets is then what the fluid lost, to round-off.
+#[test]
+fn iterations_agree_in_three_rounds() {
+    with_threads(1, || {
+        let scene = Scene { cells_per_diameter: 10, bodies: 1, densities: vec![1.0], ..Scene::default() };
+        let Simulation { flow, particles, .. } = scene.build(SmoothForcing::new(FLUID.density)).unwrap();
+        let particles = particles.with_strategy(Iterated::new(1e-9, 20));
+        let mut simulation = Simulation::new(flow, particles, scene.balance).unwrap();
+        let mut steps = |n| {
+            for _ in 0..n {
+                simulation.step(1e-4).unwrap();
+                let particles = &simulation.particles;
+                let displaced = FLUID.density * 0.785e-6;
+                let momentum = displaced * particles.bodies.twist(BodyId(0)).linear.norm();
+                assert_eq!(particles.strategy.rounds(), 3);
+                assert!(particles.momentum_in_transit(BodyId(0)).force.norm() < 1e-12 * momentum);
+            }
+        };
+        steps(10);
+        assert_eq!(allocation_counter::measure(|| steps(10)).count_total, 0);
+    });
+}

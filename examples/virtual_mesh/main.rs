@@ -6,11 +6,10 @@
 //!
 //! Sample run: `cargo run --release --example virtual_mesh`, a second; the pictures go to `out/virtual_mesh`, or where
 //! `--out FOLDER` says.
-mod rock;
 
 use example_support::Outcome;
 use example_support::picture::sketch::{Drawing, Paint, draw};
-use rock::Rock;
+use example_support::rock::Rock;
 use siltflow::dem::{BoxKind, Implicit, Normal, Overlap, OverlapSolver, Refinement, Route, SubBox};
 use siltflow::interfaces::{Point, Pose, Rotation, Solid, Vector};
 use std::path::PathBuf;

@@ -115,8 +115,10 @@ impl Shape for Ellipsoid {
 }
 
 impl Solid for Ellipsoid {
-    fn signed_distance(&self, x: Point, _band: f64) -> f64 {
-        self.nearest(x).1
+    fn signed_distance(&self, x: Point, band: f64) -> f64 {
+        // The surface grown or shrunk to pass through x is at least so far: enough beyond the band.
+        let bound = (x.coords.component_div(&self.semi_axes).norm() - 1.0) * self.semi_axes.min();
+        if bound.abs() >= band { bound } else { self.nearest(x).1 }
     }
     fn aabb(&self) -> Aabb {
         Aabb::around(Point::origin(), self.semi_axes)

@@ -1,14 +1,17 @@
 //! A rock.
-use siltflow::interfaces::{Aabb, Point, Solid, Vector};
+use crate::Outcome;
+use dem::TriangleMesh;
+use interfaces::{Aabb, Point, Solid, Vector};
+use std::fmt::Write;
 
 /// A ball whose radius changes with the direction: 1 + Σ a sin(k·n + φ) over some waves.
-pub(crate) struct Rock {
+pub struct Rock {
     waves: Vec<(Vector, f64, f64)>,
 }
 
 impl Rock {
     /// The one that grows from this seed.
-    pub(crate) fn new(seed: u64) -> Self {
+    pub fn new(seed: u64) -> Self {
         let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
         let mut draw = move || {
             state ^= state << 13;
@@ -31,6 +34,31 @@ impl Rock {
         let rough: f64 = self.waves.iter().map(|w| w.1).sum();
         (rough, self.waves.iter().map(|w| w.1 * w.0.norm()).sum())
     }
+
+    /// Its surface as the faces of an icosahedron halved `times` times.
+    ///
+    /// # Errors
+    /// Those of the mesh.
+    pub fn mesh(&self, times: u32) -> Outcome<TriangleMesh> {
+        let ball = TriangleMesh::sphere(1.0, times)?;
+        let outward = |p: &Point| (self.radius(p.coords.normalize()) * p.coords.normalize()).into();
+        let vertices: Vec<[f64; 3]> = ball.vertices().iter().map(outward).collect();
+        Ok(TriangleMesh::new(&vertices, ball.faces())?)
+    }
+}
+
+/// A mesh as the text of an STL file, its lengths times `scale`.
+pub fn stl(mesh: &TriangleMesh, scale: f64) -> String {
+    let mut text = String::from("solid rock\n");
+    for face in mesh.faces() {
+        text += "facet normal 0 0 0\nouter loop\n";
+        for &corner in face {
+            let p = scale * mesh.vertices()[corner as usize].coords;
+            let _ = writeln!(text, "vertex {:e} {:e} {:e}", p.x, p.y, p.z);
+        }
+        text += "endloop\nendfacet\n";
+    }
+    text + "endsolid rock\n"
 }
 
 impl Solid for Rock {

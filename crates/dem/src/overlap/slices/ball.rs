@@ -1,11 +1,13 @@
 //! A ball and a tube: slices across the tube's axis.
 use super::adaptive;
-use super::outline::segment;
+use super::eight::{Eight, Sums, at_heights};
+use super::lanes::{Lanes, Places, WIDTH};
 use super::piece::Piece;
 use super::tube::{Ends, Tube};
 use crate::Overlap;
 use crate::overlap::integrals::Integrals;
 use interfaces::{Point, Vector};
+use pulp::{Arch, Simd, WithSimd};
 use std::f64::consts::{PI, TAU};
 
 /// Distances of the ball's centre from the axis that are taken for zero, as a share of the size.
@@ -112,7 +114,9 @@ impl BallInTube {
                 pieces[n] = Piece::between(w[0], w[1]);
                 n += 1;
             }
-            sums = adaptive::integrate::<BREAKS>(sums, &pieces[..n], tolerance, |h| self.slice(h));
+            sums = adaptive::integrate::<BREAKS>(sums, &pieces[..n], tolerance, |_, heights| {
+                Arch::new().dispatch(Crossing { pair: self, heights })
+            });
         }
         (sums, met)
     }
@@ -205,26 +209,46 @@ impl BallInTube {
             Integrals { volume: area, first, ..Integrals::default() }
         }
     }
-    /// What a slice adds per height where discs cross.
-    fn slice(&self, h: f64) -> Integrals {
-        let ([ball2, tube2], d) = (self.squares(h), self.beside);
-        let (ball, tube) = (ball2.sqrt(), tube2.sqrt());
-        let product = (ball + tube - d) * (d - ball + tube) * (d + ball - tube) * (d + ball + tube);
-        if product <= 0.0 {
-            return if ball + tube <= d { Integrals::default() } else { self.disc(ball < tube, h) };
-        }
-        let half = product.sqrt() / (2.0 * d);
-        // The chord's distance from the ball's centre.
-        let near = 0.5 * (d + (ball - tube) * ((ball + tube) / d));
-        let [of_ball, of_tube] = [half.atan2(near), half.atan2(d - near)];
-        let (ball_part, tube_part) = (ball2 * segment(of_ball), tube2 * segment(of_tube));
-        let area = ball_part + tube_part;
-        Integrals {
-            volume: area,
-            // The segments' own moments balance.
-            first: Vector::new(-d * tube_part, 0.0, h * area),
-            area: Vector::new(-2.0 * half, 0.0, 2.0 * of_ball * h),
-            moment: Vector::zeros(),
-        }
+}
+
+/// Slices in which the discs cross, in the widest vectors that the processor has.
+struct Crossing<'a> {
+    pair: &'a BallInTube,
+    heights: &'a [f64; WIDTH],
+}
+
+impl WithSimd for Crossing<'_> {
+    type Output = Eight;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Eight {
+        let BallInTube { ball, tube, straight, beside: d, .. } = self.pair;
+        at_heights::<S>(self.heights, |h| {
+            let h = Lanes::new(simd, h);
+            let zero = h.all(0.0);
+            let off = h - h.max(h.all(straight[0])).min(h.all(straight[1]));
+            let ball2 = ((h.all(*ball) - h) * (h + *ball)).max(zero);
+            let tube2 = ((h.all(*tube) - off) * (off + *tube)).max(zero);
+            let (ball, tube) = (ball2.sqrt(), tube2.sqrt());
+            let (sum, less, far) = (ball + tube, ball - tube, h.all(*d));
+            // Heron's product.
+            let product = (sum - far) * (far - less) * (far + less) * (sum + far);
+            let half = product.max(zero).sqrt() * (0.5 / d);
+            // The chord's distance from the ball's centre.
+            let near = (far + less * sum * (1.0 / d)) * 0.5;
+            let [of_ball, of_tube] = [half.angle(near), half.angle(far - near)];
+            let ball_part = ball2 * of_ball.0.segment(of_ball.1);
+            let tube_part = tube2 * of_tube.0.segment(of_tube.1);
+            let area = ball_part + tube_part;
+            Sums {
+                area,
+                // The segments' own moments balance.
+                first: Places { x: tube_part * -d, y: zero },
+                normal: Places { x: half * -2.0, y: zero },
+                upward: of_ball.0 * h * 2.0,
+                ..Sums::zero(simd)
+            }
+            .without_moment(h)
+        })
     }
 }

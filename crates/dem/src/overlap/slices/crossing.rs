@@ -1,10 +1,10 @@
 //! Straight parts of tubes that cross.
 use super::adaptive;
+use super::eight::Eight;
 use super::piece::Piece;
 use super::tube::Tube;
 use crate::Overlap;
 use crate::overlap::integrals::Integrals;
-use interfaces::Vector;
 
 /// Sine of the angle between axes below which their straight parts are not taken for crossing.
 const STEEP: f64 = 1e-3;
@@ -45,12 +45,15 @@ pub(super) fn overlap(a: &Tube, b: &Tube, tolerance: f64) -> Option<Overlap> {
     }
     let base = 0.5 * (low + high);
     let piece = Piece::between((low, true), (high, true));
-    let sums = adaptive::integrate::<1>(Integrals::default(), &[piece], tolerance, |h| {
-        let [u, v] = [u(h), v(h)].map(|square| square.max(0.0).sqrt());
-        let volume = 4.0 / sin * u * v;
-        let first = Vector::new(0.0, 0.0, (h - base) * volume);
-        let upward = if u > 0.0 { 4.0 / sin * v * h / u } else { 0.0 };
-        Integrals { volume, first, area: Vector::new(0.0, 0.0, upward), moment: Vector::zeros() }
+    let sums = adaptive::integrate::<1>(Integrals::default(), &[piece], tolerance, |_, heights| {
+        let mut slices = Eight::default();
+        for (i, h) in heights.iter().enumerate() {
+            let [u, v] = [u(*h), v(*h)].map(|square| square.max(0.0).sqrt());
+            let volume = 4.0 / sin * u * v;
+            let upward = if u > 0.0 { 4.0 / sin * v * h / u } else { 0.0 };
+            slices.set_upright(i, volume, h - base, upward);
+        }
+        slices
     });
     if sums.volume.is_nan() || sums.volume <= 0.0 {
         return None;

@@ -111,8 +111,7 @@ impl Look {
         }
         *left -= 1;
         let [low, high] = piece.halves((0.0, 0));
-        let mut half =
-            |piece: &Piece| Self::new(piece, number, f).refined(piece, number, scale, f, left);
+        let mut half = |piece: &Piece| Self::new(piece, number, f).refined(piece, number, scale, f, left);
         half(&low) + half(&high)
     }
 }

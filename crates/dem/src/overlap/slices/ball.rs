@@ -1,6 +1,6 @@
 //! A ball and a tube: slices across the tube's axis.
 use super::adaptive;
-use super::eight::{Eight, Sums, at_heights};
+use super::eight::{Eight, Sums};
 use super::lanes::{Lanes, Places, WIDTH};
 use super::piece::Piece;
 use super::tube::{Ends, Tube};
@@ -222,33 +222,42 @@ impl WithSimd for Crossing<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Eight {
-        let BallInTube { ball, tube, straight, beside: d, .. } = self.pair;
-        at_heights::<S>(self.heights, |h| {
-            let h = Lanes::new(simd, h);
-            let zero = h.all(0.0);
-            let off = h - h.max(h.all(straight[0])).min(h.all(straight[1]));
-            let ball2 = ((h.all(*ball) - h) * (h + *ball)).max(zero);
-            let tube2 = ((h.all(*tube) - off) * (off + *tube)).max(zero);
-            let (ball, tube) = (ball2.sqrt(), tube2.sqrt());
-            let (sum, less, far) = (ball + tube, ball - tube, h.all(*d));
-            // Heron's product.
-            let product = (sum - far) * (far - less) * (far + less) * (sum + far);
-            let half = product.max(zero).sqrt() * (0.5 / d);
-            // The chord's distance from the ball's centre.
-            let near = (far + less * sum * (1.0 / d)) * 0.5;
-            let [of_ball, of_tube] = [half.angle(near), half.angle(far - near)];
-            let ball_part = ball2 * of_ball.0.segment(of_ball.1);
-            let tube_part = tube2 * of_tube.0.segment(of_tube.1);
-            let area = ball_part + tube_part;
-            Sums {
-                area,
-                // The segments' own moments balance.
-                first: Places { x: tube_part * -d, y: zero },
-                normal: Places { x: half * -2.0, y: zero },
-                upward: of_ball.0 * h * 2.0,
-                ..Sums::zero(simd)
-            }
-            .without_moment(h)
-        })
+        let mut all = Eight::default();
+        for (i, h) in S::as_simd_f64s(self.heights).0.iter().enumerate() {
+            all.set::<S>(i, self.pair.slice(simd, Lanes::new(simd, *h)));
+        }
+        all
+    }
+}
+
+impl BallInTube {
+    /// Slices in which the discs cross.
+    #[inline(always)]
+    fn slice<S: Simd>(&self, simd: S, h: Lanes<S>) -> [S::f64s; 10] {
+        let Self { ball, tube, straight, beside: d, .. } = self;
+        let zero = h.all(0.0);
+        let off = h - h.max(h.all(straight[0])).min(h.all(straight[1]));
+        let ball2 = ((h.all(*ball) - h) * (h + *ball)).max(zero);
+        let tube2 = ((h.all(*tube) - off) * (off + *tube)).max(zero);
+        let (ball, tube) = (ball2.sqrt(), tube2.sqrt());
+        let (sum, less, far) = (ball + tube, ball - tube, h.all(*d));
+        // Heron's product.
+        let product = (sum - far) * (far - less) * (far + less) * (sum + far);
+        let half = product.max(zero).sqrt() * (0.5 / d);
+        // The chord's distance from the ball's centre.
+        let near = (far + less * sum * (1.0 / d)) * 0.5;
+        let [of_ball, of_tube] = [half.angle(near), half.angle(far - near)];
+        let ball_part = ball2 * of_ball.0.segment(of_ball.1);
+        let tube_part = tube2 * of_tube.0.segment(of_tube.1);
+        let area = ball_part + tube_part;
+        Sums {
+            area,
+            // The segments' own moments balance.
+            first: Places { x: tube_part * -d, y: zero },
+            normal: Places { x: half * -2.0, y: zero },
+            upward: of_ball.0 * h * 2.0,
+            ..Sums::zero(simd)
+        }
+        .without_moment(h)
     }
 }

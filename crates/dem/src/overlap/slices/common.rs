@@ -1,5 +1,5 @@
 //! What slices of two tubes share.
-use super::eight::{Eight, Sums, at_heights};
+use super::eight::{Eight, Sums};
 use super::flat::Flat;
 use super::lanes::{Lanes, Places, WIDTH};
 use super::slice::Place;
@@ -115,8 +115,7 @@ impl Common {
             }
             Stop::Crossing { curve: other, near } => {
                 let [first, second] = if body == 0 { [curve, other] } else { [other, curve] };
-                let (vertex, left) =
-                    Vertex::crossing(&self.curves[0][first], &self.curves[1][second], near);
+                let (vertex, left) = Vertex::crossing(&self.curves[0][first], &self.curves[1][second], near);
                 (8 + 2 * (4 * first + second) + usize::from(left), vertex)
             }
         };
@@ -140,37 +139,47 @@ impl WithSimd for Slices<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Eight {
-        let Common { tubes, curves, vertices, n, parts, m, .. } = self.common;
+        let mut all = Eight::default();
         let mut places = [Places::splat(simd, Place::zeros()); PIECES];
-        at_heights::<S>(self.heights, |h| {
-            let h = Lanes::new(simd, h);
-            let widths = [0, 1].map(|i| {
-                let tube: &SlicedTube = &tubes[i];
-                ((h - tube.low) * (h.all(tube.high) - h)).max(h.all(0.0)).sqrt()
-            });
-            // −∂width/∂h, finite where the slice is a line.
-            let slope = (h - 0.5 * (tubes[0].low + tubes[0].high))
-                / widths[0].max(h.all(1e-100 * tubes[0].radius));
-            for (place, vertex) in places.iter_mut().zip(&vertices[..*n]) {
-                *place = vertex.places(simd, widths);
-            }
-            let mut sums = Sums::zero(simd);
-            // So that nothing cancels.
-            let origin = places[0];
-            for part in &parts[..*m] {
-                let ends = [places[part.start], places[part.end]];
-                match curves[part.body][part.curve] {
-                    Curve::Line { normal, moves, .. } => {
-                        let moves = h.all(moves) * slope;
-                        sums.line(origin, ends, Places::splat(simd, normal), moves, part.body == 0);
-                    }
-                    Curve::Circle { centre } => {
-                        let circle = (Places::splat(simd, centre), widths[part.body]);
-                        sums.arc(origin, ends, circle, slope, part.body == 0);
-                    }
+        for (i, h) in S::as_simd_f64s(self.heights).0.iter().enumerate() {
+            all.set::<S>(i, self.common.slice(simd, Lanes::new(simd, *h), &mut places));
+        }
+        all
+    }
+}
+
+impl Common {
+    /// Slices at some heights; `places` are those of the vertices.
+    #[inline(always)]
+    fn slice<S: Simd>(&self, simd: S, h: Lanes<S>, places: &mut [Places<S>; PIECES]) -> [S::f64s; 10] {
+        let [a, b] = &self.tubes;
+        let widths = [width(a, h), width(b, h)];
+        // −∂width/∂h, finite where the slice is a line.
+        let slope = (h - 0.5 * (a.low + a.high)) / widths[0].max(h.all(1e-100 * a.radius));
+        for (place, vertex) in places.iter_mut().zip(&self.vertices[..self.n]) {
+            *place = vertex.places(simd, widths);
+        }
+        let mut sums = Sums::zero(simd);
+        // So that nothing cancels.
+        let origin = places[0];
+        for part in &self.parts[..self.m] {
+            let ends = [places[part.start], places[part.end]];
+            match self.curves[part.body][part.curve] {
+                Curve::Line { normal, moves, .. } => {
+                    sums.line(origin, ends, Places::splat(simd, normal), slope * moves, part.body == 0);
+                }
+                Curve::Circle { centre } => {
+                    let circle = (Places::splat(simd, centre), widths[part.body]);
+                    sums.arc(origin, ends, circle, slope, part.body == 0);
                 }
             }
-            sums.about(origin).all(h)
-        })
+        }
+        sums.about(origin).all(h)
     }
+}
+
+/// Of a tube's slices.
+#[inline(always)]
+fn width<S: Simd>(tube: &SlicedTube, h: Lanes<S>) -> Lanes<S> {
+    ((h - tube.low) * (h.all(tube.high) - h)).max(h.all(0.0)).sqrt()
 }

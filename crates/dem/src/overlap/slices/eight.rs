@@ -33,6 +33,13 @@ impl Eight {
     pub(super) fn set_upright(&mut self, slice: usize, area: f64, h: f64, upward: f64) {
         (self.0[0][slice], self.0[3][slice], self.0[6][slice]) = (area, h * area, upward);
     }
+    /// Slices that are computed at once, after `before` times as many.
+    #[inline(always)]
+    pub(super) fn set<S: Simd>(&mut self, before: usize, now: [S::f64s; 10]) {
+        for (values, now) in self.0.iter_mut().zip(now) {
+            S::as_mut_simd_f64s(values).0[before] = now;
+        }
+    }
     /// Leaves out a slice.
     pub(super) fn forget(&mut self, slice: usize) {
         self.0.iter_mut().for_each(|values| values[slice] = 0.0);
@@ -134,32 +141,16 @@ impl<S: Simd> Sums<S> {
     pub(super) fn all(&self, h: Lanes<S>) -> [S::f64s; 10] {
         let (area, n) = (self.area, self.normal);
         [
-            area,
-            self.first.x,
-            self.first.y,
-            h * area,
-            n.x,
-            n.y,
-            self.upward,
-            self.arm.y - h * n.y,
-            h * n.x - self.arm.x,
-            self.turn,
+            area.raw(),
+            self.first.x.raw(),
+            self.first.y.raw(),
+            (h * area).raw(),
+            n.x.raw(),
+            n.y.raw(),
+            self.upward.raw(),
+            (self.arm.y - h * n.y).raw(),
+            (h * n.x - self.arm.x).raw(),
+            self.turn.raw(),
         ]
-        .map(Lanes::raw)
     }
-}
-
-/// Slices at [`WIDTH`] heights, as many at once as the processor takes.
-#[inline(always)]
-pub(super) fn at_heights<S: Simd>(
-    heights: &[f64; WIDTH],
-    mut slices: impl FnMut(S::f64s) -> [S::f64s; 10],
-) -> Eight {
-    let mut all = Eight::default();
-    for (i, h) in S::as_simd_f64s(heights).0.iter().enumerate() {
-        for (values, now) in all.0.iter_mut().zip(slices(*h)) {
-            S::as_mut_simd_f64s(values).0[i] = now;
-        }
-    }
-    all
 }

@@ -30,7 +30,9 @@ pub(super) fn integrate([mut a, mut b]: [SlicedTube; 2], tolerance: f64) -> Opti
     let mut common = Common::new(&a, &b);
     // Slices have nothing in common but before some height and beyond some other.
     let mut heights = touches.heights();
-    while heights.len() > 2 && !common.find_between([heights[heights.len() - 2].0, heights[heights.len() - 1].0]) {
+    while heights.len() > 2
+        && !common.find_between([heights[heights.len() - 2].0, heights[heights.len() - 1].0])
+    {
         heights = &heights[..heights.len() - 1];
     }
     while heights.len() > 1 && !common.find_between([heights[0].0, heights[1].0]) {
@@ -47,7 +49,8 @@ pub(super) fn integrate([mut a, mut b]: [SlicedTube; 2], tolerance: f64) -> Opti
     }
     let mut outlines = Outlines { common, now: 0, closed: true, of: [false; 2], areas: [f64::NAN; 2] };
     outlines.note();
-    let slices = |i: usize, at: &[f64; WIDTH]| outlines.slices(i, [heights[i].0, heights[i + 1].0], i + 1 == n, at);
+    let slices =
+        |i: usize, at: &[f64; WIDTH]| outlines.slices(i, [heights[i].0, heights[i + 1].0], i + 1 == n, at);
     let sums = if n <= FEW {
         adaptive::integrate::<FEW>(Integrals::default(), &pieces[..n], tolerance, slices)
     } else {

@@ -88,17 +88,20 @@ impl Vertex {
     /// Its places in slices of these widths.
     #[inline(always)]
     pub(super) fn places<S: Simd>(&self, simd: S, widths: [Lanes<S>; 2]) -> Places<S> {
-        let splat = |place: Place| Places::splat(simd, place);
         let zero = Lanes::splat(simd, 0.0);
         match self {
             Self::Moving { from, by } => {
-                splat(*from) + splat(by[0]) * widths[0] + splat(by[1]) * widths[1]
+                Places::splat(simd, *from)
+                    + Places::splat(simd, by[0]) * widths[0]
+                    + Places::splat(simd, by[1]) * widths[1]
             }
             Self::OnCircle { round, centre, normal, above, moves, along } => {
                 let (r, width) = (widths[*round], widths[1 - round]);
                 let above = width * *moves + *above;
                 let half = ((r - above) * (r + above)).max(zero).sqrt();
-                splat(*centre) + splat(*normal) * above + splat(*along) * half
+                Places::splat(simd, *centre)
+                    + Places::splat(simd, *normal) * above
+                    + Places::splat(simd, *along) * half
             }
             Self::Circles { centre, apart, towards, aside } => {
                 let (r, w) = (widths[0], widths[1]);
@@ -109,7 +112,9 @@ impl Vertex {
                 let per = 0.5 / apart;
                 let half = product.max(zero).sqrt() * per;
                 let along = less * sum * per + 0.5 * apart;
-                splat(*centre) + splat(*towards) * along + splat(*aside) * half
+                Places::splat(simd, *centre)
+                    + Places::splat(simd, *towards) * along
+                    + Places::splat(simd, *aside) * half
             }
         }
     }

@@ -6,7 +6,6 @@ mod breaks;
 mod circle;
 mod common;
 mod crossing;
-mod eight;
 mod ends;
 mod flat;
 mod frame;
@@ -19,6 +18,7 @@ mod polyhedron;
 mod region;
 mod rules;
 mod slice;
+mod sums;
 mod sweep;
 #[cfg(test)]
 mod tests;

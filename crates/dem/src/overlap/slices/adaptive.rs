@@ -1,8 +1,8 @@
 //! Integrals over heights between which the integrand is smooth.
-use super::eight::Eight;
 use super::lanes::WIDTH;
 use super::piece::Piece;
 use super::rules::{RULES, column, missed};
+use super::sums::Sampled;
 use crate::overlap::integrals::Integrals;
 
 /// Halvings of all pieces, at most, for tolerances that are [`FINE`] and for finer ones: where more seem to be needed slices are
@@ -24,13 +24,28 @@ const CHANGE: [f64; WIDTH] = {
 };
 const FIFTEEN: [[f64; WIDTH]; 2] = [column(0, 3), column(7, 3)];
 
-/// The slices of a piece at the places of the rule of 7 points.
+/// What is integrated.
+pub(super) trait Slices {
+    /// Slices of a piece, given by its number, at these heights, each times its weight by several rules.
+    fn sums<const N: usize>(
+        &mut self,
+        piece: usize,
+        heights: &[f64; WIDTH],
+        weights: &[[f64; WIDTH]; N],
+    ) -> Sampled<N>;
+}
+
+/// What the rules of 3 and 7 points say of a piece.
 #[derive(Clone, Copy, Default)]
 struct Look {
-    slices: Eight,
-    /// Of the heights with the rules' places.
-    changes: [f64; WIDTH],
     seven: Integrals,
+    /// The part of the rule of 15 points.
+    fifteen: Integrals,
+    /// How much less the rule of 3 points finds.
+    changed: f64,
+    area_changed: f64,
+    /// What the rule of 7 points is guessed to miss.
+    missed: f64,
 }
 
 /// How large errors may be.
@@ -40,42 +55,42 @@ struct Scale {
     tolerance: f64,
 }
 
-/// ∫f over all pieces, no more than `N`, with a share of `tolerance` of the volume and ten times that of areas as the error; `known` is
+/// The integral over all pieces, no more than `N`, with a share of `tolerance` of the volume and ten times that of areas as the error; `known` is
 /// what the rest adds up to. Rules of 7 and 15 points are compared with those of half as many, and pieces are halved where they differ.
 ///
-/// `f` tells what slices of a piece, given by its number, add. Each piece is first looked at in seven heights and an eighth that counts nothing:
-/// its lower end if it is the first one, else its upper end.
+/// Each piece is first looked at in seven heights and an eighth that counts nothing: its lower end if it is the first one, else its upper
+/// end.
 pub(super) fn integrate<const N: usize>(
     known: Integrals,
     pieces: &[Piece],
     tolerance: f64,
-    mut f: impl FnMut(usize, &[f64; WIDTH]) -> Eight,
+    slices: &mut impl Slices,
 ) -> Integrals {
     let mut looks = [Look::default(); N];
     let mut all = known;
     for (i, (look, piece)) in looks.iter_mut().zip(pieces).enumerate() {
-        *look = Look::new(piece, i, &mut f);
+        *look = Look::new(piece, i, slices);
         all = all + look.seven;
     }
     let scale = Scale { volume: all.volume, area: all.volume.cbrt().powi(2) + all.area.norm(), tolerance };
     let mut left = HALVINGS[usize::from(tolerance < FINE)];
-    looks
-        .iter()
-        .zip(pieces)
-        .enumerate()
-        .fold(known, |sums, (i, (look, piece))| sums + look.refined(piece, i, &scale, &mut f, &mut left))
+    let mut sums = known;
+    for (i, (look, piece)) in looks.iter().zip(pieces).enumerate() {
+        sums = sums + look.refined(piece, i, &scale, slices, &mut left);
+    }
+    sums
 }
 
 impl Look {
-    fn new(piece: &Piece, number: usize, f: &mut impl FnMut(usize, &[f64; WIDTH]) -> Eight) -> Self {
+    fn new(piece: &Piece, number: usize, slices: &mut impl Slices) -> Self {
         let (mut heights, mut changes) = ([piece.ends[usize::from(number > 0)]; WIDTH], [0.0; WIDTH]);
         for (i, rule) in RULES[..7].iter().enumerate() {
             [heights[i], changes[i]] = piece.height(rule[0]);
         }
-        let mut slices = f(number, &heights);
-        slices.forget(7);
-        let seven = slices.weighted(&product(&changes, &SEVEN));
-        Self { slices, changes, seven }
+        let weights = [SEVEN, FIFTEEN[0], CHANGE].map(|weights| product(&changes, &weights));
+        let Sampled { areas, sums: [seven, fifteen, change] } = slices.sums(number, &heights, &weights);
+        let (changed, area_changed) = (change.volume.abs(), change.area.norm());
+        Self { seven, fifteen, changed, area_changed, missed: missed(&product(&changes, &areas)) }
     }
     /// By as many points as it takes.
     fn refined(
@@ -83,17 +98,14 @@ impl Look {
         piece: &Piece,
         number: usize,
         scale: &Scale,
-        f: &mut impl FnMut(usize, &[f64; WIDTH]) -> Eight,
+        slices: &mut impl Slices,
         left: &mut u32,
     ) -> Integrals {
-        let change = self.slices.weighted(&product(&self.changes, &CHANGE));
-        let changed = change.volume.abs();
-        if scale.tolerance >= FINE && changed > 0.0 {
+        if scale.tolerance >= FINE && self.changed > 0.0 {
             // Geometric decay leads to what the rule of 7 points misses, which is hardly less than the square of the change.
-            let share = (changed / self.seven.volume.abs()).min(1.0);
-            let values = product(&self.changes, self.slices.areas());
-            let left = changed.min(missed(&values).max(0.01 * changed * share));
-            if scale.small(left, 0.1 * change.area.norm()) {
+            let share = (self.changed / self.seven.volume.abs()).min(1.0);
+            let left = self.changed.min(self.missed.max(0.01 * self.changed * share));
+            if scale.small(left, 0.1 * self.area_changed) {
                 return self.seven;
             }
         }
@@ -101,8 +113,8 @@ impl Look {
         for (i, rule) in RULES[7..].iter().enumerate() {
             [heights[i], changes[i]] = piece.height(rule[0]);
         }
-        let fifteen = self.slices.weighted(&product(&self.changes, &FIFTEEN[0]))
-            + f(number, &heights).weighted(&product(&changes, &FIFTEEN[1]));
+        let Sampled { sums: [rest], .. } = slices.sums(number, &heights, &[product(&changes, &FIFTEEN[1])]);
+        let fifteen = self.fifteen + rest;
         let changed = (fifteen.volume - self.seven.volume).abs();
         let share = (10.0 * changed / fifteen.volume.abs()).min(0.5);
         let done = scale.small(changed * share, 0.1 * (fifteen.area - self.seven.area).norm());
@@ -110,9 +122,11 @@ impl Look {
             return fifteen;
         }
         *left -= 1;
-        let [low, high] = piece.halves((0.0, 0));
-        let mut half = |piece: &Piece| Self::new(piece, number, f).refined(piece, number, scale, f, left);
-        half(&low) + half(&high)
+        let mut sums = Integrals::default();
+        for half in piece.halves((0.0, 0)) {
+            sums = sums + Self::new(&half, number, slices).refined(&half, number, scale, slices, left);
+        }
+        sums
     }
 }
 

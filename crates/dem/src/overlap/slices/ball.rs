@@ -1,8 +1,8 @@
 //! A ball and a tube: slices across the tube's axis.
 use super::adaptive;
-use super::eight::{Eight, Sums};
 use super::lanes::{Lanes, Places, WIDTH};
 use super::piece::Piece;
+use super::sums::{Sampled, Sums, Weighted};
 use super::tube::{Ends, Tube};
 use crate::Overlap;
 use crate::overlap::integrals::Integrals;
@@ -114,9 +114,7 @@ impl BallInTube {
                 pieces[n] = Piece::between(w[0], w[1]);
                 n += 1;
             }
-            sums = adaptive::integrate::<BREAKS>(sums, &pieces[..n], tolerance, |_, heights| {
-                Arch::new().dispatch(Crossing { pair: self, heights })
-            });
+            sums = adaptive::integrate::<BREAKS>(sums, &pieces[..n], tolerance, &mut &*self);
         }
         (sums, met)
     }
@@ -211,22 +209,34 @@ impl BallInTube {
     }
 }
 
-/// Slices in which the discs cross, in the widest vectors that the processor has.
-struct Crossing<'a> {
-    pair: &'a BallInTube,
-    heights: &'a [f64; WIDTH],
+impl adaptive::Slices for &BallInTube {
+    fn sums<const N: usize>(
+        &mut self,
+        _: usize,
+        heights: &[f64; WIDTH],
+        weights: &[[f64; WIDTH]; N],
+    ) -> Sampled<N> {
+        Arch::new().dispatch(Crossing { pair: self, heights, weights })
+    }
 }
 
-impl WithSimd for Crossing<'_> {
-    type Output = Eight;
+/// Slices in which the discs cross, in the widest vectors that the processor has.
+struct Crossing<'a, const N: usize> {
+    pair: &'a BallInTube,
+    heights: &'a [f64; WIDTH],
+    weights: &'a [[f64; WIDTH]; N],
+}
+
+impl<const N: usize> WithSimd for Crossing<'_, N> {
+    type Output = Sampled<N>;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Eight {
-        let mut all = Eight::default();
+    fn with_simd<S: Simd>(self, simd: S) -> Sampled<N> {
+        let mut sums = Weighted::new(simd, self.weights);
         for (i, h) in S::as_simd_f64s(self.heights).0.iter().enumerate() {
-            all.set::<S>(i, self.pair.slice(simd, Lanes::new(simd, *h)));
+            sums.add(i, self.pair.slice(simd, Lanes::new(simd, *h)));
         }
-        all
+        sums.finish()
     }
 }
 

@@ -209,19 +209,18 @@ impl Flat {
             }
         }
         let last = crossed.len() - 2;
+        let crossing =
+            |at: &(f64, Place, usize)| Stop::Crossing { curve: at.2, near: arc.centre + self.world(at.1) };
+        // Within and outside by turns.
+        let sum = if last == 0 { f } else { crossed[0].1 + crossed[1].1 };
+        let mut within = self.contains(c + sum * (r / sum.norm()));
         for (i, w) in crossed.windows(2).enumerate() {
-            let (v, u) = (w[0].1, w[1].1);
-            let sum = if last == 0 { f } else { v + u };
-            let length = sum.norm();
-            if length > 0.0 && self.contains(c + sum * (r / length)) {
-                let crossing = |at: &(f64, Place, usize)| Stop::Crossing {
-                    curve: at.2,
-                    near: arc.centre + self.world(at.1),
-                };
+            if within {
                 let start = if i == 0 { arc.corners[0] } else { crossing(&w[0]) };
                 let end = if i == last { arc.corners[1] } else { crossing(&w[1]) };
                 found(arc.curve, start, end);
             }
+            within = !within;
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Tubes whose axes are not parallel: heights at which slices change are known.
-use super::common::Common;
-use super::eight::Eight;
+use super::common::{Common, Outline};
 use super::lanes::WIDTH;
 use super::piece::Piece;
-use super::touches::{TOUCHES, touches};
+use super::sums::Sampled;
+use super::touches::{TOUCHES, Touches, touches};
 use super::tube::SlicedTube;
 use super::{Swept, adaptive};
 use crate::overlap::integrals::Integrals;
@@ -26,80 +26,76 @@ pub(super) fn integrate([mut a, mut b]: [SlicedTube; 2], tolerance: f64) -> Opti
         return None;
     }
     let touches = touches(&a, &b);
-    let (mut pieces, mut n) = ([Piece::default(); TOUCHES], 0);
-    let mut common = Common::new(&a, &b);
-    // Slices have nothing in common but before some height and beyond some other.
-    let mut heights = touches.heights();
-    while heights.len() > 2
-        && !common.find_between([heights[heights.len() - 2].0, heights[heights.len() - 1].0])
-    {
-        heights = &heights[..heights.len() - 1];
-    }
-    while heights.len() > 1 && !common.find_between([heights[0].0, heights[1].0]) {
-        heights = &heights[1..];
-    }
-    for i in 1..heights.len() {
-        let ends = [heights[i - 1].0, heights[i].0];
-        // A root that ends just beyond is felt, too.
-        let near =
-            |h: f64| (touches.heights().iter()).any(|t| t.1 && (t.0 - h).abs() <= NEAR * (ends[1] - ends[0]));
-        let [low, high] = ends.map(|h| (h, near(h)));
-        pieces[n] = Piece::between(low, high);
-        n += 1;
-    }
-    let mut outlines = Outlines { common, now: 0, closed: true, of: [false; 2], areas: [f64::NAN; 2] };
-    outlines.note();
-    let slices =
-        |i: usize, at: &[f64; WIDTH]| outlines.slices(i, [heights[i].0, heights[i + 1].0], i + 1 == n, at);
-    let sums = if n <= FEW {
-        adaptive::integrate::<FEW>(Integrals::default(), &pieces[..n], tolerance, slices)
+    let common = Common::new(&a, &b);
+    let (sums, of) = if touches.heights().len() <= FEW {
+        between::<FEW>(common, &touches, tolerance)?
     } else {
-        adaptive::integrate::<TOUCHES>(Integrals::default(), &pieces[..n], tolerance, slices)
+        between::<TOUCHES>(common, &touches, tolerance)?
     };
-    let [low, high] = [heights[0].0, heights[heights.len() - 1].0];
-    if n == 1 {
-        outlines.areas[1] = outlines.common.slices(&[high; WIDTH]).areas()[0];
-    }
-    let Outlines { closed, of, areas, .. } = outlines;
-    // What is left out has nothing: else a height was missing.
-    let most = LEFT * sums.volume / (high - low);
-    let ended = areas.iter().all(|area| *area <= most);
-    (sums.volume > 0.0 && closed && ended).then_some(Swept { sums, base, of })
+    Some(Swept { sums, base, of })
 }
 
-/// The outline of one piece at a time.
-struct Outlines {
+/// The integrals from one of no more than `N` heights to the next, and whether pieces of the first and the second body's surface were met.
+fn between<const N: usize>(
+    mut common: Common,
+    touches: &Touches,
+    tolerance: f64,
+) -> Option<(Integrals, [bool; 2])> {
+    let heights = touches.heights();
+    let (mut pieces, mut outlines, mut n) = ([Piece::default(); N], [Outline::default(); N], 0);
+    for w in heights.windows(2) {
+        let (low, high) = (w[0].0, w[1].0);
+        let outline = common.between([low, high]);
+        if outline.is_empty() {
+            // Slices have nothing in common but before some height and beyond some other.
+            if n > 0 { break } else { continue }
+        }
+        // A root that ends just beyond is felt, too.
+        let near = |h: f64| heights.iter().any(|t| t.1 && (t.0 - h).abs() <= NEAR * (high - low));
+        pieces[n] = Piece::between((low, near(low)), (high, near(high)));
+        outlines[n] = outline;
+        n += 1;
+    }
+    let (pieces, outlines) = (&pieces[..n], &outlines[..n]);
+    let [low, high] = [pieces.first()?.ends[0], pieces.last()?.ends[1]];
+    if !outlines.iter().all(Outline::is_closed) {
+        return None;
+    }
+    let mut slices = Slices { common, outlines, ends: [low, high], areas: [f64::NAN; 2] };
+    let sums = adaptive::integrate::<N>(Integrals::default(), pieces, tolerance, &mut slices);
+    if n == 1 {
+        slices.areas[1] = slices.common.sums(&outlines[0], &[high; WIDTH], &[]).areas[0];
+    }
+    // What is left out has nothing: else a height was missing.
+    let most = LEFT * sums.volume / (high - low);
+    let ended = slices.areas.iter().all(|area| *area <= most);
+    let of =
+        outlines.iter().map(Outline::bodies).fold([false; 2], |of, now| [of[0] | now[0], of[1] | now[1]]);
+    (sums.volume > 0.0 && ended).then_some((sums, of))
+}
+
+/// Slices between two heights each.
+struct Slices<'a> {
     common: Common,
-    /// Whose it is.
-    now: usize,
-    /// Of all: whether they were closed, whether there were pieces of either body.
-    closed: bool,
-    of: [bool; 2],
-    /// Areas at the lower and upper end of all heights.
+    outlines: &'a [Outline],
+    /// Of all, and areas there.
+    ends: [f64; 2],
     areas: [f64; 2],
 }
 
-impl Outlines {
-    /// The slices of a piece between two heights.
-    fn slices(&mut self, piece: usize, [low, high]: [f64; 2], last: bool, at: &[f64; WIDTH]) -> Eight {
-        if piece != self.now {
-            self.common.find_between([low, high]);
-            self.now = piece;
-            self.note();
-        }
-        let slices = self.common.slices(at);
-        let area = slices.areas()[WIDTH - 1];
-        if piece == 0 && at[WIDTH - 1] == low {
-            self.areas[0] = area;
-        } else if last && at[WIDTH - 1] == high {
-            self.areas[1] = area;
+impl adaptive::Slices for Slices<'_> {
+    fn sums<const N: usize>(
+        &mut self,
+        piece: usize,
+        heights: &[f64; WIDTH],
+        weights: &[[f64; WIDTH]; N],
+    ) -> Sampled<N> {
+        let slices = self.common.sums(&self.outlines[piece], heights, weights);
+        for (end, area) in self.ends.iter().zip(&mut self.areas) {
+            if heights[WIDTH - 1] == *end {
+                *area = slices.areas[WIDTH - 1];
+            }
         }
         slices
-    }
-    /// Takes note of an outline.
-    fn note(&mut self) {
-        self.closed &= self.common.is_closed();
-        let bodies = self.common.bodies();
-        self.of = [0, 1].map(|i| self.of[i] | bodies[i]);
     }
 }

@@ -44,46 +44,46 @@ impl Curve {
 impl Vertex {
     pub(super) const NONE: Self =
         Self::Moving { from: Place::new(0.0, 0.0), by: [Place::new(0.0, 0.0), Place::new(0.0, 0.0)] };
-    /// Where a curve of the first body crosses one of the second, next to a place; which of two crossings that is.
-    pub(super) fn crossing(first: &Curve, second: &Curve, near: Place) -> (Self, bool) {
+    /// Which of two crossings of a curve of the first body and one of the second is next to a place: the one to the left of the line's
+    /// normal or of the way to the second centre.
+    pub(super) fn is_left(first: &Curve, second: &Curve, near: Place) -> bool {
+        match (first, second) {
+            (Curve::Line { .. }, Curve::Line { .. }) => true,
+            (Curve::Line { normal, .. }, Curve::Circle { centre })
+            | (Curve::Circle { centre }, Curve::Line { normal, .. }) => cross(*normal, near - centre) > 0.0,
+            (Curve::Circle { centre }, Curve::Circle { centre: other }) => {
+                cross(other - centre, near - centre) > 0.0
+            }
+        }
+    }
+    /// Where a curve of the first body crosses one of the second.
+    pub(super) fn crossing(first: &Curve, second: &Curve, left: bool) -> Self {
+        let sign = if left { 1.0 } else { -1.0 };
         match (*first, *second) {
             (
                 Curve::Line { normal: n, offset, moves },
                 Curve::Line { normal: m, offset: other, moves: moves_too },
             ) => {
                 // n·x = p and m·x = q.
-                let (per, left) = (1.0 / cross(n, m), |v: Place| Place::new(-v.y, v.x));
-                let (per_p, per_q) = (left(m) * -per, left(n) * per);
-                let (from, by) = (per_p * offset + per_q * other, [per_p * moves, per_q * moves_too]);
-                (Self::Moving { from, by }, true)
+                let per = 1.0 / cross(n, m);
+                let (per_p, per_q) = (to_left(m) * -per, to_left(n) * per);
+                let from = per_p * offset + per_q * other;
+                Self::Moving { from, by: [per_p * moves, per_q * moves_too] }
             }
             (Curve::Line { normal, offset, moves }, Curve::Circle { centre }) => {
-                Self::on_circle(1, centre, normal, offset, moves, near)
+                let (above, along) = (offset - normal.dot(&centre), to_left(normal) * sign);
+                Self::OnCircle { round: 1, centre, normal, above, moves, along }
             }
             (Curve::Circle { centre }, Curve::Line { normal, offset, moves }) => {
-                Self::on_circle(0, centre, normal, offset, moves, near)
+                let (above, along) = (offset - normal.dot(&centre), to_left(normal) * sign);
+                Self::OnCircle { round: 0, centre, normal, above, moves, along }
             }
             (Curve::Circle { centre }, Curve::Circle { centre: other }) => {
                 let apart = (other - centre).norm();
                 let towards = (other - centre) / apart;
-                let left = Place::new(-towards.y, towards.x);
-                let sign = 1f64.copysign(left.dot(&(near - centre)));
-                (Self::Circles { centre, apart, towards, aside: left * sign }, sign > 0.0)
+                Self::Circles { centre, apart, towards, aside: to_left(towards) * sign }
             }
         }
-    }
-    fn on_circle(
-        round: usize,
-        centre: Place,
-        normal: Place,
-        offset: f64,
-        moves: f64,
-        near: Place,
-    ) -> (Self, bool) {
-        let along = Place::new(-normal.y, normal.x);
-        let sign = 1f64.copysign(along.dot(&(near - centre)));
-        let above = offset - normal.dot(&centre);
-        (Self::OnCircle { round, centre, normal, above, moves, along: along * sign }, sign > 0.0)
     }
     /// Its places in slices of these widths.
     #[inline(always)]
@@ -118,4 +118,8 @@ impl Vertex {
             }
         }
     }
+}
+
+fn to_left(v: Place) -> Place {
+    Place::new(-v.y, v.x)
 }

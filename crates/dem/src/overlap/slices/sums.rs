@@ -1,48 +1,58 @@
-//! What several slices add.
+//! Sums over slices.
 use super::lanes::{Lanes, Places, WIDTH};
 use crate::overlap::integrals::Integrals;
 use interfaces::Vector;
 use pulp::Simd;
 
-/// What slices add per height: the volume, then three components of the first moment, of the area and of its moment.
+/// Slices of a piece: their areas, and the sums of what they add by several rules.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Eight(pub(super) [[f64; WIDTH]; 10]);
-
-impl Default for Eight {
-    fn default() -> Self {
-        Self([[0.0; WIDTH]; 10])
-    }
+pub(super) struct Sampled<const N: usize> {
+    pub(super) areas: [f64; WIDTH],
+    pub(super) sums: [Integrals; N],
 }
 
-impl Eight {
-    /// Areas of the slices.
-    pub(super) fn areas(&self) -> &[f64; WIDTH] {
-        &self.0[0]
-    }
-    /// The sums over all slices, each times its weight.
-    pub(super) fn weighted(&self, weights: &[f64; WIDTH]) -> Integrals {
-        let [volume, x, y, z, n, m, l, p, q, r] = self.0.map(|values| {
-            let products: [f64; WIDTH] = std::array::from_fn(|i| values[i] * weights[i]);
-            let four: [f64; 4] = std::array::from_fn(|i| products[i] + products[i + 4]);
-            (four[0] + four[2]) + (four[1] + four[3])
-        });
-        let [first, area, moment] = [[x, y, z], [n, m, l], [p, q, r]].map(Vector::from);
-        Integrals { volume, first, area, moment }
-    }
-    /// A slice of this area at a height, whose first moment and whose surface's area lead along the slices' normal.
-    pub(super) fn set_upright(&mut self, slice: usize, area: f64, h: f64, upward: f64) {
-        (self.0[0][slice], self.0[3][slice], self.0[6][slice]) = (area, h * area, upward);
-    }
-    /// Slices that are computed at once, after `before` times as many.
+/// What slices add, summed up with the weights of `N` rules.
+pub(super) struct Weighted<'a, S: Simd, const N: usize> {
+    simd: S,
+    weights: &'a [[f64; WIDTH]; N],
+    areas: [f64; WIDTH],
+    /// The volume, then three components of the first moment, of the area and of its moment.
+    sums: [[S::f64s; 10]; N],
+}
+
+impl<'a, S: Simd, const N: usize> Weighted<'a, S, N> {
     #[inline(always)]
-    pub(super) fn set<S: Simd>(&mut self, before: usize, now: [S::f64s; 10]) {
-        for (values, now) in self.0.iter_mut().zip(now) {
-            S::as_mut_simd_f64s(values).0[before] = now;
+    pub(super) fn new(simd: S, weights: &'a [[f64; WIDTH]; N]) -> Self {
+        Self { simd, weights, areas: [0.0; WIDTH], sums: [[simd.splat_f64s(0.0); 10]; N] }
+    }
+    /// Adds slices that are computed at once, after `before` times as many.
+    #[inline(always)]
+    pub(super) fn add(&mut self, before: usize, slices: [S::f64s; 10]) {
+        S::as_mut_simd_f64s(&mut self.areas).0[before] = slices[0];
+        for (sums, weights) in self.sums.iter_mut().zip(self.weights) {
+            let weight = S::as_simd_f64s(weights).0[before];
+            for (sum, now) in sums.iter_mut().zip(slices) {
+                *sum = self.simd.mul_add_e_f64s(now, weight, *sum);
+            }
         }
     }
-    /// Leaves out a slice.
-    pub(super) fn forget(&mut self, slice: usize) {
-        self.0.iter_mut().for_each(|values| values[slice] = 0.0);
+    #[inline(always)]
+    pub(super) fn finish(self) -> Sampled<N> {
+        let mut sums = [Integrals::default(); N];
+        for (sums, parts) in sums.iter_mut().zip(&self.sums) {
+            let mut all = [0.0; 10];
+            for (sum, part) in all.iter_mut().zip(parts) {
+                *sum = self.simd.reduce_sum_f64s(*part);
+            }
+            let [volume, x, y, z, n, m, l, p, q, r] = all;
+            *sums = Integrals {
+                volume,
+                first: Vector::new(x, y, z),
+                area: Vector::new(n, m, l),
+                moment: Vector::new(p, q, r),
+            };
+        }
+        Sampled { areas: self.areas, sums }
     }
 }
 
@@ -136,7 +146,7 @@ impl<S: Simd> Sums<S> {
         all[7..].fill(h.all(0.0).raw());
         all
     }
-    /// What slices at these heights add, in the order of [`Eight`].
+    /// What slices at these heights add, in the order of [`Weighted`].
     #[inline(always)]
     pub(super) fn all(&self, h: Lanes<S>) -> [S::f64s; 10] {
         let (area, n) = (self.area, self.normal);

@@ -17,7 +17,8 @@ pub(super) struct Flat {
     ends: Ends,
 }
 
-/// A straight piece: where it starts, the way along it and how long it is, its curve and the corners that it runs between.
+/// A straight piece as the other sees it: where it starts, the way along it and how long it is, its curve and the corners that it runs
+/// between.
 struct Straight {
     start: Place,
     along: Place,
@@ -26,7 +27,7 @@ struct Straight {
     corners: [Stop; 2],
 }
 
-/// Half a circle: its curve and the corners that it runs between.
+/// Half a circle as the other sees it: its curve and the corners that it runs between.
 struct Arc {
     centre: Place,
     /// The way from there to its middle.
@@ -43,10 +44,12 @@ impl Flat {
     }
     /// Tells the pieces of the outline that lie within the other's: their curves, where they start and where they end.
     pub(super) fn within(&self, other: &Self, mut found: impl FnMut(usize, Stop, Stop)) {
+        // All along and across the other's axis.
+        let (centre, axis) = (other.of(self.centre - other.centre), other.of(self.axis));
         for (i, sign) in [(0, 1.0), (1, -1.0)] {
-            let along = self.axis * sign;
+            let along = axis * sign;
             let side = Place::new(along.y, -along.x) * self.width;
-            let (from, to) = (self.centre - along * self.half, self.centre + along * self.half);
+            let (from, to) = (centre - along * self.half, centre + along * self.half);
             let straight = Straight {
                 start: from + side,
                 along,
@@ -74,12 +77,14 @@ impl Flat {
     fn of(&self, v: Place) -> Place {
         Place::new(self.axis.dot(&v), cross(self.axis, v))
     }
-    fn world(&self, v: Place) -> Place {
-        Place::new(self.axis.x * v.x - self.axis.y * v.y, self.axis.y * v.x + self.axis.x * v.y)
+    /// Where a curve crosses one of this at a place along and across the axis.
+    fn crossing(&self, curve: usize, v: Place) -> Stop {
+        let from = Place::new(self.axis.x * v.x - self.axis.y * v.y, self.axis.y * v.x + self.axis.x * v.y);
+        Stop::Crossing { curve, near: self.centre + from }
     }
     /// Finds what of another's straight piece lies within.
     fn straight(&self, piece: &Straight, found: &mut impl FnMut(usize, Stop, Stop)) {
-        let (p, u) = (self.of(piece.start - self.centre), self.of(piece.along));
+        let (p, u) = (piece.start, piece.along);
         let q = p + u * piece.length;
         let long = if self.ends == Ends::Round { self.half + self.width } else { self.half };
         let beside = |p: f64, q: f64, half: f64| p.min(q) >= half || p.max(q) <= -half;
@@ -90,9 +95,8 @@ impl Flat {
         if from.max(0.0) >= to.min(piece.length) {
             return;
         }
-        let crossing = |t: f64, curve| Stop::Crossing { curve, near: piece.start + piece.along * t };
-        let start = if from > 0.0 { crossing(from, enters) } else { piece.corners[0] };
-        let end = if to < piece.length { crossing(to, leaves) } else { piece.corners[1] };
+        let start = if from > 0.0 { self.crossing(enters, p + u * from) } else { piece.corners[0] };
+        let end = if to < piece.length { self.crossing(leaves, p + u * to) } else { piece.corners[1] };
         found(piece.curve, start, end);
     }
     /// Where the line from a place along a unit vector, both given along and across the axis, enters and leaves, and through which curve.
@@ -136,7 +140,7 @@ impl Flat {
     /// Finds what of half a circle of another lies within.
     fn arc(&self, arc: &Arc, found: &mut impl FnMut(usize, Stop, Stop)) {
         let (r, w) = (arc.radius, self.width);
-        let (c, f) = (self.of(arc.centre - self.centre), self.of(arc.facing));
+        let (c, f) = (arc.centre, arc.facing);
         // Away from the core.
         let core = Place::new(c.x - c.x.clamp(-self.half, self.half), c.y);
         let reach = r + w;
@@ -209,15 +213,13 @@ impl Flat {
             }
         }
         let last = crossed.len() - 2;
-        let crossing =
-            |at: &(f64, Place, usize)| Stop::Crossing { curve: at.2, near: arc.centre + self.world(at.1) };
         // Within and outside by turns.
         let sum = if last == 0 { f } else { crossed[0].1 + crossed[1].1 };
         let mut within = self.contains(c + sum * (r / sum.norm()));
         for (i, w) in crossed.windows(2).enumerate() {
             if within {
-                let start = if i == 0 { arc.corners[0] } else { crossing(&w[0]) };
-                let end = if i == last { arc.corners[1] } else { crossing(&w[1]) };
+                let start = if i == 0 { arc.corners[0] } else { self.crossing(w[0].2, c + w[0].1) };
+                let end = if i == last { arc.corners[1] } else { self.crossing(w[1].2, c + w[1].1) };
                 found(arc.curve, start, end);
             }
             within = !within;
@@ -230,7 +232,8 @@ fn slab(half: f64, x: f64, u: f64, [low, high]: [usize; 2]) -> Option<[(f64, usi
     if u == 0.0 {
         return (x.abs() < half).then_some([(f64::NEG_INFINITY, low), (f64::INFINITY, high)]);
     }
-    let (middle, reach) = (-x / u, (half / u).abs());
+    let per = 1.0 / u;
+    let (middle, reach) = (-x * per, half * per.abs());
     let [first, last] = if u > 0.0 { [low, high] } else { [high, low] };
     Some([(middle - reach, first), (middle + reach, last)])
 }

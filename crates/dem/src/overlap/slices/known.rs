@@ -26,18 +26,18 @@ pub(super) fn integrate([mut a, mut b]: [SlicedTube; 2], tolerance: f64) -> Opti
         return None;
     }
     let touches = touches(&a, &b);
-    let common = Common::new(&a, &b);
+    let mut common = Common::new(&a, &b);
     let (sums, of) = if touches.heights().len() <= FEW {
-        between::<FEW>(common, &touches, tolerance)?
+        between::<FEW>(&mut common, &touches, tolerance)?
     } else {
-        between::<TOUCHES>(common, &touches, tolerance)?
+        between::<TOUCHES>(&mut common, &touches, tolerance)?
     };
     Some(Swept { sums, base, of })
 }
 
 /// The integrals from one of no more than `N` heights to the next, and whether pieces of the first and the second body's surface were met.
 fn between<const N: usize>(
-    mut common: Common,
+    common: &mut Common,
     touches: &Touches,
     tolerance: f64,
 ) -> Option<(Integrals, [bool; 2])> {
@@ -76,7 +76,7 @@ fn between<const N: usize>(
 
 /// Slices between two heights each.
 struct Slices<'a> {
-    common: Common,
+    common: &'a Common,
     outlines: &'a [Outline],
     /// Of all, and areas there.
     ends: [f64; 2],

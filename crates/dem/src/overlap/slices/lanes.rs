@@ -86,16 +86,17 @@ impl<S: Simd> Lanes<S> {
     pub(super) fn angle(self, cos: Self) -> (Self, Self) {
         let across = cos.abs();
         let (low, high) = (self.min(across), self.max(across).max(self.all(f64::MIN_POSITIVE)));
-        let t = low / high;
-        let turned = self.all(EIGHTH).if_less(t, (t - 1.0) / (t + 1.0), t);
+        // By an eighth less where the tangent is larger than that of half of it.
+        let limit = high * EIGHTH;
+        let turned = limit.if_less(low, low - high, low) / limit.if_less(low, low + high, high);
         let z = turned * turned;
         let mut sum = self.all(ARC_TANGENT[ARC_TANGENT.len() - 1]);
         for c in ARC_TANGENT[..ARC_TANGENT.len() - 1].iter().rev() {
             sum = sum.times_plus(z, *c);
         }
-        let first = sum * turned + self.all(EIGHTH).if_less(t, self.all(FRAC_PI_4), self.all(0.0));
+        let first = sum * turned + limit.if_less(low, self.all(FRAC_PI_4), self.all(0.0));
         let quarter = across.if_less(self, first.from(FRAC_PI_2), first);
-        let product = t / (t * t + 1.0);
+        let product = low * high / (low * low + high * high).max(self.all(f64::MIN_POSITIVE));
         let zero = self.all(0.0);
         (cos.if_less(zero, quarter.from(PI), quarter), cos.if_less(zero, -product, product))
     }

@@ -56,6 +56,7 @@ pub(super) enum Stop {
 }
 
 impl Common {
+    #[inline]
     pub(super) fn new(a: &SlicedTube, b: &SlicedTube) -> Self {
         let (tubes, curves) = ([*a, *b], [Curve::all(a), Curve::all(b)]);
         Self { tubes, curves, vertices: [Vertex::NONE; VERTICES], known: 0 }

@@ -9,7 +9,7 @@ use super::{Swept, adaptive};
 use crate::overlap::integrals::Integrals;
 
 /// Pieces of a range of heights that are few.
-const FEW: usize = 10;
+const FEW: usize = 16;
 /// How near to its ends roots are that a piece feels, as a share of its width.
 const NEAR: f64 = 0.2;
 /// Share of the mean area that slices at the ends have at most, by rounding.

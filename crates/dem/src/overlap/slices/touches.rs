@@ -34,7 +34,8 @@ pub(super) fn touches(a: &SlicedTube, b: &SlicedTube) -> Touches {
             }
         }
     }
-    touches.finish()
+    touches.finish();
+    touches
 }
 
 impl Touches {
@@ -48,7 +49,7 @@ impl Touches {
         }
     }
     /// Adds the ends, sorts, and takes those for one that rounding tells apart.
-    fn finish(mut self) -> Self {
+    fn finish(&mut self) {
         let [low, high] = self.range;
         self.heights[self.n] = (low, true);
         self.heights[self.n + 1] = (high, true);
@@ -66,7 +67,6 @@ impl Touches {
             }
         }
         self.n = n;
-        self
     }
 }
 
@@ -116,11 +116,13 @@ impl End {
             return;
         }
         let circle = Circle { across: y, along: k, own: r, above: up, radius: self.radius };
-        // Beyond the other's end in all of a sector, in which the cosine has no extremes.
+        // Beyond the other's end or beyond all heights in all of a sector, in which cosine and sine have no extremes.
         let reach = self.half + self.slack;
-        let beyond = |from: f64, to: f64| {
-            let (x, y) = (self.place(from).x, self.place(to).x);
-            x.min(y) > reach || x.max(y) < -reach
+        let range = touches.range.map(|h| h - self.height);
+        let beyond = |from: [f64; 2], to: [f64; 2]| {
+            let (x, y) = (self.place(from[0]).x, self.place(to[0]).x);
+            let (low, high) = (r * from[1].min(to[1]), r * from[1].max(to[1]));
+            x.min(y) > reach || x.max(y) < -reach || high < range[0] || low > range[1]
         };
         circle.roots(beyond, |[cos, sin]| {
             if self.place(cos).x.abs() <= reach {

@@ -7,20 +7,24 @@ mod circle;
 mod common;
 mod crossing;
 mod ends;
+mod flat;
 mod frame;
 mod heights;
 mod known;
+mod lanes;
 mod outline;
 mod piece;
 mod polyhedron;
 mod region;
 mod rules;
 mod slice;
+mod sums;
 mod sweep;
 #[cfg(test)]
 mod tests;
 mod touches;
 mod tube;
+mod vertex;
 
 use super::Overlap;
 use super::integrals::Integrals;

@@ -1,11 +1,13 @@
 //! A ball and a tube: slices across the tube's axis.
 use super::adaptive;
-use super::outline::segment;
+use super::lanes::{Lanes, Places, WIDTH};
 use super::piece::Piece;
+use super::sums::{Sampled, Sums, Weighted};
 use super::tube::{Ends, Tube};
 use crate::Overlap;
 use crate::overlap::integrals::Integrals;
 use interfaces::{Point, Vector};
+use pulp::{Arch, Simd, WithSimd};
 use std::f64::consts::{PI, TAU};
 
 /// Distances of the ball's centre from the axis that are taken for zero, as a share of the size.
@@ -112,7 +114,7 @@ impl BallInTube {
                 pieces[n] = Piece::between(w[0], w[1]);
                 n += 1;
             }
-            sums = adaptive::integrate::<BREAKS>(sums, &pieces[..n], tolerance, |h| self.slice(h));
+            sums = adaptive::integrate::<BREAKS>(sums, &pieces[..n], tolerance, &mut &*self);
         }
         (sums, met)
     }
@@ -205,26 +207,67 @@ impl BallInTube {
             Integrals { volume: area, first, ..Integrals::default() }
         }
     }
-    /// What a slice adds per height where discs cross.
-    fn slice(&self, h: f64) -> Integrals {
-        let ([ball2, tube2], d) = (self.squares(h), self.beside);
+}
+
+impl adaptive::Slices for &BallInTube {
+    fn sums<const N: usize>(
+        &mut self,
+        _: usize,
+        heights: &[f64; WIDTH],
+        weights: &[[f64; WIDTH]; N],
+    ) -> Sampled<N> {
+        Arch::new().dispatch(Crossing { pair: self, heights, weights })
+    }
+}
+
+/// Slices in which the discs cross, in the widest vectors that the processor has.
+struct Crossing<'a, const N: usize> {
+    pair: &'a BallInTube,
+    heights: &'a [f64; WIDTH],
+    weights: &'a [[f64; WIDTH]; N],
+}
+
+impl<const N: usize> WithSimd for Crossing<'_, N> {
+    type Output = Sampled<N>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Sampled<N> {
+        let mut sums = Weighted::new(simd, self.weights);
+        for (i, h) in S::as_simd_f64s(self.heights).0.iter().enumerate() {
+            sums.add(i, self.pair.slice(simd, Lanes::new(simd, *h)));
+        }
+        sums.finish()
+    }
+}
+
+impl BallInTube {
+    /// Slices in which the discs cross.
+    #[inline(always)]
+    fn slice<S: Simd>(&self, simd: S, h: Lanes<S>) -> [S::f64s; 10] {
+        let Self { ball, tube, straight, beside: d, .. } = self;
+        let zero = h.all(0.0);
+        let off = h - h.max(h.all(straight[0])).min(h.all(straight[1]));
+        let ball2 = ((h.all(*ball) - h) * (h + *ball)).max(zero);
+        let tube2 = ((h.all(*tube) - off) * (off + *tube)).max(zero);
         let (ball, tube) = (ball2.sqrt(), tube2.sqrt());
-        let product = (ball + tube - d) * (d - ball + tube) * (d + ball - tube) * (d + ball + tube);
-        if product <= 0.0 {
-            return if ball + tube <= d { Integrals::default() } else { self.disc(ball < tube, h) };
-        }
-        let half = product.sqrt() / (2.0 * d);
+        let (sum, less, far) = (ball + tube, ball - tube, h.all(*d));
+        // Heron's product.
+        let product = (sum - far) * (far - less) * (far + less) * (sum + far);
+        let half = product.max(zero).sqrt() * (0.5 / d);
         // The chord's distance from the ball's centre.
-        let near = 0.5 * (d + (ball - tube) * ((ball + tube) / d));
-        let [of_ball, of_tube] = [half.atan2(near), half.atan2(d - near)];
-        let (ball_part, tube_part) = (ball2 * segment(of_ball), tube2 * segment(of_tube));
+        let near = (far + less * sum * (1.0 / d)) * 0.5;
+        let [of_ball, of_tube] = [half.angle(near), half.angle(far - near)];
+        let ball_part = ball2 * of_ball.0.segment(of_ball.1);
+        let tube_part = tube2 * of_tube.0.segment(of_tube.1);
         let area = ball_part + tube_part;
-        Integrals {
-            volume: area,
+        Sums {
+            area,
             // The segments' own moments balance.
-            first: Vector::new(-d * tube_part, 0.0, h * area),
-            area: Vector::new(-2.0 * half, 0.0, 2.0 * of_ball * h),
-            moment: Vector::zeros(),
+            first: Places { x: tube_part * -d, y: zero },
+            normal: Places { x: half * -2.0, y: zero },
+            upward: of_ball.0 * h * 2.0,
+            ..Sums::zero(simd)
         }
+        .without_moment(h)
     }
 }

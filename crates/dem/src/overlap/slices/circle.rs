@@ -63,8 +63,8 @@ impl Circle {
         let second = self.own * (1.0 - self.along * self.along) * (cos - sin) * (cos + sin);
         2.0 * self.own * (second - self.above * sin - self.along * self.across * cos)
     }
-    /// Finds all places on the cylinder but those in sectors that need not be looked at, given by the cosines of their ends.
-    pub(super) fn roots(&self, skip: impl Fn(f64, f64) -> bool, mut found: impl FnMut([f64; 2])) {
+    /// Finds all places on the cylinder but those in sectors that need not be looked at, given by the places of their ends.
+    pub(super) fn roots(&self, skip: impl Fn([f64; 2], [f64; 2]) -> bool, mut found: impl FnMut([f64; 2])) {
         let first = self.above.abs() + (self.along * self.across).abs();
         let second = self.own * (1.0 - self.along * self.along).abs();
         // The largest second and third derivative.
@@ -75,7 +75,7 @@ impl Circle {
             let values = [last, self.value(next)];
             last = values[1];
             let ends = [Turned::new(i, *place), Turned::new(i + 1, next)];
-            if !skip(place[0], next[0]) {
+            if !skip(*place, next) {
                 self.within(ends, values, most, HALVINGS, &mut found);
             }
         }

@@ -1,305 +1,219 @@
 //! What slices of two tubes share.
-use super::outline::segment;
-use super::slice::{Place, cross};
-use super::tube::{Ends, SlicedTube};
-use crate::overlap::integrals::Integrals;
-use interfaces::Vector;
+use super::flat::Flat;
+use super::lanes::{Lanes, Places, WIDTH};
+use super::slice::Place;
+use super::sums::{Sampled, Sums, Weighted};
+use super::tube::SlicedTube;
+use super::vertex::{Curve, Vertex};
+use pulp::{Arch, Simd, WithSimd};
 
-/// Places where a circle crosses the outline of a tube's slice, at most.
-const CROSSINGS: usize = 8;
+/// Corners of a common outline and pieces, at most.
+const PIECES: usize = 16;
+/// Corners of both bodies, and two crossings of any curve of either.
+const VERTICES: usize = 40;
+/// Where outlines are looked for between two heights, one after the other until one is closed.
+const PLACES: [f64; 3] = [0.5, 0.43, 0.61];
 
-/// A tube in a slice: a rectangle, or all within a distance of a straight line.
-#[derive(Clone, Copy, Debug)]
-struct Flat {
-    centre: Place,
-    axis: Place,
-    half: f64,
-    width: f64,
-    /// −∂width/∂h.
-    slope: f64,
-    ends: Ends,
+/// Two tubes that are not parallel, and all places that were met where pieces of their slices' common outline end.
+pub(super) struct Common {
+    tubes: [SlicedTube; 2],
+    curves: [[Curve; 4]; 2],
+    vertices: [Vertex; VERTICES],
+    /// Those that are known, a bit each.
+    known: u64,
+}
+
+/// The outline of what slices share, the same from one height at which pieces of it come or go to the next: which pieces of both outlines
+/// lie within the other, and where these end.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Outline {
+    /// Vertices.
+    keys: [u8; PIECES],
+    /// How many pieces start in each less how many end there.
+    open: [i8; PIECES],
+    n: usize,
+    parts: [Part; PIECES],
+    m: usize,
+    full: bool,
 }
 
 /// A piece of an outline, counter-clockwise.
 #[derive(Clone, Copy, Default)]
 struct Part {
-    start: Place,
-    end: Place,
-    /// Of the circle; zero for straight pieces.
-    radius: f64,
-    centre: Place,
-    slope: f64,
-    first: bool,
+    body: u8,
+    curve: u8,
+    /// Places in the list of vertices.
+    start: u8,
+    end: u8,
 }
 
-/// Sums over the pieces of both outlines that lie within the other body, in any order: Green's theorem does not ask for one.
-#[derive(Default)]
-struct Sums {
-    /// The first piece's start, so that nothing cancels.
-    origin: Option<Place>,
-    area: f64,
-    /// ∫ (x − origin) dA.
-    moment: Place,
-    normals: Place,
-    upward: f64,
-    arm: Place,
-    turn: f64,
-    of: [bool; 2],
+/// Where a piece starts or ends: where its curve crosses another of the other's, or else the corner of its body at the end and on the
+/// side of these numbers.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Stop {
+    Corner { end: usize, side: usize },
+    Crossing { curve: usize, near: Place },
 }
 
-/// What a slice of two tubes that are not parallel adds per height: integrals over the region that they share, by Green's theorem over
-/// the pieces of both outlines within the other, and over the first one's pieces; whether there are pieces of the first and the second.
-pub(super) fn slice(a: &SlicedTube, b: &SlicedTube, h: f64) -> (Integrals, [bool; 2]) {
-    let (a, b) = (Flat::new(a, h), Flat::new(b, h));
-    let mut sums = Sums::default();
-    a.within(&b, true, &mut sums);
-    b.within(&a, false, &mut sums);
-    sums.integrals(h)
-}
-
-impl Flat {
-    fn new(tube: &SlicedTube, h: f64) -> Self {
-        let width = ((h - tube.low) * (tube.high - h)).max(0.0).sqrt();
-        // Finite where the slice is a line.
-        let slope = (h - 0.5 * (tube.low + tube.high)) / width.max(1e-100 * tube.radius);
-        Self { centre: tube.centre, axis: tube.axis, half: tube.half, width, slope, ends: tube.ends }
+impl Common {
+    #[inline]
+    pub(super) fn new(a: &SlicedTube, b: &SlicedTube) -> Self {
+        let (tubes, curves) = ([*a, *b], [Curve::all(a), Curve::all(b)]);
+        Self { tubes, curves, vertices: [Vertex::NONE; VERTICES], known: 0 }
     }
-    /// Coordinates along and across the axis.
-    fn of(&self, v: Place) -> Place {
-        Place::new(self.axis.dot(&v), cross(self.axis, v))
-    }
-    fn world(&self, v: Place) -> Place {
-        Place::new(self.axis.x * v.x - self.axis.y * v.y, self.axis.y * v.x + self.axis.x * v.y)
-    }
-    /// Adds the pieces of the outline that lie within the other's.
-    fn within(&self, other: &Self, first: bool, sums: &mut Sums) {
-        for sign in [1.0, -1.0] {
-            let along = self.axis * sign;
-            let side = Place::new(along.y, -along.x) * self.width;
-            let ends = [self.centre - along * self.half, self.centre + along * self.half];
-            let straight = Part { radius: 0.0, slope: self.slope, first, ..Part::default() };
-            sums.straight(ends[0] + side, along, 2.0 * self.half, other, straight);
-            match self.ends {
-                Ends::Flat => {
-                    let straight = Part { slope: 0.0, ..straight };
-                    sums.straight(
-                        ends[1] + side,
-                        Place::new(-along.y, along.x),
-                        2.0 * self.width,
-                        other,
-                        straight,
-                    );
-                }
-                Ends::Round => {
-                    let arc = Part {
-                        start: ends[1] + side,
-                        end: ends[1] - side,
-                        radius: self.width,
-                        centre: ends[1],
-                        slope: self.slope,
-                        first,
-                    };
-                    sums.arc(arc, along, other);
-                }
+    /// The outline between two heights.
+    pub(super) fn between(&mut self, [low, high]: [f64; 2]) -> Outline {
+        let mut outline = Outline::default();
+        for share in PLACES {
+            outline = Outline::default();
+            let h = low + (high - low) * share;
+            let [a, b] = [Flat::new(&self.tubes[0], h), Flat::new(&self.tubes[1], h)];
+            a.within(&b, |curve, from, to| outline.push(self, 0, curve, from, to));
+            b.within(&a, |curve, from, to| outline.push(self, 1, curve, from, to));
+            if outline.is_closed() {
+                break;
             }
         }
+        outline
     }
-    /// Where the line from a place along a unit vector, both given along and across the axis, enters and leaves.
-    fn chord(&self, p: Place, u: Place) -> Option<[f64; 2]> {
-        let mut ends = slab(self.width, p.y, u.y)?;
-        if self.ends == Ends::Flat {
-            let other = slab(self.half, p.x, u.x)?;
-            ends = [ends[0].max(other[0]), ends[1].min(other[1])];
-        } else {
-            for (t, sign) in ends.iter_mut().zip([-1.0, 1.0]) {
-                let x = if t.is_finite() { p.x + *t * u.x } else { *t * u.x };
-                if x.abs() > self.half {
-                    // The disc at that end.
-                    let from = p - Place::new(self.half.copysign(x), 0.0);
-                    let off = cross(u, from);
-                    let square = (self.width - off) * (self.width + off);
-                    if square < 0.0 {
-                        return None;
-                    }
-                    *t = sign * square.sqrt() - u.dot(&from);
+    /// The number of a vertex.
+    fn vertex(&mut self, body: usize, curve: usize, stop: Stop) -> usize {
+        let (first, second, near) = match stop {
+            Stop::Corner { end, side } => {
+                let key = body * 4 + end * 2 + side;
+                if self.known >> key & 1 == 0 {
+                    let tube = &self.tubes[body];
+                    let along = if end == 0 { tube.axis } else { -tube.axis };
+                    let right = Place::new(tube.axis.y, -tube.axis.x);
+                    let mut by = [Place::zeros(); 2];
+                    by[body] = if side == 0 { right } else { -right };
+                    self.vertices[key] = Vertex::Moving { from: tube.centre + along * tube.half, by };
+                    self.known |= 1 << key;
                 }
+                return key;
             }
+            Stop::Crossing { curve: other, near } if body == 0 => (curve, other, near),
+            Stop::Crossing { curve: other, near } => (other, curve, near),
+        };
+        let [p, q] = [&self.curves[0][first], &self.curves[1][second]];
+        let left = Vertex::is_left(p, q, near);
+        let key = 8 + 2 * (4 * first + second) + usize::from(left);
+        if self.known >> key & 1 == 0 {
+            self.vertices[key] = Vertex::crossing(p, q, left);
+            self.known |= 1 << key;
         }
-        (ends[0] < ends[1]).then_some(ends)
+        key
     }
-    /// Whether a place, given along and across the axis, is inside.
-    fn contains(&self, x: Place) -> bool {
-        let beyond = x.x.abs() - self.half;
-        if beyond <= 0.0 {
-            x.y.abs() < self.width
-        } else {
-            self.ends == Ends::Round && beyond * beyond + x.y * x.y < self.width * self.width
-        }
+    /// Sums over slices of an outline: integrals over the region that they share, by Green's theorem over the pieces of both outlines
+    /// within the other, in any order, and over the first one's pieces.
+    pub(super) fn sums<const N: usize>(
+        &self,
+        outline: &Outline,
+        heights: &[f64; WIDTH],
+        weights: &[[f64; WIDTH]; N],
+    ) -> Sampled<N> {
+        Arch::new().dispatch(Slices { common: self, outline, heights, weights })
     }
 }
 
-/// Where a coordinate that starts at `x` and changes by `u` is between −half and half.
-fn slab(half: f64, x: f64, u: f64) -> Option<[f64; 2]> {
-    if u == 0.0 {
-        return (x.abs() < half).then_some([f64::NEG_INFINITY, f64::INFINITY]);
+impl Outline {
+    pub(super) fn is_empty(&self) -> bool {
+        self.m == 0
     }
-    let (middle, reach) = (-x / u, (half / u).abs());
-    Some([middle - reach, middle + reach])
-}
-
-impl Sums {
-    /// Adds what of a straight piece lies within the other.
-    fn straight(&mut self, start: Place, along: Place, length: f64, other: &Flat, part: Part) {
-        let (p, u) = (other.of(start - other.centre), other.of(along));
-        let q = p + u * length;
-        let long = if other.ends == Ends::Round { other.half + other.width } else { other.half };
-        let beside = |p: f64, q: f64, half: f64| p.min(q) >= half || p.max(q) <= -half;
-        if beside(p.y, q.y, other.width) || beside(p.x, q.x, long) {
+    /// Whether each piece begins where one ends.
+    pub(super) fn is_closed(&self) -> bool {
+        !self.full && self.open[..self.n].iter().all(|open| *open == 0)
+    }
+    /// Whether there are pieces of the first and the second body.
+    pub(super) fn bodies(&self) -> [bool; 2] {
+        let of = |body| self.parts[..self.m].iter().any(|part| part.body == body);
+        [of(0), of(1)]
+    }
+    fn push(&mut self, common: &mut Common, body: usize, curve: usize, from: Stop, to: Stop) {
+        if self.n + 2 > PIECES || self.m == PIECES {
+            self.full = true;
             return;
         }
-        let Some([from, to]) = other.chord(p, u) else { return };
-        let (from, to) = (from.max(0.0), to.min(length));
-        if from < to {
-            self.add_line(start + along * from, start + along * to, to - from, &part);
-        }
+        let start = self.place(common.vertex(body, curve, from));
+        let end = self.place(common.vertex(body, curve, to));
+        self.open[start] += 1;
+        self.open[end] -= 1;
+        self.parts[self.m] =
+            Part { body: body as u8, curve: curve as u8, start: start as u8, end: end as u8 };
+        self.m += 1;
     }
-    /// Adds what of half a circle, on the side of its centre that `facing` tells, lies within the other.
-    fn arc(&mut self, arc: Part, facing: Place, other: &Flat) {
-        let (r, w) = (arc.radius, other.width);
-        let (c, f) = (other.of(arc.centre - other.centre), other.of(facing));
-        // Away from the other's core.
-        let core = Place::new(c.x - c.x.clamp(-other.half, other.half), c.y);
-        let reach = r + w;
-        let near = match other.ends {
-            Ends::Round => core.norm_squared() < reach * reach,
-            Ends::Flat => core.x.abs() < r && core.y.abs() < reach,
-        };
-        // How far the other reaches in front of the half circle's diameter.
-        let wide = if other.ends == Ends::Round { w } else { w * f.y.abs() };
-        let before = other.half * f.x.abs() - f.dot(&c) + wide;
-        if !near || r <= 0.0 || before <= 0.0 {
-            return;
+    /// Where a vertex is in the list; both pieces that meet there ask for it.
+    fn place(&mut self, key: usize) -> usize {
+        let key = key as u8;
+        if let Some(known) = self.keys[..self.n].iter().position(|k| *k == key) {
+            return known;
         }
-        // Crossings as places from the centre, in the order of the arc: its sine grows.
-        let (mut found, mut n) = ([(0.0, Place::zeros()); CROSSINGS + 2], 1);
-        found[0] = (-r, Place::new(f.y, -f.x) * r);
-        let mut cross_at = |v: Place| {
-            if v.dot(&f) > 0.0 && n <= CROSSINGS {
-                found[n] = (cross(f, v), v);
-                n += 1;
-            }
-        };
-        for sign in [1.0, -1.0] {
-            // The sides.
-            let off = sign * w - c.y;
-            if off.abs() < r {
-                let half = ((r - off) * (r + off)).sqrt();
-                for x in [half, -half] {
-                    if (c.x + x).abs() <= other.half {
-                        cross_at(Place::new(x, off));
-                    }
+        self.keys[self.n] = key;
+        self.n += 1;
+        self.n - 1
+    }
+}
+
+/// Slices of a common outline, in the widest vectors that the processor has.
+struct Slices<'a, const N: usize> {
+    common: &'a Common,
+    outline: &'a Outline,
+    heights: &'a [f64; WIDTH],
+    weights: &'a [[f64; WIDTH]; N],
+}
+
+impl<const N: usize> WithSimd for Slices<'_, N> {
+    type Output = Sampled<N>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Sampled<N> {
+        let mut sums = Weighted::new(simd, self.weights);
+        let mut places = [Places::splat(simd, Place::zeros()); PIECES];
+        for (i, h) in S::as_simd_f64s(self.heights).0.iter().enumerate() {
+            sums.add(i, self.common.slice(simd, self.outline, Lanes::new(simd, *h), &mut places));
+        }
+        sums.finish()
+    }
+}
+
+impl Common {
+    /// Slices at some heights; `places` are those of the vertices.
+    #[inline(always)]
+    fn slice<S: Simd>(
+        &self,
+        simd: S,
+        outline: &Outline,
+        h: Lanes<S>,
+        places: &mut [Places<S>; PIECES],
+    ) -> [S::f64s; 10] {
+        let [a, b] = &self.tubes;
+        let widths = [width(a, h), width(b, h)];
+        // −∂width/∂h, finite where the slice is a line.
+        let slope = (h - 0.5 * (a.low + a.high)) / widths[0].max(h.all(1e-100 * a.radius));
+        for (place, key) in places.iter_mut().zip(&outline.keys[..outline.n]) {
+            *place = self.vertices[usize::from(*key)].places(simd, widths);
+        }
+        let mut sums = Sums::zero(simd);
+        // So that nothing cancels.
+        let origin = places[0];
+        for part in &outline.parts[..outline.m] {
+            let ends = [places[usize::from(part.start)], places[usize::from(part.end)]];
+            let (body, first) = (usize::from(part.body), part.body == 0);
+            match self.curves[body][usize::from(part.curve)] {
+                Curve::Line { normal, moves, .. } => {
+                    sums.line(origin, ends, Places::splat(simd, normal), slope * moves, first);
+                }
+                Curve::Circle { centre } => {
+                    sums.arc(origin, ends, (Places::splat(simd, centre), widths[body]), slope, first);
                 }
             }
-            // The ends.
-            let end = sign * other.half;
-            if other.ends == Ends::Flat {
-                let off = end - c.x;
-                if off.abs() < r {
-                    let half = ((r - off) * (r + off)).sqrt();
-                    for y in [half, -half] {
-                        if (c.y + y).abs() <= w {
-                            cross_at(Place::new(off, y));
-                        }
-                    }
-                }
-                continue;
-            }
-            let way = Place::new(end, 0.0) - c;
-            let d = way.norm();
-            let product = (r + w - d) * (d - r + w) * (d + r - w) * (d + r + w);
-            if product > 0.0 && d > 0.0 {
-                let along = 0.5 * (d + (r - w) * ((r + w) / d));
-                let (u, half) = (way / d, product.sqrt() / (2.0 * d));
-                for half in [half, -half] {
-                    let v = u * along + Place::new(-u.y, u.x) * half;
-                    if (c.x + v.x) * sign > other.half {
-                        cross_at(v);
-                    }
-                }
-            }
         }
-        found[n] = (r, Place::new(-f.y, f.x) * r);
-        let found = &mut found[..=n];
-        // Few: each goes down to its place.
-        for i in 1..found.len() {
-            let mut j = i;
-            while j > 0 && found[j].0 < found[j - 1].0 {
-                found.swap(j, j - 1);
-                j -= 1;
-            }
-        }
-        let last = found.len() - 2;
-        for (i, w) in found.windows(2).enumerate() {
-            let (v, u) = (w[0].1, w[1].1);
-            let sum = if last == 0 { f } else { v + u };
-            let length = sum.norm();
-            if length > 0.0 && other.contains(c + sum * (r / length)) {
-                let place = |at: Place| arc.centre + other.world(at);
-                let start = if i == 0 { arc.start } else { place(v) };
-                let end = if i == last { arc.end } else { place(u) };
-                self.add_arc(&Part { start, end, ..arc });
-            }
-        }
+        sums.about(origin).all(h)
     }
-    /// Adds the triangle between the origin and a chord; both its ends from there, and its normal, as long.
-    fn chord(&mut self, start: Place, end: Place, first: bool) -> [Place; 3] {
-        let origin = *self.origin.get_or_insert(start);
-        self.of[usize::from(!first)] = true;
-        let (u, v) = (start - origin, end - origin);
-        let double = cross(u, v);
-        self.area += 0.5 * double;
-        self.moment += (u + v) * (double / 6.0);
-        [u, v, Place::new(v.y - u.y, u.x - v.x)]
-    }
-    fn add_line(&mut self, start: Place, end: Place, length: f64, part: &Part) {
-        let [.., normal] = self.chord(start, end, part.first);
-        if part.first {
-            let middle = 0.5 * (start + end);
-            self.normals += normal;
-            self.upward += part.slope * length;
-            self.arm += middle * (length * part.slope);
-            self.turn += cross(middle, normal);
-        }
-    }
-    fn add_arc(&mut self, part: &Part) {
-        let [u, v, normal] = self.chord(part.start, part.end, part.first);
-        let (r, square) = (part.radius, normal.norm_squared());
-        if square == 0.0 {
-            return;
-        }
-        let centre = part.centre - self.origin.unwrap_or_default();
-        // Twice the chord and twice its distance from the centre, times the chord.
-        let angle = square.atan2((u + v - centre * 2.0).dot(&normal));
-        let bulge = r * r * segment(angle);
-        self.area += bulge;
-        self.moment += centre * bulge + normal * (square / 12.0);
-        if part.first {
-            let length = 2.0 * r * angle;
-            self.normals += normal;
-            self.upward += part.slope * length;
-            self.arm += (part.centre * length + normal * r) * part.slope;
-            self.turn += cross(part.centre, normal);
-        }
-    }
-    fn integrals(&self, h: f64) -> (Integrals, [bool; 2]) {
-        let (area, n, arm) = (self.area, self.normals, self.arm);
-        let first = self.moment + self.origin.unwrap_or_default() * area;
-        let sums = Integrals {
-            volume: area,
-            first: Vector::new(first.x, first.y, h * area),
-            area: Vector::new(n.x, n.y, self.upward),
-            moment: Vector::new(arm.y - h * n.y, h * n.x - arm.x, self.turn),
-        };
-        (sums, self.of)
-    }
+}
+
+/// Of a tube's slices.
+#[inline(always)]
+fn width<S: Simd>(tube: &SlicedTube, h: Lanes<S>) -> Lanes<S> {
+    ((h - tube.low) * (h.all(tube.high) - h)).max(h.all(0.0)).sqrt()
 }

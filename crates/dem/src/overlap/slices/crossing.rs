@@ -1,10 +1,11 @@
 //! Straight parts of tubes that cross.
 use super::adaptive;
+use super::lanes::WIDTH;
 use super::piece::Piece;
+use super::sums::Sampled;
 use super::tube::Tube;
 use crate::Overlap;
 use crate::overlap::integrals::Integrals;
-use interfaces::Vector;
 
 /// Sine of the angle between axes below which their straight parts are not taken for crossing.
 const STEEP: f64 = 1e-3;
@@ -30,10 +31,12 @@ pub(super) fn overlap(a: &Tube, b: &Tube, tolerance: f64) -> Option<Overlap> {
     if low.is_nan() || high.is_nan() || low >= high {
         return None;
     }
-    let u = |h: f64| (a.radius - h) * (a.radius + h);
-    let v = |h: f64| (b.radius - (h - d)) * (b.radius + (h - d));
-    let widest = |square: &dyn Fn(f64) -> f64, middle: f64| square(middle.clamp(low, high)).max(0.0).sqrt();
-    let (most_u, most_v) = (widest(&u, 0.0), widest(&v, d));
+    // Half-widths where they are largest.
+    let widest = |radius: f64, axis: f64| {
+        let h = axis.clamp(low, high) - axis;
+        ((radius - h) * (radius + h)).max(0.0).sqrt()
+    };
+    let (most_u, most_v) = (widest(a.radius, 0.0), widest(b.radius, d));
     // Where the axes cross: a.at + s a.axis below b.at + t b.axis.
     let [along_a, along_b] = [a.axis.dot(&apart), b.axis.dot(&apart)];
     let per = 1.0 / (sin * sin);
@@ -45,13 +48,8 @@ pub(super) fn overlap(a: &Tube, b: &Tube, tolerance: f64) -> Option<Overlap> {
     }
     let base = 0.5 * (low + high);
     let piece = Piece::between((low, true), (high, true));
-    let sums = adaptive::integrate::<1>(Integrals::default(), &[piece], tolerance, |h| {
-        let [u, v] = [u(h), v(h)].map(|square| square.max(0.0).sqrt());
-        let volume = 4.0 / sin * u * v;
-        let first = Vector::new(0.0, 0.0, (h - base) * volume);
-        let upward = if u > 0.0 { 4.0 / sin * v * h / u } else { 0.0 };
-        Integrals { volume, first, area: Vector::new(0.0, 0.0, upward), moment: Vector::zeros() }
-    });
+    let mut strips = Strips { radii: [a.radius, b.radius], apart: d, per: 4.0 / sin, base };
+    let sums = adaptive::integrate::<1>(Integrals::default(), &[piece], tolerance, &mut strips);
     if sums.volume.is_nan() || sums.volume <= 0.0 {
         return None;
     }
@@ -64,4 +62,44 @@ pub(super) fn overlap(a: &Tube, b: &Tube, tolerance: f64) -> Option<Overlap> {
         gradient,
         moment: n * (sums.volume * cos / sin),
     })
+}
+
+/// Strips that two tubes are in slices along both.
+struct Strips {
+    radii: [f64; 2],
+    /// Height of the second axis above the first.
+    apart: f64,
+    /// What they share, per half-width of either.
+    per: f64,
+    /// Where moments are counted from.
+    base: f64,
+}
+
+impl adaptive::Slices for Strips {
+    fn sums<const N: usize>(
+        &mut self,
+        _: usize,
+        heights: &[f64; WIDTH],
+        weights: &[[f64; WIDTH]; N],
+    ) -> Sampled<N> {
+        let [r, s] = self.radii;
+        let (mut areas, mut upward) = ([0.0; WIDTH], [0.0; WIDTH]);
+        for (i, h) in heights.iter().enumerate() {
+            let above = h - self.apart;
+            let u = ((r - h) * (r + h)).max(0.0).sqrt();
+            let v = ((s - above) * (s + above)).max(0.0).sqrt();
+            areas[i] = self.per * u * v;
+            upward[i] = if u > 0.0 { self.per * v * h / u } else { 0.0 };
+        }
+        let mut sums = [Integrals::default(); N];
+        for (sums, weights) in sums.iter_mut().zip(weights) {
+            for (i, weight) in weights.iter().enumerate() {
+                let part = areas[i] * weight;
+                sums.volume += part;
+                sums.first.z += (heights[i] - self.base) * part;
+                sums.area.z += upward[i] * weight;
+            }
+        }
+        Sampled { areas, sums }
+    }
 }

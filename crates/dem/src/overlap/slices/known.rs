@@ -1,12 +1,15 @@
 //! Tubes whose axes are not parallel: heights at which slices change are known.
+use super::common::{Common, Outline};
+use super::lanes::WIDTH;
 use super::piece::Piece;
-use super::touches::{TOUCHES, touches};
+use super::sums::Sampled;
+use super::touches::{TOUCHES, Touches, touches};
 use super::tube::SlicedTube;
-use super::{Swept, adaptive, common};
+use super::{Swept, adaptive};
 use crate::overlap::integrals::Integrals;
 
 /// Pieces of a range of heights that are few.
-const FEW: usize = 10;
+const FEW: usize = 16;
 /// How near to its ends roots are that a piece feels, as a share of its width.
 const NEAR: f64 = 0.2;
 /// Share of the mean area that slices at the ends have at most, by rounding.
@@ -23,40 +26,76 @@ pub(super) fn integrate([mut a, mut b]: [SlicedTube; 2], tolerance: f64) -> Opti
         return None;
     }
     let touches = touches(&a, &b);
-    let (mut pieces, mut n) = ([Piece::default(); TOUCHES], 0);
-    // Slices have nothing in common but before some height and beyond some other.
-    let mut heights = touches.heights();
-    let empty = |h: &[(f64, bool)]| common::slice(&a, &b, 0.5 * (h[0].0 + h[1].0)).0.volume <= 0.0;
-    while heights.len() > 1 && empty(heights) {
-        heights = &heights[1..];
-    }
-    while heights.len() > 2 && empty(&heights[heights.len() - 2..]) {
-        heights = &heights[..heights.len() - 1];
-    }
-    for i in 1..heights.len() {
-        let ends = [heights[i - 1].0, heights[i].0];
+    let mut common = Common::new(&a, &b);
+    let (sums, of) = if touches.heights().len() <= FEW {
+        between::<FEW>(&mut common, &touches, tolerance)?
+    } else {
+        between::<TOUCHES>(&mut common, &touches, tolerance)?
+    };
+    Some(Swept { sums, base, of })
+}
+
+/// The integrals from one of no more than `N` heights to the next, and whether pieces of the first and the second body's surface were met.
+fn between<const N: usize>(
+    common: &mut Common,
+    touches: &Touches,
+    tolerance: f64,
+) -> Option<(Integrals, [bool; 2])> {
+    let heights = touches.heights();
+    let (mut pieces, mut outlines, mut n) = ([Piece::default(); N], [Outline::default(); N], 0);
+    for w in heights.windows(2) {
+        let (low, high) = (w[0].0, w[1].0);
+        let outline = common.between([low, high]);
+        if outline.is_empty() {
+            // Slices have nothing in common but before some height and beyond some other.
+            if n > 0 { break } else { continue }
+        }
         // A root that ends just beyond is felt, too.
-        let near =
-            |h: f64| (touches.heights().iter()).any(|t| t.1 && (t.0 - h).abs() <= NEAR * (ends[1] - ends[0]));
-        let [low, high] = ends.map(|h| (h, near(h)));
-        pieces[n] = Piece::between(low, high);
+        let near = |h: f64| heights.iter().any(|t| t.1 && (t.0 - h).abs() <= NEAR * (high - low));
+        pieces[n] = Piece::between((low, near(low)), (high, near(high)));
+        outlines[n] = outline;
         n += 1;
     }
-    let mut of = [false; 2];
-    let slice = |h: f64| {
-        let (sums, pieces) = common::slice(&a, &b, h);
-        of = [of[0] | pieces[0], of[1] | pieces[1]];
-        sums
-    };
-    let sums = if n <= FEW {
-        adaptive::integrate::<FEW>(Integrals::default(), &pieces[..n], tolerance, slice)
-    } else {
-        adaptive::integrate::<TOUCHES>(Integrals::default(), &pieces[..n], tolerance, slice)
-    };
+    let (pieces, outlines) = (&pieces[..n], &outlines[..n]);
+    let [low, high] = [pieces.first()?.ends[0], pieces.last()?.ends[1]];
+    if !outlines.iter().all(Outline::is_closed) {
+        return None;
+    }
+    let mut slices = Slices { common, outlines, ends: [low, high], areas: [f64::NAN; 2] };
+    let sums = adaptive::integrate::<N>(Integrals::default(), pieces, tolerance, &mut slices);
+    if n == 1 {
+        slices.areas[1] = slices.common.sums(&outlines[0], &[high; WIDTH], &[]).areas[0];
+    }
     // What is left out has nothing: else a height was missing.
-    let most = LEFT * sums.volume / (heights[heights.len() - 1].0 - heights[0].0);
-    let closed = [heights[0].0, heights[heights.len() - 1].0]
-        .iter()
-        .all(|h| common::slice(&a, &b, *h).0.volume <= most);
-    (sums.volume > 0.0 && closed).then_some(Swept { sums, base, of })
+    let most = LEFT * sums.volume / (high - low);
+    let ended = slices.areas.iter().all(|area| *area <= most);
+    let of =
+        outlines.iter().map(Outline::bodies).fold([false; 2], |of, now| [of[0] | now[0], of[1] | now[1]]);
+    (sums.volume > 0.0 && ended).then_some((sums, of))
+}
+
+/// Slices between two heights each.
+struct Slices<'a> {
+    common: &'a Common,
+    outlines: &'a [Outline],
+    /// Of all, and areas there.
+    ends: [f64; 2],
+    areas: [f64; 2],
+}
+
+impl adaptive::Slices for Slices<'_> {
+    fn sums<const N: usize>(
+        &mut self,
+        piece: usize,
+        heights: &[f64; WIDTH],
+        weights: &[[f64; WIDTH]; N],
+    ) -> Sampled<N> {
+        let slices = self.common.sums(&self.outlines[piece], heights, weights);
+        for (end, area) in self.ends.iter().zip(&mut self.areas) {
+            if heights[WIDTH - 1] == *end {
+                *area = slices.areas[WIDTH - 1];
+            }
+        }
+        slices
+    }
 }

@@ -284,7 +284,7 @@ impl Curve {
 }
 
 /// α − sin α cos α, the area of the segment that spans 2α of the unit circle.
-pub(super) fn segment(angle: f64) -> f64 {
+fn segment(angle: f64) -> f64 {
     if angle > 0.25 {
         return angle - angle.sin() * angle.cos();
     }

@@ -264,7 +264,7 @@ impl<F: FnMut(f64) -> Section> Sweep<F> {
 }
 
 /// What a slice at the height `h` adds per height; n dA = (n ds, t ds) dh.
-fn per_height(h: f64, s: &Section) -> Integrals {
+pub(super) fn per_height(h: f64, s: &Section) -> Integrals {
     let join = |x: Place, z: f64| Vector::new(x.x, x.y, z);
     Integrals {
         volume: s.area,

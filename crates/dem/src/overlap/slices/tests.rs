@@ -1,6 +1,7 @@
 //! Slices against closed forms, integrals over other slices, polyhedra, and properties that every overlap has.
 mod exact;
 mod independent;
+mod lanes;
 mod properties;
 
 use crate::{Capsule, ConvexPolyhedron, Cuboid, Cylinder, Overlap, OverlapSolver, Route, Shape, Sphere};

@@ -34,7 +34,8 @@ pub(super) fn touches(a: &SlicedTube, b: &SlicedTube) -> Touches {
             }
         }
     }
-    touches.finish()
+    touches.finish();
+    touches
 }
 
 impl Touches {
@@ -48,7 +49,7 @@ impl Touches {
         }
     }
     /// Adds the ends, sorts, and takes those for one that rounding tells apart.
-    fn finish(mut self) -> Self {
+    fn finish(&mut self) {
         let [low, high] = self.range;
         self.heights[self.n] = (low, true);
         self.heights[self.n + 1] = (high, true);
@@ -66,7 +67,6 @@ impl Touches {
             }
         }
         self.n = n;
-        self
     }
 }
 
@@ -116,11 +116,13 @@ impl End {
             return;
         }
         let circle = Circle { across: y, along: k, own: r, above: up, radius: self.radius };
-        // Beyond the other's end in all of a sector, in which the cosine has no extremes.
+        // Beyond the other's end or beyond all heights in all of a sector, in which cosine and sine have no extremes.
         let reach = self.half + self.slack;
-        let beyond = |from: f64, to: f64| {
-            let (x, y) = (self.place(from).x, self.place(to).x);
-            x.min(y) > reach || x.max(y) < -reach
+        let range = touches.range.map(|h| h - self.height);
+        let beyond = |from: [f64; 2], to: [f64; 2]| {
+            let (x, y) = (self.place(from[0]).x, self.place(to[0]).x);
+            let (low, high) = (r * from[1].min(to[1]), r * from[1].max(to[1]));
+            x.min(y) > reach || x.max(y) < -reach || high < range[0] || low > range[1]
         };
         circle.roots(beyond, |[cos, sin]| {
             if self.place(cos).x.abs() <= reach {
@@ -136,10 +138,10 @@ impl End {
                 let cos = (end - self.centre.x) / (self.own * self.left.x);
                 if cos.abs() < 1.0 {
                     let sin = ((1.0 - cos) * (1.0 + cos)).sqrt();
-                    let y = self.place(cos).y;
+                    let (y, reach) = (self.place(cos).y, self.radius + self.slack);
                     for sin in [sin, -sin] {
                         let up = self.above + self.own * sin;
-                        if y.hypot(up) <= self.radius + self.slack {
+                        if y * y + up * up <= reach * reach {
                             touches.push(self.height + self.own * sin, false);
                         }
                     }
@@ -152,7 +154,7 @@ impl End {
             let s = (self.radius - self.own) * (self.radius + self.own)
                 - from.norm_squared()
                 - self.above * self.above;
-            let most = p.hypot(q);
+            let most = (p * p + q * q).sqrt();
             if s.abs() < most {
                 let (u, v, c) = (p / most, q / most, s / most);
                 let root = ((1.0 - c) * (1.0 + c)).sqrt();
@@ -168,7 +170,7 @@ impl End {
     /// Places across and above the centre where its circle crosses one around a place this far across.
     fn circles(&self, across: f64) -> [Option<[f64; 2]>; 2] {
         let (r, w) = (self.own, self.radius);
-        let d = across.hypot(self.above);
+        let d = (across * across + self.above * self.above).sqrt();
         let product = (r + w - d) * (d - r + w) * (d + r - w) * (d + r + w);
         if product <= 0.0 || d == 0.0 {
             return [None; 2];
@@ -194,11 +196,11 @@ impl End {
         for sign in [1.0, -1.0] {
             let end = Place::new(sign * self.half, 0.0);
             if self.ends == Ends::Flat {
-                let off = end.x - self.centre.x;
+                let (off, y, reach) = (end.x - self.centre.x, self.centre.y, self.radius + self.slack);
                 if off.abs() < self.own && off * self.out.x >= -self.slack {
                     let up = ((self.own - off) * (self.own + off)).sqrt();
                     for up in [up, -up] {
-                        if self.centre.y.hypot(self.above + up) <= self.radius + self.slack {
+                        if y * y + (self.above + up) * (self.above + up) <= reach * reach {
                             touches.push(self.height + up, true);
                         }
                     }

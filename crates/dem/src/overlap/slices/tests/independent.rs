@@ -1,4 +1,10 @@
 //! Balls, capsules and cylinders by their own ways against the sweep that knows nothing but slices.
+use super::super::common::Common;
+use super::super::lanes::WIDTH;
+use super::super::region::Region;
+use super::super::slice::Slice;
+use super::super::sweep::per_height;
+use super::super::touches::touches;
 use super::super::{Frame, STEEP, Slices, known, tube_of};
 use super::*;
 use crate::draw::Draw;
@@ -97,6 +103,59 @@ fn all_is_smooth_between_known_heights() {
         errors.sort_by(f64::total_cmp);
         assert!(errors[200] < 2e-5 && errors[396] < 2e-4, "{} {}", errors[200], errors[396]);
     }
+}
+
+/// Slices by the outline that is the same from one known height to the next, against outlines that are cut for each of them.
+#[test]
+fn outlines_are_the_same_between_known_heights() {
+    let (mut draw, mut region, mut several) = (Draw(7), Region::default(), 0);
+    let [mut one, mut two] = [Slice::default(), Slice { body: 1, ..Slice::default() }];
+    for round in 0..900 {
+        let (a, at_a, b, at_b) = pair(&mut draw, [2, 3, 5][round % 3]);
+        let [first, second] = [(&a, at_a), (&b, at_b)].map(|(s, at)| tube_of(&s.form(), &at).unwrap());
+        let across = first.axis.cross(&second.axis);
+        // Where axes are all but parallel places along them are rounded by more.
+        if across.norm() < 0.05 {
+            continue;
+        }
+        let frame = Frame::new(at_a.position, first.axis, across);
+        let tubes = [first.sliced(&frame), second.sliced(&frame)];
+        let size = a.bounding_radius().min(b.bounding_radius());
+        let reach = a.bounding_radius() + b.bounding_radius();
+        let touches = touches(&tubes[0], &tubes[1]);
+        let mut common = Common::new(&tubes[0], &tubes[1]);
+        for w in touches.heights().windows(2) {
+            let (low, width) = (w[0].0, w[1].0 - w[0].0);
+            let outline = common.between([low, low + width]);
+            if width < 1e-6 * size || outline.is_empty() {
+                continue;
+            }
+            assert!(outline.is_closed(), "{round}");
+            several += 1;
+            let heights =
+                std::array::from_fn(|i| low + width * [0.03, 0.1, 0.3, 0.45, 0.6, 0.8, 0.9, 0.97][i]);
+            for i in 0..WIDTH {
+                let weights = std::array::from_fn(|j| f64::from(u8::from(i == j)));
+                let found = common.sums(&outline, &heights, &[weights]).sums[0];
+                tubes[0].slice(heights[i], &mut one);
+                tubes[1].slice(heights[i], &mut two);
+                let section = region.section(&one, &two, 1e-15 * reach);
+                let exact = per_height(heights[i], &section);
+                let near = |x: f64, y: f64, unit: f64| {
+                    let most = 1e-9 * unit * (1.0 + reach / size);
+                    assert!((x - y).abs() <= most, "{round} {i}: {found:?} {exact:?}");
+                };
+                near(found.volume, exact.volume, size * size);
+                let slope = 1.0 + one.slope.abs().max(one.sides.first().map_or(0.0, |side| side.slope.abs()));
+                for k in 0..3 {
+                    near(found.first[k], exact.first[k], size * size * reach);
+                    near(found.area[k], exact.area[k], size * slope);
+                    near(found.moment[k], exact.moment[k], size * reach * slope);
+                }
+            }
+        }
+    }
+    assert!(several > 1500, "{several}");
 }
 
 /// Axes at a right angle, where lines of both outlines are parallel: against columns.

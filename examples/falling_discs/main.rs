@@ -120,7 +120,7 @@ fn fall<F: Forcing>(
     } else {
         let files = FileOutput::new(&cli.out)?;
         // What an earlier run left there is not this run's.
-        for old in ["state.bin", "result.json", "summary.png"] {
+        for old in ["state.bin", "state.bin.previous", "result.json", "summary.png"] {
             let _ = std::fs::remove_file(cli.out.join(old));
         }
         files

@@ -62,6 +62,27 @@ fn n_steps_are_k_and_then_n_minus_k() {
     });
 }
 
+/// The state before the last is kept, and offered when the last one is damaged.
+#[test]
+fn an_older_state_is_at_hand() {
+    let path = scratch("older.bin");
+    let mut fall = build(false);
+    fall.step(1e-4).unwrap();
+    coupling::save(&path, &fall).unwrap();
+    let first = bits(&fall);
+    fall.step(1e-4).unwrap();
+    coupling::save(&path, &fall).unwrap();
+    coupling::load(&path, &mut fall).unwrap();
+    assert!(bits(&fall) != first);
+    std::fs::write(&path, b"nothing").unwrap();
+    let Err(CheckpointError::Corrupt { older: Some(older), .. }) = coupling::load(&path, &mut fall) else {
+        panic!("the older state is not offered");
+    };
+    assert_eq!(older, coupling::previous(&path));
+    coupling::load(&older, &mut fall).unwrap();
+    assert!(bits(&fall) == first);
+}
+
 #[test]
 fn a_damaged_or_foreign_state_is_refused() {
     let path = scratch("damaged.bin");

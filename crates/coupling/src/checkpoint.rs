@@ -19,16 +19,32 @@ pub enum CheckpointError {
         source: io::Error,
     },
     /// The file is not a state, is cut off, or was changed.
-    #[error("{} is not a whole saved state ({what}); restart from an older one or from the beginning", path.display())]
+    #[error("{} is not a whole saved state ({what}); {}", path.display(), remedy(older))]
     Corrupt {
         /// The file.
         path: PathBuf,
         /// What is wrong.
         what: &'static str,
+        /// The state saved before it, if there is one.
+        older: Option<PathBuf>,
     },
     /// The state belongs to another set-up.
     #[error(transparent)]
     Mismatch(#[from] RestartError),
+}
+
+fn remedy(older: &Option<PathBuf>) -> String {
+    match older {
+        Some(older) => format!("the one saved before it is {}: load that", older.display()),
+        None => "there is no older one beside it: start from the beginning".into(),
+    }
+}
+
+/// Where the state is that [`save`] found under the name `path` when it wrote a new one.
+pub fn previous(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".previous");
+    path.with_file_name(name)
 }
 
 /// 64-bit FNV-1a.
@@ -37,7 +53,7 @@ fn checksum(bytes: &[u8]) -> u64 {
 }
 
 /// Writes the state of `of` to `path`: first beside it, then renamed, so that a state of that name
-/// is always whole.
+/// is always whole. The one that was there before is kept as [`previous`].
 ///
 /// # Errors
 /// [`CheckpointError::Io`].
@@ -55,6 +71,12 @@ pub fn save(path: &Path, of: &impl Checkpoint) -> Result<(), CheckpointError> {
         let mut file = std::fs::File::create(&beside)?;
         file.write_all(&bytes)?;
         file.sync_all()?;
+        if path.exists() {
+            // A second name, so that there is a state under the first at any time; a copy where files cannot have two.
+            let older = previous(path);
+            let _ = std::fs::remove_file(&older);
+            std::fs::hard_link(path, &older).or_else(|_| std::fs::copy(path, &older).map(drop))?;
+        }
         std::fs::rename(&beside, path)
     };
     write().map_err(|source| CheckpointError::Io { path: path.into(), source })
@@ -63,9 +85,10 @@ pub fn save(path: &Path, of: &impl Checkpoint) -> Result<(), CheckpointError> {
 /// Reads the state that [`save`] wrote.
 ///
 /// # Errors
-/// [`CheckpointError`] when the file cannot be read, is not whole, or belongs to another set-up.
+/// [`CheckpointError`] when the file cannot be read, is not whole (it then names the one saved before), or belongs to another set-up.
 pub fn load(path: &Path, into: &mut impl Checkpoint) -> Result<(), CheckpointError> {
-    let corrupt = |what| CheckpointError::Corrupt { path: path.into(), what };
+    let older = || Some(previous(path)).filter(|older| older.exists());
+    let corrupt = |what| CheckpointError::Corrupt { path: path.into(), what, older: older() };
     let mut bytes = Vec::new();
     std::fs::File::open(path)
         .and_then(|mut f| f.read_to_end(&mut bytes))

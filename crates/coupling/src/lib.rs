@@ -17,7 +17,7 @@ mod run;
 mod simulation;
 mod strategy;
 
-pub use checkpoint::{CheckpointError, load, save};
+pub use checkpoint::{CheckpointError, load, previous, save};
 pub use error::CouplingError;
 pub use ledger::{Ledger, LedgerReport};
 pub use output::FileOutput;

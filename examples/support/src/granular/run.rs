@@ -148,7 +148,7 @@ pub fn run(
         history = History::resume(&motion, columns, clock.row + 1)?;
         album = Album::new(out, !options.no_images, vtk, outlines, Some(time_of(clock.row)))?;
     } else {
-        for old in ["state.bin", "bodies.csv", "summary.png", "result.json"] {
+        for old in ["state.bin", "state.bin.previous", "bodies.csv", "summary.png", "result.json"] {
             let _ = std::fs::remove_file(out.join(old));
         }
         history = History::new(&motion, columns)?;

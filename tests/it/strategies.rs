@@ -1,5 +1,7 @@
 //! All ways to couple flow and bodies keep the same books and agree where they are stable.
 use crate::with_threads;
+use example_support::free_body::{FreeBody, Speeds};
+use example_support::rock::Rock;
 use example_support::scene::{FLUID, Scene};
 use siltflow::coupling::{
     self, Explicit, Iterated, Ledger, LedgerReport, OneSolve, Schedule, Simulation, Strategy,
@@ -77,5 +79,38 @@ fn iterations_agree_in_three_rounds() {
         };
         steps(10);
         assert_eq!(allocation_counter::measure(|| steps(10)).count_total, 0);
+    });
+}
+
+/// A sphere and a rock of a thousandth and a hundred times the fluid's density, coarse, in steps as long as they may be: one pressure solution per step says
+/// the same as iterations. Measured: 6.3e-3 apart at most.
+#[test]
+fn one_solution_does_at_any_density_ratio() {
+    with_threads(1, || {
+        let speed = |body: &FreeBody, strategy: Option<Iterated>| {
+            let schedule = Schedule { end: 3.0, intervals: 3, courant: 0.9, ..Schedule::default() };
+            let (mut speeds, stop) = (Speeds::default(), AtomicBool::new(false));
+            let ended = match strategy {
+                None => coupling::run(
+                    &mut body.build(OneSolve::default()).unwrap(),
+                    &schedule,
+                    &mut speeds,
+                    &stop,
+                ),
+                Some(s) => coupling::run(&mut body.build(s).unwrap(), &schedule, &mut speeds, &stop),
+            };
+            ended.unwrap();
+            speeds.at(3.0).unwrap().z
+        };
+        let rock = FreeBody::rock(&Rock::new(3).mesh(2).unwrap()).unwrap();
+        for ratio in [1e-3, 1e2] {
+            for shape in [FreeBody::sphere().unwrap(), rock.clone()] {
+                let body = FreeBody { shape, per_diameter: 6, ..FreeBody::new(ratio).unwrap() };
+                let (one, iterated) = (speed(&body, None), speed(&body, Some(Iterated::default())));
+
+                assert!((one / iterated - 1.0).abs() < 1e-2, "{ratio}: {one} {iterated}");
+                assert!(one * (1.0 - ratio) > 0.0, "{ratio} moves by {one}");
+            }
+        }
     });
 }

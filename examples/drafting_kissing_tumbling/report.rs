@@ -26,25 +26,25 @@ macro_rules! published {
 
 const QUANTITIES: [Quantity; 5] = [
     Quantity {
-        name: "distance sunk from the top",
+        name: "way from the top",
         unit: "cm",
         of: |s| 100.0 * (BOX[1] - s.position[1]),
         published: published!("streamwise_position"),
     },
     Quantity {
-        name: "velocity along gravity",
+        name: "velocity down",
         unit: "cm/s",
         of: |s| -100.0 * s.velocity[1],
         published: published!("streamwise_velocity"),
     },
     Quantity {
-        name: "distance from the middle line",
+        name: "way aside",
         unit: "cm",
         of: |s| 100.0 * (s.position[0] - 0.5 * BOX[0]),
         published: published!("lateral_position"),
     },
     Quantity {
-        name: "velocity across",
+        name: "velocity aside",
         unit: "cm/s",
         of: |s| 100.0 * s.velocity[0],
         published: published!("lateral_velocity"),
@@ -199,12 +199,12 @@ pub(crate) fn two(
         .collect();
     let gap = |c: Vec<(f64, f64)>| c.into_iter().map(|(t, d)| (t, d - 1.0)).collect();
     let curve = Curve { label: String::new(), line: gap(apart), points: gap(published_separation()) };
-    panels.push(Panel { x: "t in s".into(), y: "gap between the discs in d".into(), curves: vec![curve] });
+    panels.push(Panel { x: "t in s".into(), y: "gap between discs in d".into(), curves: vec![curve] });
     figure(record, plan, (&panels, 2), ["computed", "Uhlmann (2005)"])
 }
 
-/// Largest Reynolds number that others found of the single disc: Glowinski et al. 17.27 to 17.45, Wan & Turek 17.15 to 17.42, by the grid.
-const PUBLISHED_REYNOLDS: [f64; 2] = [17.15, 17.45];
+/// Largest Reynolds number ρ_s U d/μ, with the disc's density, that others found of the single disc: Wan & Turek 17.15 to 17.42, by the grid.
+const PUBLISHED_REYNOLDS: [f64; 2] = [17.15, 17.42];
 
 /// One disc.
 pub(crate) fn one(
@@ -217,9 +217,9 @@ pub(crate) fn one(
     let states = record.motion.bodies.first().map_or(&[][..], Vec::as_slice);
     let fastest = states.iter().max_by(|a, b| a.velocity[1].abs().total_cmp(&b.velocity[1].abs()));
     let Some(fastest) = fastest else { return Ok(()) };
-    let reynolds = fastest.velocity[1].hypot(fastest.velocity[0]) * DIAMETER / scene.viscosity;
+    let reynolds = scene.density_ratio * fastest.velocity[1].hypot(fastest.velocity[0]) * DIAMETER / scene.viscosity;
     let landed = passes(&record.motion.over_time(0, |s| s.position[1]), 0.5 * DIAMETER + scene.spacing());
-    t.row("largest Reynolds number", number(reynolds), "");
+    t.row("largest ρ_s U d/μ", number(reynolds), "");
     t.row("  others", format!("{:.2} to {:.2}", PUBLISHED_REYNOLDS[0], PUBLISHED_REYNOLDS[1]), "");
     t.row("  speed", number(100.0 * fastest.velocity[1].abs()), "cm/s");
     t.row("  at", number(fastest.time), "s");
@@ -245,7 +245,7 @@ pub(crate) fn one(
     };
     let panels = [
         panel("height of the centre in cm", |s| 100.0 * s.position[1]),
-        panel("velocity along gravity in cm/s", |s| -100.0 * s.velocity[1]),
+        panel("velocity down in cm/s", |s| -100.0 * s.velocity[1]),
     ];
     figure(record, plan, (&panels, 1), ["computed", ""])
 }

@@ -2,7 +2,7 @@
 //!
 //! Far from the walls a sphere turns at half the shear rate (Einstein 1906), and a spheroid of aspect ratio r as Jeffery (1922, Proc. R. Soc.
 //! A 102, 161) found: φ̇ = γ̇ (r² cos²φ + sin²φ)/(r² + 1), φ the angle of its axis from the direction of the gradient. What inertia there is
-//! slows a sphere down by a share of about 0.1 Re^{3/2}, Re = γ̇a²/ν.
+//! slows a body down by a share of the order of Re^{3/2}/10, Re = γ̇R²/ν.
 use crate::Outcome;
 use crate::axes::gathered;
 use crate::coupled::Fall;
@@ -39,11 +39,13 @@ pub struct Shear {
     pub aspect: f64,
     /// φ at the start.
     pub angle: f64,
+    /// Does it turn as theory says from the start on? Else it is at rest then.
+    pub turning: bool,
     /// Edge of the box: walls below and above, periodic else.
     pub edge: f64,
     /// Cells across the shorter diameter.
     pub cells_per_diameter: usize,
-    /// γ̇a²/ν with the longest semi-axis a.
+    /// γ̇R²/ν with the radius R of the sphere of equal volume.
     pub reynolds: f64,
     /// Other than that suited.
     pub kernel: Option<Kernel>,
@@ -56,6 +58,7 @@ impl Default for Shear {
         Self {
             aspect: 1.0,
             angle: 0.0,
+            turning: false,
             edge: 8.0,
             cells_per_diameter: 8,
             reynolds: 0.1,
@@ -75,10 +78,10 @@ pub struct ShearedBody {
 }
 
 /// Cells by which equal ones reach beyond the body: more than any kernel does.
-const MARGIN: f64 = 5.0;
+const MARGIN: f64 = 6.5;
 
 impl Shear {
-    /// The undisturbed flow, with the body at rest.
+    /// The undisturbed flow with the body in it.
     ///
     /// # Errors
     /// Those of grid, flow and bodies.
@@ -86,7 +89,8 @@ impl Shear {
         let (edge, h) = (self.edge, 1.0 / self.cells_per_diameter as f64);
         let long = 0.5 * self.aspect.max(1.0);
         let (middle, viscosity) = (0.5 * edge, 1.0);
-        let rate = self.reynolds * viscosity / (long * long);
+        let radius = 0.5 * self.aspect.cbrt();
+        let rate = self.reynolds * viscosity / (radius * radius);
         let axis = |radius: f64, shift: f64| {
             let patch = [-1.0, 1.0].map(|side| middle + side * (radius + MARGIN * h));
             gathered(edge, h, patch, 1.15, shift)
@@ -103,7 +107,8 @@ impl Shear {
         let material = Material { density: fluid.density, ..Material::default() };
         let orientation = Rotation::from_axis_angle(&Vector::z_axis(), FRAC_PI_2 - self.angle);
         let pose = Pose { orientation, ..Pose::at([middle; 3]) };
-        let twist = Twist::default();
+        let spin = if self.turning { -rate * jeffery_rate(self.aspect, self.angle) } else { 0.0 };
+        let twist = Twist { angular: Vector::new(0.0, 0.0, spin), ..Twist::default() };
         if self.aspect == 1.0 {
             bodies.add(Sphere::new(0.5)?, material, pose, twist, Freedom::FREE)?;
         } else {
@@ -148,35 +153,32 @@ impl ShearedBody {
     }
 }
 
-/// What a sphere turns at over the shear rate when the start is forgotten.
+/// Angular velocity over Jeffery's for the angle of that time, averaged from `from` to `until` (in d²/ν after the start).
 ///
 /// # Errors
 /// Those of the coupling.
-pub fn settled_spin(shear: &Shear, dt_factor: f64) -> Outcome<f64> {
+pub fn settled_spin(shear: &Shear, dt_factor: f64, [from, until]: [f64; 2]) -> Outcome<f64> {
     let mut body = shear.build()?;
-    let mut last = f64::INFINITY;
-    loop {
-        let end = body.fall.flow.time() + 0.1;
-        while body.fall.flow.time() < end {
-            let dt = dt_factor * body.fall.flow.stable_dt(0.4);
-            body.step(dt)?;
+    let (mut sum, mut time) = (0.0, 0.0);
+    while body.fall.flow.time() < until {
+        let dt = dt_factor * body.fall.flow.stable_dt(0.4);
+        body.step(dt)?;
+        if body.fall.flow.time() > from {
+            sum += dt * body.spin() / jeffery_rate(shear.aspect, body.angle());
+            time += dt;
         }
-        let spin = body.spin();
-        if (spin / last - 1.0).abs() < 1e-4 {
-            return Ok(spin);
-        }
-        last = spin;
     }
+    Ok(sum / time)
 }
 
-/// φ over γ̇t of a spheroid from -45° on until its axis has come to 90°, step by step.
+/// φ over γ̇t of a spheroid from -15° on (so that the start is forgotten at 0°) until its axis has come to 90°, step by step.
 ///
 /// # Errors
 /// Those of the coupling.
 pub fn orbit(shear: &Shear, dt_factor: f64) -> Outcome<Vec<(f64, f64)>> {
-    let mut body = Shear { angle: -0.125 * TAU, ..*shear }.build()?;
+    let mut body = Shear { angle: -TAU / 24.0, turning: true, ..*shear }.build()?;
     let mut series = vec![(0.0, body.angle())];
-    while body.angle() < 1.01 * FRAC_PI_2 {
+    while body.angle() < 1.005 * FRAC_PI_2 {
         let dt = dt_factor * body.fall.flow.stable_dt(0.4);
         body.step(dt)?;
         series.push((body.strain(), body.angle()));

@@ -61,7 +61,9 @@ const LOOK: Look = Look { font: 21.0, line: 2.0 };
 const LEFT: f64 = 92.0;
 const TOP: f64 = 62.0;
 const HEIGHT: f64 = 940.0;
-const WIDEST_FIELDS: f64 = 1200.0;
+/// With fields that are less high than this, panels are no higher either, but at least so high.
+const LEAST_HEIGHT: f64 = 720.0;
+const WIDEST_FIELDS: f64 = 1500.0;
 const GAP: f64 = 34.0;
 const BAR_ROOM: f64 = 132.0;
 const PANEL_WIDTH: f64 = 560.0;
@@ -80,18 +82,19 @@ impl Comparison<'_> {
         let size = ((scale * self.domain.width).round(), (scale * self.domain.height).round());
         let fields = if self.fields.is_empty() { 0.0 } else { n * (size.0 + GAP) - GAP + BAR_ROOM };
         let rows = self.panels.len().div_ceil(self.columns.max(1)).max(1) as f64;
-        let height = ((HEIGHT - PANEL_FOOT * (rows - 1.0)) / rows).round();
-        let width = LEFT + fields + self.columns as f64 * (PANEL_LEFT + PANEL_WIDTH) - LEFT.min(fields) + 40.0;
-        let mut canvas = Canvas::new(width as usize, (TOP + HEIGHT + FOOT) as usize);
-        self.flows(&mut canvas, size);
+        let whole = if self.fields.is_empty() { HEIGHT } else { size.1.max(LEAST_HEIGHT) };
+        let height = ((whole - PANEL_FOOT * (rows - 1.0)) / rows).round();
         let start = if fields > 0.0 { LEFT + fields } else { 0.0 };
+        let width = start + self.columns as f64 * (PANEL_LEFT + PANEL_WIDTH) + 40.0;
+        let mut canvas = Canvas::new(width as usize, (TOP + whole + FOOT) as usize);
+        self.flows(&mut canvas, size);
         for (i, panel) in self.panels.iter().enumerate() {
             let (row, column) = ((i / self.columns.max(1)) as f64, (i % self.columns.max(1)) as f64);
             let left = start + PANEL_LEFT + column * (PANEL_LEFT + PANEL_WIDTH);
             let top = TOP + row * (height + PANEL_FOOT);
             panel.draw(&mut canvas, Rect::new(left, top, PANEL_WIDTH, height));
         }
-        self.legend(&mut canvas, (start + PANEL_LEFT, TOP + HEIGHT + FOOT - 26.0));
+        self.legend(&mut canvas, (start + PANEL_LEFT, TOP + whole + FOOT - 26.0));
         canvas.save(path)
     }
 

@@ -11,7 +11,9 @@ const KERNELS: [(&str, Kernel); 3] =
 
 /// Angular velocity of a sphere: half the shear rate.
 pub(crate) fn sphere_in_shear() -> Outcome<()> {
-    println!("\nFree sphere in creeping shear, Re 0.1, box of 8 diameters: angular velocity over half the shear rate");
+    println!(
+        "\nFree sphere in creeping shear, Re 0.1, box of 8 diameters: angular velocity over half the shear rate"
+    );
     println!(
         "{:>10} {:>6} {:>5} {:>6} {:>9} {:>8} {:>8}",
         "kernel", "per D", "box", "step", "spin", "off", "CPU s"
@@ -42,7 +44,9 @@ pub(crate) fn sphere_in_shear() -> Outcome<()> {
 
 /// The orbit of a spheroid of aspect ratio 2.
 pub(crate) fn jeffery_orbit() -> Outcome<()> {
-    println!("\nProlate spheroid of aspect ratio 2 in creeping shear, Re 0.1, box of 10 short diameters: a quarter of a turn");
+    println!(
+        "\nProlate spheroid of aspect ratio 2 in creeping shear, Re 0.1, box of 10 short diameters: a quarter of a turn"
+    );
     println!(
         "{:>6} {:>10} {:>8} {:>12} {:>12} {:>8} {:>8}",
         "per D", "period", "off", "phi off deg", "rate off", "steps", "CPU s"

@@ -56,12 +56,8 @@ fn sink(cli: &Cli, stop: &AtomicBool) -> Outcome<Ending> {
     }
     let mut fall = scene.build(forcing)?;
     let out = cli.run.out.clone().unwrap_or_else(|| "out/drafting_kissing_tumbling".into());
-    let plan = Plan {
-        end: cli.run.end.unwrap_or(end),
-        out: &out,
-        setup: &format!("{scene:?}"),
-        view: scene.view(),
-    };
+    let plan =
+        Plan { end: cli.run.end.unwrap_or(end), out: &out, setup: &format!("{scene:?}"), view: scene.view() };
     let record = run(&mut fall, &cli.run, &plan, stop)?;
     match cli.bodies {
         1 => report::one(&scene, &record, &plan, cli.run.no_images)?,

@@ -114,12 +114,7 @@ fn head(title: &str, scene: &SinkingDiscs, record: &Record) -> Table {
 }
 
 /// Two discs, beside Uhlmann's.
-pub(crate) fn two(
-    scene: &SinkingDiscs,
-    record: &Record,
-    plan: &Plan<'_, 2>,
-    no_images: bool,
-) -> Outcome<()> {
+pub(crate) fn two(scene: &SinkingDiscs, record: &Record, plan: &Plan<'_, 2>, no_images: bool) -> Outcome<()> {
     let mut t = head("Drafting, kissing, tumbling", scene, record);
     let [trailing, leading] = [0, 1].map(|b| record.motion.bodies.get(b).map_or(&[][..], Vec::as_slice));
     let apart = separation([trailing, leading]);
@@ -135,7 +130,8 @@ pub(crate) fn two(
     ];
     let show = |time: Option<f64>| time.map_or("–".to_owned(), |t| format!("{t:.4}"));
     let rows = phases.iter().map(|(name, ours, theirs)| {
-        let off = ours.zip(*theirs).map_or("–".to_owned(), |(o, t)| format!("{:+.1}", 100.0 * (o / t - 1.0)));
+        let off =
+            ours.zip(*theirs).map_or("–".to_owned(), |(o, t)| format!("{:+.1}", 100.0 * (o / t - 1.0)));
         vec![(*name).to_owned(), show(*ours), show(*theirs), off]
     });
     t.matrix(&["phase (surfaces within d/10)", "here s", "Uhlmann s", "off %"], rows.collect());
@@ -207,17 +203,13 @@ pub(crate) fn two(
 const PUBLISHED_REYNOLDS: [f64; 2] = [17.15, 17.42];
 
 /// One disc.
-pub(crate) fn one(
-    scene: &SinkingDiscs,
-    record: &Record,
-    plan: &Plan<'_, 2>,
-    no_images: bool,
-) -> Outcome<()> {
+pub(crate) fn one(scene: &SinkingDiscs, record: &Record, plan: &Plan<'_, 2>, no_images: bool) -> Outcome<()> {
     let mut t = head("A disc that sinks", scene, record);
     let states = record.motion.bodies.first().map_or(&[][..], Vec::as_slice);
     let fastest = states.iter().max_by(|a, b| a.velocity[1].abs().total_cmp(&b.velocity[1].abs()));
     let Some(fastest) = fastest else { return Ok(()) };
-    let reynolds = scene.density_ratio * fastest.velocity[1].hypot(fastest.velocity[0]) * DIAMETER / scene.viscosity;
+    let reynolds =
+        scene.density_ratio * fastest.velocity[1].hypot(fastest.velocity[0]) * DIAMETER / scene.viscosity;
     let landed = passes(&record.motion.over_time(0, |s| s.position[1]), 0.5 * DIAMETER + scene.spacing());
     t.row("largest ρ_s U d/μ", number(reynolds), "");
     t.row("  others", format!("{:.2} to {:.2}", PUBLISHED_REYNOLDS[0], PUBLISHED_REYNOLDS[1]), "");

@@ -29,9 +29,10 @@ pub(crate) fn tell(
     let closest = gap.iter().fold(f64::INFINITY, |least, g| least.min(g.1));
     let [nx, ny, nz] = scene.cells();
     let [density, viscosity] = scene.case.oil();
-    let sideways = record.motion.bodies.first().map_or(0.0, |states| {
-        states.iter().map(|s| s.velocity[0].hypot(s.velocity[1])).fold(0.0, f64::max)
-    });
+    let sideways =
+        record.motion.bodies.first().map_or(0.0, |states| {
+            states.iter().map(|s| s.velocity[0].hypot(s.velocity[1])).fold(0.0, f64::max)
+        });
 
     let mut t = Table::new();
     t.section(&format!("Settling sphere, {:?}", scene.case));
@@ -103,7 +104,8 @@ fn figure(case: Case, record: &Record, plan: &Plan<'_, 3>) -> Outcome<()> {
             case.gap_over_diameter(),
         ),
     ];
-    let names = if case.velocity().is_empty() { ["computed", ""] } else { ["computed", "ten Cate et al. (2002)"] };
+    let names =
+        if case.velocity().is_empty() { ["computed", ""] } else { ["computed", "ten Cate et al. (2002)"] };
     let figure = Comparison { domain: plan.view.domain, fields: &fields, panels: &panels, columns: 1, names };
     Ok(figure.draw(&plan.out.join("summary.png"))?)
 }

@@ -73,16 +73,24 @@ impl Case {
     /// Upward velocity \[m/s\] over time \[s\] as measured; empty where it is not known.
     pub fn velocity(self) -> Vec<(f64, f64)> {
         match self {
-            Self::E1 => reference_curve::read(include_str!("../../../tests/data/ten_cate_2002_e1_velocity.csv")),
-            Self::E4 => reference_curve::read(include_str!("../../../tests/data/ten_cate_2002_e4_velocity.csv")),
+            Self::E1 => {
+                reference_curve::read(include_str!("../../../tests/data/ten_cate_2002_e1_velocity.csv"))
+            }
+            Self::E4 => {
+                reference_curve::read(include_str!("../../../tests/data/ten_cate_2002_e4_velocity.csv"))
+            }
             Self::E2 | Self::E3 => Vec::new(),
         }
     }
     /// Gap between sphere and floor over the diameter, over time \[s\], as measured; empty where it is not known.
     pub fn gap_over_diameter(self) -> Vec<(f64, f64)> {
         match self {
-            Self::E1 => reference_curve::read(include_str!("../../../tests/data/ten_cate_2002_e1_height_over_d.csv")),
-            Self::E4 => reference_curve::read(include_str!("../../../tests/data/ten_cate_2002_e4_height_over_d.csv")),
+            Self::E1 => {
+                reference_curve::read(include_str!("../../../tests/data/ten_cate_2002_e1_height_over_d.csv"))
+            }
+            Self::E4 => {
+                reference_curve::read(include_str!("../../../tests/data/ten_cate_2002_e4_height_over_d.csv"))
+            }
             Self::E2 | Self::E3 => Vec::new(),
         }
     }
@@ -126,8 +134,7 @@ impl SettlingSphere {
         let fluid = self.case.fluid();
         let flow = Projection::new(CartesianGrid::new(cells, lengths)?, Side::WALL.everywhere(), fluid)?
             .with_diffusion(Diffusion::Explicit);
-        let material =
-            Material { density: DENSITY, youngs_modulus: YOUNGS_MODULUS, ..Material::default() };
+        let material = Material { density: DENSITY, youngs_modulus: YOUNGS_MODULUS, ..Material::default() };
         let mut bodies = RigidBodies::new(Periods::default());
         bodies.add_wall(HalfSpace::new(Point::origin(), Vector::z())?, material)?;
         let start = Pose::at([0.5 * lengths[0], 0.5 * lengths[1], START]);

@@ -63,9 +63,9 @@ impl<const D: usize> Observer<Fall<D>> for Album<D> {
         let none = vec![0.0; slice.speed.len()];
         let path = self.folder.join(format!("{index:05}.png"));
         let title = format!("t = {:.3} s", slice.time);
-        self.frames
-            .draw(&path, &field(&slice.speed), &field(&none), &slice.discs, &title)
-            .map_err(|source| CouplingError::Output { what: format!("drawing {}", path.display()), source })?;
+        self.frames.draw(&path, &field(&slice.speed), &field(&none), &slice.discs, &title).map_err(
+            |source| CouplingError::Output { what: format!("drawing {}", path.display()), source },
+        )?;
         self.slices.push(slice);
         Ok(())
     }

@@ -101,8 +101,9 @@ pub fn run<const D: usize>(
     let setup = fingerprint(&format!("{setup} {} {end:?}", options.setup()));
     let mut motion = Motion::default();
     let mut files = if options.resume {
-        load(&out.join("state.bin"), fall, setup)
-            .map_err(|e| format!("{e}; without an interrupted run of this scene there, leave out --resume"))?;
+        load(&out.join("state.bin"), fall, setup).map_err(|e| {
+            format!("{e}; without an interrupted run of this scene there, leave out --resume")
+        })?;
         motion.read(&out.join("motion.csv"), fall.flow.time())?;
         if options.no_vtk { None } else { Some(FileOutput::resume(out, fall.flow.time())?) }
     } else {

@@ -7,10 +7,10 @@ use std::path::PathBuf;
 /// How to run, and what to write.
 #[derive(Clone, Debug, Args)]
 pub struct RunOptions {
-    /// End time [s].
+    /// End time, in s.
     #[arg(long, allow_negative_numbers = true)]
     pub end: Option<f64>,
-    /// Time step [s] after the ramp of the first steps; without it the largest that stability and --courant allow.
+    /// Time step, in s, after the ramp of the first steps; without it the largest that stability and --courant allow.
     #[arg(long, allow_negative_numbers = true)]
     pub dt: Option<f64>,
     /// Courant number up to which the time step may go.

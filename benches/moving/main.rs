@@ -1,5 +1,7 @@
 //! Bodies that move through the grid as they are told: a swinging cylinder against measured forces, and how much of the forces
-//! comes from the grid. On one thread: `cargo bench --bench moving`, or with the names of cases after `--`.
+//! comes from the grid. And free ones in creeping shear. On one thread: `cargo bench --bench moving`, or with the names of cases after `--`.
+mod shear;
+
 use example_support::cpu::Stopwatch;
 use example_support::moved_body::{Noise, Swinging, passing, turning};
 use example_support::{Outcome, run_cases};
@@ -18,6 +20,8 @@ fn main() -> Outcome<()> {
         ("passing", passing_2d),
         ("sphere", passing_3d),
         ("turning", turning_sphere),
+        ("shear", shear::sphere_in_shear),
+        ("jeffery", shear::jeffery_orbit),
     ])
 }
 

@@ -3,6 +3,7 @@ mod bad_input;
 mod edges;
 mod files;
 mod frame;
+mod free_bodies;
 mod immersed_scalar;
 mod immersed_stress;
 mod meshes;

@@ -18,5 +18,6 @@ pub use options::{GrainOptions, RunOptions};
 pub use place::{Start, starts};
 pub use plates::{Stave, ring_of_staves};
 pub use record::History;
+pub(crate) use run::fingerprint;
 pub use run::{Ending, main_of, run};
 pub use scene::Scene;

@@ -4,6 +4,7 @@
 
 pub mod axes;
 pub mod channel_cylinder;
+pub mod coupled;
 pub mod cpu;
 pub mod duct_cylinder;
 pub mod eccentric_cylinders;
@@ -14,8 +15,12 @@ pub mod moved_body;
 pub mod picture;
 pub mod prescribed_bodies;
 pub mod progress;
+pub mod reference_curve;
 pub mod rock;
 pub mod scene;
+pub mod settling_sphere;
+pub mod sheared_body;
+pub mod sinking_discs;
 pub mod sphere_stream;
 pub mod startup_theory;
 pub mod table;

@@ -8,6 +8,7 @@ use std::path::Path;
 mod axes;
 mod canvas;
 mod colour;
+pub mod comparison;
 pub mod plot;
 pub mod sketch;
 pub mod solids;

@@ -111,7 +111,7 @@ impl Checkpoint for ClockOnly {
 }
 
 /// FNV-1a of what the flags say.
-fn fingerprint(text: &str) -> u64 {
+pub(crate) fn fingerprint(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
 }
 

@@ -1,0 +1,139 @@
+//! A run.
+use super::album::{Album, Slice, View};
+use super::motion::Motion;
+use super::options::RunOptions;
+use super::save::{Save, load};
+use crate::Outcome;
+use crate::cpu::{Elapsed, Stopwatch};
+use crate::granular::{Ending, fingerprint};
+use crate::progress::{Progress, Status};
+use coupling::{
+    CouplingError, FileOutput, Module, Observer, Particles, RunSummary, Schedule, Simulation, StepInfo,
+};
+use dem::RigidBodies;
+use ibm::SmoothForcing;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// Bodies that the flow, gravity and contacts move.
+pub type Fall<const D: usize> = Simulation<D, Particles<SmoothForcing, RigidBodies>>;
+
+/// What is to be run.
+pub struct Plan<'a, const D: usize> {
+    /// End time \[s\].
+    pub end: f64,
+    /// Folder for the files.
+    pub out: &'a Path,
+    /// What a run that goes on must have in common with the one before, besides the options.
+    pub setup: &'a str,
+    /// What pictures show.
+    pub view: View<D>,
+}
+
+/// What came of it.
+pub struct Record {
+    /// Did it come to its end?
+    pub ending: Ending,
+    /// Steps.
+    pub summary: RunSummary,
+    /// How the bodies moved.
+    pub motion: Motion,
+    /// The flow at every snapshot of this run; none without pictures.
+    pub slices: Vec<Slice>,
+    /// What it cost.
+    pub elapsed: Elapsed,
+    /// Wall time by module \[s\].
+    pub modules: [(&'static str, f64); 6],
+}
+
+/// The observer of every step: motion, progress, saved state.
+struct Watch<'a> {
+    motion: &'a mut Motion,
+    progress: Progress,
+    save: Save,
+}
+
+impl<const D: usize> Observer<Fall<D>> for Watch<'_> {
+    fn begin(&mut self, fall: &mut Fall<D>) {
+        self.motion.begin(fall);
+    }
+    fn step(&mut self, fall: &mut Fall<D>, info: &StepInfo) -> Result<(), CouplingError> {
+        self.motion.step(fall, info)?;
+        self.progress.step(info.step, || Status {
+            time: info.time,
+            dt: info.dt,
+            courant: info.courant,
+            divergence: fall.flow.statistics().divergence * info.dt,
+        });
+        if self.save.is_due() {
+            let what = || "saving the state".into();
+            self.save
+                .now(fall, self.motion)
+                .map_err(|source| CouplingError::Output { what: what(), source })?;
+        }
+        Ok(())
+    }
+}
+
+/// Runs to the end or until `stop` is set. Writes to the folder: `motion.csv` (every step), `frames/*.png`, `state.bin`, and for ParaView
+/// `fields.pvd` and `bodies.pvd` with what belongs to them.
+///
+/// # Errors
+/// Those of flow and bodies, and of the disk.
+pub fn run<const D: usize>(
+    fall: &mut Fall<D>,
+    options: &RunOptions,
+    plan: &Plan<'_, D>,
+    stop: &AtomicBool,
+) -> Outcome<Record> {
+    options.check()?;
+    let watch = Stopwatch::start();
+    let Plan { end, out, setup, view } = plan;
+    let schedule = Schedule {
+        end: *end,
+        intervals: options.frames - 1,
+        dt: options.dt,
+        courant: options.courant,
+        ..Schedule::default()
+    };
+    schedule.check()?;
+    std::fs::create_dir_all(out).map_err(|e| format!("making {}: {e}", out.display()))?;
+    let setup = fingerprint(&format!("{setup} {} {end:?}", options.setup()));
+    let mut motion = Motion::default();
+    let mut files = if options.resume {
+        load(&out.join("state.bin"), fall, setup).map_err(|e| {
+            format!("{e}; without an interrupted run of this scene there, leave out --resume")
+        })?;
+        motion.read(&out.join("motion.csv"), fall.flow.time())?;
+        if options.no_vtk { None } else { Some(FileOutput::resume(out, fall.flow.time())?) }
+    } else {
+        // What an earlier run left there is not this run's.
+        for old in ["state.bin", "motion.csv", "result.json", "summary.png"] {
+            let _ = std::fs::remove_file(out.join(old));
+        }
+        if options.no_vtk { None } else { Some(FileOutput::new(out)?) }
+    };
+    let mut album = if options.no_images { None } else { Some(Album::new(out, view)?) };
+    let progress = Progress::new(fall.flow.time(), *end);
+    let mut steps = Watch { motion: &mut motion, progress, save: Save::new(out, setup) };
+    let summary = coupling::run(fall, &schedule, &mut (&mut steps, (&mut files, &mut album)), stop)?;
+    if let Some(files) = &mut files {
+        files.finish()?;
+    }
+    steps.save.now(fall, steps.motion)?;
+    steps.progress.finish(summary.steps, if summary.stopped { "stopped" } else { "done" });
+    let ending = if summary.stopped {
+        eprintln!("the state is saved; give the same flags with --resume to go on");
+        Ending::Stopped
+    } else {
+        Ending::Whole
+    };
+    Ok(Record {
+        ending,
+        summary,
+        motion,
+        slices: album.map_or_else(Vec::new, |a| a.slices),
+        elapsed: watch.elapsed(),
+        modules: Module::ALL.map(|m| (m.name(), fall.timings().seconds(m))),
+    })
+}

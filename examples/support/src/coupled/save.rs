@@ -1,0 +1,69 @@
+//! Saved state, so that an interrupted run can go on.
+use super::motion::Motion;
+use super::run::Fall;
+use coupling::{self, CheckpointError};
+use interfaces::{Checkpoint, RestartError};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+const SAVE_EVERY: Duration = Duration::from_secs(30);
+
+/// A run together with a number for its set-up, which must be the same when it goes on.
+struct Resumable<'a, const D: usize> {
+    fall: &'a mut Fall<D>,
+    setup: u64,
+}
+
+impl<const D: usize> Resumable<'_, D> {
+    /// All bits as numbers that a state can hold.
+    fn setup(&self) -> [f64; 2] {
+        [f64::from((self.setup >> 32) as u32), f64::from(self.setup as u32)]
+    }
+}
+
+impl<const D: usize> Checkpoint for Resumable<'_, D> {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        sink("setup", &self.setup());
+        self.fall.save(sink);
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        if RestartError::take(source, "setup", 2)? != self.setup() {
+            return Err(RestartError::Differs("flags".into()));
+        }
+        self.fall.restore(source)
+    }
+}
+
+/// Takes up the state saved in `path`.
+pub(super) fn load<const D: usize>(
+    path: &Path,
+    fall: &mut Fall<D>,
+    setup: u64,
+) -> Result<(), CheckpointError> {
+    coupling::load(path, &mut Resumable { fall, setup })
+}
+
+/// Saves the state, and beside it the motion so far, every half a minute and when told.
+pub(super) struct Save {
+    folder: PathBuf,
+    setup: u64,
+    last: Instant,
+}
+
+impl Save {
+    pub(super) fn new(folder: &Path, setup: u64) -> Self {
+        Self { folder: folder.into(), setup, last: Instant::now() }
+    }
+    pub(super) fn is_due(&self) -> bool {
+        self.last.elapsed() >= SAVE_EVERY
+    }
+    /// The motion first: what it knows beyond a state is dropped when a run goes on.
+    pub(super) fn now<const D: usize>(&mut self, fall: &mut Fall<D>, motion: &Motion) -> io::Result<()> {
+        motion.write(&self.folder.join("motion.csv"))?;
+        let state = self.folder.join("state.bin");
+        coupling::save(&state, &Resumable { fall, setup: self.setup }).map_err(io::Error::other)?;
+        self.last = Instant::now();
+        Ok(())
+    }
+}

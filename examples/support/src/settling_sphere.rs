@@ -1,0 +1,182 @@
+//! A sphere that settles in a closed box (ten Cate, Nieuwstad, Derksen & Van den Akker 2002, Phys. Fluids 14, 4012).
+use crate::Outcome;
+use crate::coupled::{Fall, Slice, View};
+use crate::picture::{Disc, Domain};
+use crate::reference_curve;
+use clap::ValueEnum;
+use coupling::{Particles, Simulation, WeightBalance};
+use dem::{HalfSpace, Material, RigidBodies, Sphere};
+use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Sampler, Side};
+use ibm::SmoothForcing;
+use interfaces::{BodyId, Freedom, Kinematics, Periods, Point, Pose, Twist, Vector};
+
+/// Edges of the box \[m\]; gravity acts along −z.
+pub const BOX: [f64; 3] = [0.1, 0.1, 0.16];
+/// Diameter of the sphere \[m\].
+pub const DIAMETER: f64 = 15e-3;
+/// Density of the sphere \[kg/m³\].
+pub const DENSITY: f64 = 1120.0;
+/// Height of its centre at the start \[m\].
+pub const START: f64 = 127.5e-3;
+/// Gravity \[m/s²\].
+pub const GRAVITY: f64 = 9.81;
+/// Sphere and floor: soft enough for the contact to cost little, hard enough for the sphere to sink in by far less than a cell.
+const YOUNGS_MODULUS: f64 = 1e6;
+/// Fewer cells across the sphere cannot hold its markers.
+const LEAST_CELLS: usize = 4;
+
+/// The four silicone oils of the experiment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Case {
+    /// Re 1.5.
+    E1,
+    /// Re 4.1.
+    E2,
+    /// Re 11.6.
+    E3,
+    /// Re 31.9.
+    E4,
+}
+
+impl Case {
+    /// Density \[kg/m³\] and dynamic viscosity \[Pa s\] of the oil.
+    pub fn oil(self) -> [f64; 2] {
+        match self {
+            Self::E1 => [970.0, 0.373],
+            Self::E2 => [965.0, 0.212],
+            Self::E3 => [962.0, 0.113],
+            Self::E4 => [960.0, 0.058],
+        }
+    }
+    /// As the flow wants it.
+    pub fn fluid(self) -> Fluid {
+        let [density, viscosity] = self.oil();
+        Fluid { density, viscosity: viscosity / density }
+    }
+    /// Time in which the sphere comes to the floor, roughly \[s\].
+    pub fn end(self) -> f64 {
+        match self {
+            Self::E1 => 4.1,
+            Self::E2 => 2.6,
+            Self::E3 => 1.7,
+            Self::E4 => 1.3,
+        }
+    }
+    /// Largest speed that was measured \[m/s\], where it is known.
+    pub fn peak(self) -> Option<f64> {
+        match self {
+            Self::E1 => Some(0.0363),
+            Self::E4 => Some(0.1226),
+            Self::E2 | Self::E3 => None,
+        }
+    }
+    /// Upward velocity \[m/s\] over time \[s\] as measured; empty where it is not known.
+    pub fn velocity(self) -> Vec<(f64, f64)> {
+        match self {
+            Self::E1 => {
+                reference_curve::read(include_str!("../../../tests/data/ten_cate_2002_e1_velocity.csv"))
+            }
+            Self::E4 => {
+                reference_curve::read(include_str!("../../../tests/data/ten_cate_2002_e4_velocity.csv"))
+            }
+            Self::E2 | Self::E3 => Vec::new(),
+        }
+    }
+    /// Gap between sphere and floor over the diameter, over time \[s\], as measured; empty where it is not known.
+    pub fn gap_over_diameter(self) -> Vec<(f64, f64)> {
+        match self {
+            Self::E1 => {
+                reference_curve::read(include_str!("../../../tests/data/ten_cate_2002_e1_height_over_d.csv"))
+            }
+            Self::E4 => {
+                reference_curve::read(include_str!("../../../tests/data/ten_cate_2002_e4_height_over_d.csv"))
+            }
+            Self::E2 | Self::E3 => Vec::new(),
+        }
+    }
+}
+
+/// What may vary.
+#[derive(Clone, Debug)]
+pub struct SettlingSphere {
+    /// The oil.
+    pub case: Case,
+    /// Cells across the sphere.
+    pub cells_per_diameter: usize,
+}
+
+impl SettlingSphere {
+    /// Edge of a cell \[m\].
+    pub fn spacing(&self) -> f64 {
+        DIAMETER / self.cells_per_diameter as f64
+    }
+
+    /// Cells along x, y and z: as nearly cubes as the box allows.
+    pub fn cells(&self) -> [usize; 3] {
+        BOX.map(|l| (l / self.spacing()).round().max(1.0) as usize)
+    }
+
+    /// Sphere, walls and fluid at rest.
+    ///
+    /// # Errors
+    /// Those of grid, flow and bodies.
+    pub fn build(&self, forcing: SmoothForcing) -> Outcome<Fall<3>> {
+        if self.cells_per_diameter < LEAST_CELLS {
+            return Err(format!(
+                "{} cells across the sphere; at least {LEAST_CELLS} are needed: raise --cells-per-diameter",
+                self.cells_per_diameter
+            )
+            .into());
+        }
+        let cells = self.cells();
+        // The forcing wants equal cells, and 100 mm need not be a whole number of them: the box may be a little smaller or larger.
+        let lengths = cells.map(|n| n as f64 * self.spacing());
+        let fluid = self.case.fluid();
+        let flow = Projection::new(CartesianGrid::new(cells, lengths)?, Side::WALL.everywhere(), fluid)?
+            .with_diffusion(Diffusion::Explicit);
+        let material = Material { density: DENSITY, youngs_modulus: YOUNGS_MODULUS, ..Material::default() };
+        let mut bodies = RigidBodies::new(Periods::default());
+        bodies.add_wall(HalfSpace::new(Point::origin(), Vector::z())?, material)?;
+        let start = Pose::at([0.5 * lengths[0], 0.5 * lengths[1], START]);
+        bodies.add(Sphere::new(0.5 * DIAMETER)?, material, start, Twist::default(), Freedom::FREE)?;
+        let gravity = Vector::new(0.0, 0.0, -GRAVITY);
+        let particles = Particles::new(bodies, forcing, fluid.density, gravity);
+        Ok(Simulation::new(flow, particles, WeightBalance::None)?)
+    }
+
+    /// The plane through the sphere's centre, x to the right and z upwards.
+    pub fn view(&self) -> View<3> {
+        let [nx, _, nz] = self.cells();
+        let domain = Domain {
+            width: nx as f64 * self.spacing(),
+            height: nz as f64 * self.spacing(),
+            periodic: [false; 2],
+        };
+        // A little more than the sphere reaches.
+        let max_speed = match self.case {
+            Case::E1 => 0.04,
+            Case::E2 => 0.06,
+            Case::E3 => 0.09,
+            Case::E4 => 0.125,
+        };
+        View { domain, max_speed, slice }
+    }
+}
+
+fn slice(fall: &Fall<3>) -> Slice {
+    let (flow, bodies) = (&fall.flow, &fall.particles.bodies);
+    let (grid, pose) = (flow.grid(), bodies.pose(BodyId(0)));
+    let [nx, _, nz] = grid.cells();
+    let sampler = Sampler::new(grid, flow.sides());
+    let at = |i: usize| {
+        let x = [grid.axis(0).centre(i % nx), pose.position.y, grid.axis(2).centre(i / nx)];
+        sampler.velocity(flow.velocity(), x).map_or(f64::NAN, |u| Vector::from(u).norm())
+    };
+    let disc = Disc {
+        x: pose.position.x,
+        y: pose.position.z,
+        radius: 0.5 * DIAMETER,
+        angle: -pose.orientation.scaled_axis().y,
+    };
+    Slice { time: flow.time(), cells: [nx, nz], speed: (0..nx * nz).map(at).collect(), discs: vec![disc] }
+}

@@ -1,15 +1,17 @@
 //! Error against run time, on one thread: `cargo bench --bench work_precision` (about six minutes; `-- flows`, `-- cylinder`
-//! and `-- discs` run one part).
+//! and `-- discs` run one part; `-- settling`, only when named, takes half an hour).
 //!
 //! 1. flows: fluid alone. Taylor–Green vortices and a shear layer in periodic boxes, the lid-driven cavity ([`flows`]).
 //! 2. cylinder: an immersed cylinder in a channel, steady ([`cylinder`]).
 //! 3. discs: the falling discs ([`discs`]).
+//! 4. settling: one sphere, and 64 ([`settling`]).
 //!
 //! Reference points of other codes stand in the same tables. With `-- plot` (or without any part named) 1 and 2 are drawn to
 //! docs/images/work_precision.png.
 mod cylinder;
 mod discs;
 mod flows;
+mod settling;
 
 use example_support::Outcome;
 use example_support::picture::plot::{self, Panel, Series};
@@ -93,6 +95,9 @@ fn main() -> Outcome<()> {
             let panels: Vec<Panel> = tables.iter().map(Table::panel).collect();
             plot::draw(&path, &panels)?;
             println!("\ndrawn to {}", path.display());
+        }
+        if wanted.iter().any(|w| w == "settling") {
+            settling::run()?;
         }
         if runs("discs") {
             discs::run()?;

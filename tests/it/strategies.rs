@@ -114,3 +114,25 @@ fn one_solution_does_at_any_density_ratio() {
         }
     });
 }
+
+/// A disc on a spring sinks until the spring bears its net weight; every impulse is in the books, the spring's among the contacts'.
+#[test]
+fn a_tethered_disc_hangs() {
+    use siltflow::dem::Tether;
+    use siltflow::interfaces::Point;
+    let scene = Scene { cells_per_diameter: 8, floor: true, bodies: 1, ..Scene::default() };
+    with_threads(1, || {
+        let mut simulation = scene.build(SmoothForcing::new(FLUID.density)).unwrap();
+        let bodies = &mut simulation.particles.bodies;
+        let anchor = bodies.pose(BodyId(0)).position;
+        let tether = Tether { on_body: Point::origin(), anchor, stiffness: 1.0, damping: 0.05 };
+        bodies.set_tether(BodyId(0), Some(tether)).unwrap();
+        let schedule = Schedule { end: 1.5, intervals: 1, ..Schedule::default() };
+        let mut ledger = Ledger::new();
+        coupling::run(&mut simulation, &schedule, &mut ledger, &AtomicBool::new(false)).unwrap();
+        let weight = -simulation.particles.weight(BodyId(0)).y;
+        let sunk = anchor.y - simulation.particles.bodies.pose(BodyId(0)).position.y;
+        assert!((sunk / weight - 1.0).abs() < 0.01, "{sunk} {weight}");
+        assert!(ledger.report().momentum_step < 1e-10, "{:?}", ledger.report());
+    });
+}

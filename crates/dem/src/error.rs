@@ -90,6 +90,16 @@ pub enum DemError {
         /// Its value.
         factor: f64,
     },
+    /// A tether makes no sense.
+    #[error("the tether of body {} has stiffness {stiffness} N/m and damping {damping} N s/m; give a stiffness and a damping that are finite and not negative, and finite places", body.0)]
+    Tether {
+        /// The body.
+        body: BodyId,
+        /// Its stiffness \[N/m\].
+        stiffness: f64,
+        /// Its damping \[N s/m\].
+        damping: f64,
+    },
     /// Start position or orientation is not finite.
     #[error("body {} would start at {position:?} m, and position or orientation is not finite; give finite numbers", body.0)]
     Start {

@@ -43,7 +43,7 @@ pub use material::Material;
 #[cfg(feature = "mesh")]
 pub use overlap::FacetIndex;
 pub use overlap::{BoxKind, CellOverlap, Normal, Overlap, OverlapSolver, Refinement, Route, SubBox, overlap};
-pub use rigid_bodies::{Contact, Partner, RigidBodies, Sleep};
+pub use rigid_bodies::{Contact, Partner, RigidBodies, Sleep, Tether};
 #[cfg(feature = "mesh")]
 pub use shapes::{AdmissionReport, MeshError, Shell, Thinnest, TriangleMesh, TriangleSoup};
 pub use shapes::{

@@ -8,6 +8,7 @@ mod near;
 mod push;
 mod sleep;
 mod sweep;
+mod tether;
 mod time_step;
 mod turning;
 
@@ -25,6 +26,7 @@ pub use sleep::Sleep;
 use sleep::Sleepers;
 use std::sync::Arc;
 use sweep::Felt;
+pub use tether::Tether;
 
 /// Rigid bodies of any shape that touch one another and plane walls, in a box that may be periodic.
 ///
@@ -63,6 +65,8 @@ pub struct RigidBodies<L: ContactLaw = Chen> {
     chunks: Vec<Chunk<L::Memory>>,
     carried: Vec<(NearPair, Patch<L::Memory>)>,
     sleepers: Sleepers<L::Memory>,
+    /// One per body, or none at all.
+    tethers: Vec<Option<Tether>>,
     contact_time: f64,
     overlap_calls: u64,
     /// Kept, because every advance asks for it.
@@ -146,6 +150,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             chunks: Vec::new(),
             carried: Vec::new(),
             sleepers: Sleepers::default(),
+            tethers: Vec::new(),
             contact_time: 0.0,
             overlap_calls: 0,
             stable_dt: f64::INFINITY,

@@ -1,4 +1,4 @@
-//! One body that rises or settles in a periodic box.
+//! Bodies that rise or settle in a periodic box.
 use crate::Outcome;
 use coupling::{CouplingError, Observer, Particles, Simulation, StepInfo, Strategy, WeightBalance};
 use dem::{Ellipsoid, Material, RigidBodies, Shape, Sphere, TriangleMesh};
@@ -8,8 +8,8 @@ use interfaces::{BodyId, Dynamics, Freedom, Periods, Pose, Rotation, Twist, Vect
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// A body of the volume of a sphere of diameter 1, free to move and turn, in fluid of density 1 under gravity 1 along −z. Times are in √(d/g), speeds in
-/// √(g d). Its Galileo number √(|ρ_s/ρ − 1| g d³)/ν tells the viscosity. Periodic box, net weight balanced.
+/// Bodies of the volume of a sphere of diameter 1, free to move and turn, in fluid of density 1 under gravity 1 along −z. Times are in √(d/g), speeds in
+/// √(g d). The Galileo number √(|ρ_s/ρ − 1| g d³)/ν tells the viscosity. Periodic box, net weight balanced.
 #[derive(Clone)]
 pub struct FreeBody {
     /// The shape, of volume π/6.
@@ -22,6 +22,8 @@ pub struct FreeBody {
     pub per_diameter: usize,
     /// Box in diameters.
     pub box_: [usize; 3],
+    /// How many, all alike.
+    pub bodies: usize,
     /// How viscous terms are computed.
     pub diffusion: Diffusion,
 }
@@ -36,7 +38,8 @@ impl FreeBody {
     /// None that is known.
     pub fn new(density_ratio: f64) -> Outcome<Self> {
         let (shape, diffusion) = (Self::sphere()?, Diffusion::Explicit);
-        Ok(Self { shape, density_ratio, galileo: 50.0, per_diameter: 10, box_: [4, 4, 8], diffusion })
+        let (galileo, per_diameter, box_, bodies) = (50.0, 10, [4, 4, 8], 1);
+        Ok(Self { shape, density_ratio, galileo, per_diameter, box_, bodies, diffusion })
     }
     /// The sphere.
     ///
@@ -67,7 +70,30 @@ impl FreeBody {
         (self.density_ratio - 1.0).abs().sqrt() / self.galileo
     }
 
-    /// The body at rest in fluid at rest, off the grid's symmetries.
+    /// Where the bodies start: one in the middle but off the grid's symmetries, more on a lattice that is disturbed by up to a third of the room between them.
+    fn starts(&self) -> Vec<[f64; 3]> {
+        let size = self.box_.map(|n| n as f64);
+        if self.bodies == 1 {
+            let h = 1.0 / self.per_diameter as f64;
+            return vec![[0.5 * size[0] + 0.31 * h, 0.5 * size[1] + 0.17 * h, 0.5 * size[2] + 0.43 * h]];
+        }
+        let per_axis = (self.bodies as f64).cbrt().ceil() as usize;
+        let mut state = 1_u64;
+        let mut draw = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        let mut place = |i: usize| {
+            let at = [i % per_axis, i / per_axis % per_axis, i / (per_axis * per_axis)];
+            [0, 1, 2].map(|a| {
+                let room = size[a] / per_axis as f64;
+                (at[a] as f64 + 0.5) * room + draw() * 2.0 / 3.0 * (room - 1.0).max(0.0)
+            })
+        };
+        (0..self.bodies).map(&mut place).collect()
+    }
+
+    /// The bodies at rest in fluid at rest.
     ///
     /// # Errors
     /// For what makes no scene.
@@ -78,11 +104,12 @@ impl FreeBody {
         let flow = Projection::new(grid, Side::Periodic.everywhere(), fluid)?.with_diffusion(self.diffusion);
         let mut bodies = RigidBodies::new(Periods::new(size.map(Some)));
         let material = Material { density: self.density_ratio, ..Material::default() };
-        let h = 1.0 / self.per_diameter as f64;
-        let at = [0.5 * size[0] + 0.31 * h, 0.5 * size[1] + 0.17 * h, 0.5 * size[2] + 0.43 * h];
-        let orientation = Rotation::from_euler_angles(0.7, 0.4, 0.2);
-        let pose = Pose { orientation, ..Pose::at(at) };
-        bodies.add(self.shape.clone(), material, pose, Twist::default(), Freedom::FREE)?;
+        for at in self.starts() {
+            let orientation = Rotation::from_euler_angles(0.7, 0.4, 0.2);
+            let pose = Pose { orientation, ..Pose::at(at) };
+            bodies.add(self.shape.clone(), material, pose, Twist::default(), Freedom::FREE)?;
+        }
+        bodies.check_overlaps()?;
         let particles = Particles::new(bodies, SmoothForcing::new(1.0), 1.0, -Vector::z());
         Ok(Simulation::new(flow, particles.with_strategy(strategy), WeightBalance::NetWeight)?)
     }
@@ -91,7 +118,7 @@ impl FreeBody {
 /// The scene as a simulation.
 pub type Fall<S> = Simulation<3, Particles<SmoothForcing, RigidBodies, S>>;
 
-/// Time and velocity of the first body at every snapshot.
+/// Time and mean velocity of the bodies at every snapshot.
 #[derive(Clone, Debug, Default)]
 pub struct Speeds(pub Vec<(f64, Vector)>);
 
@@ -104,7 +131,9 @@ impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy> Observer<Simulation<D
         _: usize,
         info: &StepInfo,
     ) -> Result<(), CouplingError> {
-        self.0.push((info.time, simulation.particles.bodies.twist(BodyId(0)).linear));
+        let bodies = &simulation.particles.bodies;
+        let sum: Vector = (0..bodies.n_bodies()).map(|b| bodies.twist(BodyId(b)).linear).sum();
+        self.0.push((info.time, sum / bodies.n_bodies() as f64));
         Ok(())
     }
 }

@@ -3,6 +3,7 @@ use super::RigidBodies;
 use super::body::is_finite;
 use super::contacts::{CHUNK, Chunk, View};
 use super::sweep;
+use super::tether::pull_of;
 use crate::DemError;
 use crate::contact::ContactLaw;
 use interfaces::{BodyId, Dynamics, Load, Twist, Wrench};
@@ -68,7 +69,9 @@ impl<L: ContactLaw> RigidBodies<L> {
         if shared {
             self.felt.list(&self.near, self.bodies.len());
         }
-        let Self { bodies, contact, impulse, constants, loads, sleepers, chunks, felt, gravity, .. } = self;
+        let Self {
+            bodies, contact, impulse, constants, loads, sleepers, chunks, felt, gravity, tethers, ..
+        } = self;
         sweep::any(shared, bodies, contact, impulse, |b, body, contact, impulse| {
             if shared {
                 *contact = felt.by(b, chunks);
@@ -86,6 +89,10 @@ impl<L: ContactLaw> RigidBodies<L> {
             }
             *impulse += *contact * dt;
             let mut total = load.wrench + *contact;
+            if let Some(pull) = pull_of(tethers, b, body, dt) {
+                *impulse += pull * dt;
+                total += pull;
+            }
             total.force += weight;
             body.after(constants, load, &total, 0.5 * dt);
             !is_finite(&body.twist)
@@ -188,7 +195,7 @@ impl<L: ContactLaw> Dynamics for RigidBodies<L> {
             self.list(dt)?;
         }
         // Without near pairs there is nothing but loads, constant over the step.
-        let alone = self.near.is_empty() && !self.may_stray(dt);
+        let alone = self.near.is_empty() && self.tethers.is_empty() && !self.may_stray(dt);
         let mut steps = if alone { 1.0 } else { self.n_steps(dt)? };
         let (mut left, mut first) = (dt, true);
         while left > 0.0 {

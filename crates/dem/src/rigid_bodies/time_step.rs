@@ -24,7 +24,9 @@ const MOST: f64 = 1e8;
 impl<L: ContactLaw> RigidBodies<L> {
     /// The longest stable step, over all bodies.
     pub(super) fn least_stable_dt(&self) -> f64 {
-        (0..self.bodies.len()).map(|b| self.stable_dt_of(b)).fold(f64::INFINITY, f64::min)
+        (0..self.bodies.len())
+            .map(|b| self.stable_dt_of(b).min(self.stable_dt_of_tether(b)))
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// The longest stable step for `b` against its own kind and against the walls.

@@ -9,6 +9,7 @@ mod rotation;
 mod sleep;
 mod state;
 mod stress;
+mod tether;
 
 use dem::{Disc, Material, RigidBodies, Shape, Sphere};
 use interfaces::{Bodies, BodyId, Freedom, Kinematics, Load, Periods, Pose, Twist, Vector, Wrench};

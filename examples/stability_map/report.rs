@@ -62,31 +62,42 @@ fn table(options: &Options, map: &Map, kind: Kind) -> Table {
     table
 }
 
-/// A cell for every density ratio and Courant number, the darker the farther from the finest run.
+/// Over the density ratio: how far the speeds are from the finest run's, the worse of both times; a line per Courant number.
 fn drawing(options: &Options, map: &Map, kind: Kind) -> Drawing {
-    let (columns, rows) = (options.courants.len() as f64, options.ratios.len() as f64);
     let mut drawing = Drawing {
-        title: format!("{}: off the finest run, % (at 10 / at 30)", kind.name()),
-        range: [(0.0, columns), (0.0, rows)],
+        title: format!("{}: speeds off the finest run's, the worse of two times", kind.name()),
+        labels: Some(["log₁₀ of the density ratio ρ_s/ρ".into(), "%".into()]),
         ..Drawing::default()
     };
+    let place = |ratio: f64| ratio.log10();
+    let mut worst = LIMIT;
     for (i, &courant) in options.courants.iter().enumerate() {
-        for (j, &ratio) in options.ratios.iter().enumerate() {
+        let paint = Paint::Kind(i, 0.0);
+        let mut line = Vec::new();
+        for &ratio in &options.ratios {
             let Some(run) = map.find(kind, ratio, courant, options.cells) else { continue };
-            let off = off(options, map, run).map(|off| off.map(f64::abs));
-            let (paint, text) = match off {
-                _ if !is_stable(run) => (Paint::Kind(3, 0.2), "unstable".into()),
-                Some([first, last]) => {
-                    let worst = first.max(last);
-                    (Paint::Share(10.0 * worst), format!("{:.1} / {:.1}", 100.0 * first, 100.0 * last))
-                }
-                None => (Paint::Share(0.0), "stable".into()),
-            };
-            let (x, y) = (i as f64, j as f64);
-            drawing.cells.push(([x + 0.02, y + 0.04], [x + 0.98, y + 0.96], paint));
-            let label = format!("{ratio} at {courant}: {text}");
-            drawing.points.push(([x + 0.05, y + 0.5], Paint::Ink, label));
+            match off(options, map, run) {
+                _ if !is_stable(run) => drawing.points.push(([place(ratio), 0.0], paint, "unstable".into())),
+                Some(off) => line.push([place(ratio), 100.0 * off[0].abs().max(off[1].abs())]),
+                None => line.push([place(ratio), 0.0]),
+            }
         }
+        line.sort_by(|p, q| p[0].total_cmp(&q[0]));
+        worst = line.iter().map(|p| p[1]).fold(worst, f64::max);
+        // The same lines may lie on one another.
+        drawing.lines.push((line, 6.0 - 2.0 * i as f64, paint));
+        drawing.legend.push((paint, format!("Courant number up to {courant}")));
     }
+    let ends = options
+        .ratios
+        .iter()
+        .map(|r| place(*r))
+        .fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)));
+    drawing.lines.push((vec![[ends.0 - 0.2, LIMIT], [ends.1 + 0.2, LIMIT]], 1.5, Paint::Ink));
+    drawing.legend.push((Paint::Ink, format!("{LIMIT} %")));
+    drawing.range = [(ends.0 - 0.2, ends.1 + 0.2), (0.0, 1.1 * worst)];
     drawing
 }
+
+/// What is asked for \[%\].
+const LIMIT: f64 = 3.0;

@@ -108,7 +108,7 @@ pub fn run<const D: usize>(
         if options.no_vtk { None } else { Some(FileOutput::resume(out, fall.flow.time())?) }
     } else {
         // What an earlier run left there is not this run's.
-        for old in ["state.bin", "motion.csv", "result.json", "summary.png"] {
+        for old in ["state.bin", "state.bin.previous", "motion.csv", "result.json", "summary.png"] {
             let _ = std::fs::remove_file(out.join(old));
         }
         if options.no_vtk { None } else { Some(FileOutput::new(out)?) }

@@ -140,3 +140,20 @@ proptest! {
         prop_assert!((other - x.coords).norm() >= d.abs() * (1.0 - 1e-12) - 1e-14 * size);
     }
 }
+
+proptest! {
+    /// Within the band an ellipsoid's distance is exact; beyond it a bound of the right sign, no less than the band and no more than the distance.
+    #[test]
+    fn far_points_of_ellipsoids_have_bounds(
+        axes in prop::array::uniform3(0.1..3.0_f64), x in prop::array::uniform3(-5.0..5.0_f64), band in 0.01..2.0_f64,
+    ) {
+        let ellipsoid = Ellipsoid::new(axes).unwrap();
+        let (found, exact) = (ellipsoid.signed_distance(x.into(), band), ellipsoid.nearest(x.into()).1);
+        if exact.abs() < band {
+            prop_assert_eq!(found, exact);
+        } else {
+            prop_assert!(found.abs() >= band && found.abs() <= exact.abs() * (1.0 + 1e-12), "{} {}", found, exact);
+            prop_assert!(found * exact > 0.0);
+        }
+    }
+}

@@ -1,17 +1,20 @@
 //! Direct forcing at surface markers, spread by a smooth kernel.
+mod curvature;
 mod stencils;
 
 use crate::crowd::Crowd;
 use crate::forcing::LayerSums;
 use crate::solid_fraction::check;
 use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction, surface_elements};
+use curvature::follow_curvature;
 use interfaces::{
     Bodies, BodyId, Kinematics, Lattice, Point, Pose, SurfaceElement, Vector, VelocityField, Wrench,
 };
 use stencils::Stencils;
 
 /// Smooth direct forcing (Uhlmann 2005; several passes as in Wang et al. 2008; a smooth [`Kernel`] as Yang et al. 2009), with
-/// markers moved into the solid by the kernel's own [`Kernel::retraction`], which puts the no-slip surface where the body's is.
+/// markers moved into the solid by the kernel's own [`Kernel::retraction`] r_d and, where the surface is curved, by 1.75 r_d² times the sum of
+/// its principal curvatures more, which puts the no-slip surface where the body's is.
 ///
 /// ```text
 /// ΔF_m = (1/c) (U + Ω×r_m + u_s − E u)_m / dt,   u += dt Σ_m δ_h(x − x_m) ΔF_m ΔV_m,   ΔV_m = A_m h
@@ -165,10 +168,11 @@ impl SmoothForcing {
                 return Err(IbmError::TooCoarse { body: b, size, spacing: h, least: LEAST_CELLS });
             }
             let spacing = if dim == 2 { 1.0 } else { SPACING };
-            let offset = -kernel.retraction() * h;
-            markers.elements = surface_elements(bodies.solid(b), spacing * h, offset);
+            let (retraction, solid) = (kernel.retraction() * h, bodies.solid(b));
+            markers.elements = surface_elements(solid, spacing * h, -retraction);
+            markers.elements.iter_mut().for_each(|e| follow_curvature(e, solid, dim, h, retraction));
             if markers.elements.is_empty() {
-                return Err(IbmError::NoSurface { body: b, offset });
+                return Err(IbmError::NoSurface { body: b, offset: -retraction });
             }
             let scale = self.density * h / kernel.self_overlap();
             markers.masses = markers.elements.iter().map(|e| e.area * scale).collect();

@@ -4,7 +4,7 @@ mod shear;
 
 use example_support::cpu::Stopwatch;
 use example_support::moved_body::{Noise, Swinging, passing, turning};
-use example_support::{Outcome, run_cases};
+use example_support::{Outcome, periodic_cube, run_cases};
 use siltflow::flow::Diffusion;
 use siltflow::ibm::{Forcing, Hfdib, Kernel, SmoothForcing};
 
@@ -20,6 +20,7 @@ fn main() -> Outcome<()> {
         ("passing", passing_2d),
         ("sphere", passing_3d),
         ("turning", turning_sphere),
+        ("cube", sphere_in_cube),
         ("shear", shear::sphere_in_shear),
         ("jeffery", shear::jeffery_orbit),
     ])
@@ -144,6 +145,23 @@ fn turning_sphere() -> Outcome<()> {
                 "{name:>16} {per_diameter:>6} {explicit:>9.4} {implicit:>9.4} {:>8.1}",
                 watch.elapsed().cpu
             );
+        }
+    }
+    Ok(())
+}
+
+fn sphere_in_cube() -> Outcome<()> {
+    let exact = periodic_cube::hasimoto();
+    println!(
+        "\nFixed sphere in a periodic cube of 4 D, creeping flow: drag over 6πμRU, {exact:.4} by Hasimoto"
+    );
+    println!("{:>16} {:>6} {:>9} {:>8} {:>8}", "forcing", "per D", "drag", "off", "CPU s");
+    for (name, forcing) in WAYS {
+        for per_diameter in [6, 8, 12] {
+            let watch = Stopwatch::start();
+            let drag = periodic_cube::drag(per_diameter, forcing())?;
+            let (off, cpu) = (100.0 * (drag / exact - 1.0), watch.elapsed().cpu);
+            println!("{name:>16} {per_diameter:>6} {drag:>9.4} {off:>7.2}% {cpu:>8.1}");
         }
     }
     Ok(())

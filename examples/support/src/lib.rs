@@ -12,6 +12,7 @@ pub mod free_body;
 pub mod free_stream;
 pub mod granular;
 pub mod moved_body;
+pub mod periodic_cube;
 pub mod picture;
 pub mod prescribed_bodies;
 pub mod progress;

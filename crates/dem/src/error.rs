@@ -90,6 +90,14 @@ pub enum DemError {
         /// Its value.
         factor: f64,
     },
+    /// A film of fluid makes no sense.
+    #[error("the film's {what} is {value}; give a positive, finite number, of a roughness no more than 1")]
+    Film {
+        /// Which number.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// A tether makes no sense.
     #[error("the tether of body {} has stiffness {stiffness} N/m and damping {damping} N s/m; give a stiffness and a damping that are finite and not negative, and finite places", body.0)]
     Tether {

@@ -37,7 +37,10 @@ mod vtp;
 pub use broad_phase::{
     Automatic, BroadPhase, HierarchicalGrid, LinkedCells, NearPair, PairList, PairListError, RTree, Sweep,
 };
-pub use contact::{Chen, ContactLaw, Means, Memory, PairProperties, Potential, Push, Rolling, Touch};
+pub use contact::{
+    Chen, ContactLaw, FilmForce, Gap, Lubricated, Means, Memory, PairProperties, Potential, Push, Rolling,
+    Touch, WholeFilm,
+};
 pub use error::DemError;
 pub use material::Material;
 #[cfg(feature = "mesh")]

@@ -3,6 +3,7 @@ mod advance;
 mod body;
 mod checkpoint;
 mod contacts;
+mod film;
 mod meeting;
 mod near;
 mod push;
@@ -197,6 +198,9 @@ impl<L: ContactLaw> RigidBodies<L> {
         if !constants.inertia.mass.is_finite() {
             return Err(DemError::Unsupported { a: constants.shape.name(), b: "body" });
         }
+        if L::FILMS && kind == Kind::Disc {
+            return Err(DemError::Unsupported { a: constants.shape.name(), b: "film" });
+        }
         if let (Some(first), Some(other)) = (self.bodies.first(), self.constants.first())
             && first.is_plane() != (kind == Kind::Disc)
         {
@@ -326,6 +330,10 @@ impl<L: ContactLaw> RigidBodies<L> {
     pub fn n_contacts(&self) -> usize {
         let awake: usize = self.chunks.iter().map(|c| c.patches.len()).sum();
         awake + self.sleepers.patches.len() + self.sleepers.woken.len()
+    }
+    /// How many pairs a [film](crate::Lubricated) kept apart in the last sub-step, those with walls included.
+    pub fn n_films(&self) -> usize {
+        self.chunks.iter().map(|c| c.films).sum()
     }
     /// How many overlaps were computed in all steps so far; pairs whose boxes are apart cost none.
     pub fn overlap_calls(&self) -> u64 {

@@ -19,6 +19,7 @@
 
 mod bodies;
 mod cut_walls;
+mod film;
 mod geometry;
 mod lattice;
 mod mesh;
@@ -31,6 +32,7 @@ mod wall_row;
 
 pub use bodies::{Bodies, BodyId, Dynamics, Freedom, Inertia, Kinematics, Load};
 pub use cut_walls::{CutComponent, CutFace, CutNode, CutWalls, Link, SolidPoint};
+pub use film::UnresolvedFilm;
 pub use geometry::{Aabb, Periods, Point, Pose, Rotation, Twist, Vector, Wrench};
 pub use lattice::{Lattice, VelocityField};
 pub use mesh::{Cell, MeshGeometry};

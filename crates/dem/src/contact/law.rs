@@ -1,4 +1,5 @@
 //! What a contact law is asked, and what it answers.
+use super::gap::{FilmForce, Gap};
 use crate::{DemError, Overlap, PairProperties};
 use interfaces::Vector;
 use std::fmt::Debug;
@@ -19,10 +20,24 @@ pub trait ContactLaw: Clone + Debug + Send + Sync {
     /// Does it ask for [`Touch::mobility`]?
     const MOBILITY: bool = false;
 
+    /// Does it act [across](Self::across) gaps, too? Others pay nothing for it.
+    const FILMS: bool = false;
+
+    /// The largest gap across which it acts \[m\].
+    fn reach(&self) -> f64 {
+        0.0
+    }
+
+    /// What the first of two bodies feels that do not touch.
+    fn across(&self, gap: &Gap) -> FilmForce {
+        let _ = gap;
+        FilmForce::default()
+    }
+
     /// Are its own numbers in order?
     ///
     /// # Errors
-    /// [`DemError::LengthFactor`].
+    /// [`DemError::LengthFactor`], [`DemError::Film`].
     fn check(&self) -> Result<(), DemError>;
 }
 

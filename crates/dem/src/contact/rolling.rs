@@ -1,4 +1,5 @@
 //! Rolling resistance.
+use super::gap::{FilmForce, Gap};
 use super::law::{ContactLaw, Push, Touch};
 use super::properties::{PairProperties, series};
 use crate::{DemError, Material};
@@ -24,7 +25,14 @@ const DAMPING_RATIO: f64 = 0.3;
 impl<L: ContactLaw> ContactLaw for Rolling<L> {
     type Memory = (L::Memory, Vector);
     const MOBILITY: bool = L::MOBILITY;
+    const FILMS: bool = L::FILMS;
 
+    fn reach(&self) -> f64 {
+        self.0.reach()
+    }
+    fn across(&self, gap: &Gap) -> FilmForce {
+        self.0.across(gap)
+    }
     fn properties(&self, a: &Material, b: &Material) -> PairProperties {
         self.0.properties(a, b)
     }

@@ -10,6 +10,7 @@
 //! and what is behind the surfaces of both models is summed over columns (`columns.rs`). Slope and curvature so enter
 //! alike, and what is left out is of third order in the box's size.
 mod around;
+mod closest;
 pub(crate) mod columns;
 mod convex;
 mod cut;
@@ -34,6 +35,7 @@ pub use sub_box::{BoxKind, SubBox};
 use super::Overlap;
 use crate::{DemError, Shape};
 pub(crate) use around::Oriented;
+pub(crate) use closest::{Closest, closest};
 use columns::Sums;
 use convex::{Circumscribed, Which};
 pub(crate) use cut::Surfaces;

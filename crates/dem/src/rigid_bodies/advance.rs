@@ -12,6 +12,7 @@ impl<L: ContactLaw> RigidBodies<L> {
     pub(super) fn view(&self) -> View<'_, L> {
         View {
             law: &self.law,
+            loads: &self.loads,
             bodies: &self.bodies,
             constants: &self.constants,
             walls: &self.walls,
@@ -120,6 +121,7 @@ impl<L: ContactLaw> RigidBodies<L> {
         let mut chunks = std::mem::take(&mut self.chunks);
         let mut contact = std::mem::take(&mut self.contact);
         let used = self.near.len().div_ceil(CHUNK);
+        chunks[used..].iter_mut().for_each(|c| c.films = 0);
         let result = work(&self.view(), self.is_shared(), &mut chunks[..used], &mut contact, dt);
         self.chunks = chunks;
         self.contact = contact;

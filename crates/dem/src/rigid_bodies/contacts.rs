@@ -1,6 +1,7 @@
 //! Forces of the pairs that touch.
 use super::Partner;
-use super::body::{Body, Constants};
+use super::body::{Body, Constants, Loads};
+use super::film::Film;
 use super::meeting::Other;
 use super::push::larger;
 use crate::broad_phase::NearPair;
@@ -50,6 +51,8 @@ pub(super) struct Chunk<M> {
     pub(super) felt: Vec<Wrench>,
     solver: OverlapSolver,
     pub(super) overlap_calls: u64,
+    /// Pairs that a film keeps apart.
+    pub(super) films: usize,
     /// Largest stiffness over mass \[1/s²\].
     pub(super) stiffest: f64,
     pub(super) error: Option<DemError>,
@@ -70,6 +73,7 @@ impl<M> Default for Chunk<M> {
             felt: Vec::new(),
             solver: OverlapSolver::new(),
             overlap_calls: 0,
+            films: 0,
             stiffest: 0.0,
             error: None,
         }
@@ -97,6 +101,7 @@ pub(super) fn wall_of(number: u32) -> usize {
 #[derive(Clone, Copy)]
 pub(super) struct View<'a, L> {
     pub(super) law: &'a L,
+    pub(super) loads: &'a Loads,
     pub(super) bodies: &'a [Body],
     pub(super) constants: &'a [Constants],
     pub(super) walls: &'a [Wall],
@@ -117,10 +122,10 @@ impl<L: ContactLaw> View<'_, L> {
         dt: f64,
         mut add: impl FnMut(u32, Wrench),
     ) {
-        let Chunk { patches, last, solver, overlap_calls, stiffest, error, .. } = chunk;
+        let Chunk { patches, last, solver, overlap_calls, films, stiffest, error, .. } = chunk;
         std::mem::swap(patches, last);
         patches.clear();
-        (*stiffest, *error) = (0.0, None);
+        (*films, *stiffest, *error) = (0, 0.0, None);
         let mut before = &last[..];
         let end = self.near.len().min(first + CHUNK);
         let (mut one, mut own) = (self.near[first].a, Wrench::default());
@@ -131,7 +136,15 @@ impl<L: ContactLaw> View<'_, L> {
             }
             let meeting = self.meeting(pair);
             if meeting.is_apart() {
-                if ALL && matches!(meeting.other, Other::Body(..)) {
+                let film = if L::FILMS { self.film(&meeting) } else { None };
+                if let Some(Film { on_both: [on_a, on_b], stiffness }) = film {
+                    own += on_a;
+                    *films += 1;
+                    *stiffest = larger(stiffness, *stiffest);
+                    if matches!(meeting.other, Other::Body(..)) {
+                        add(pair.b, on_b);
+                    }
+                } else if ALL && matches!(meeting.other, Other::Body(..)) {
                     add(pair.b, Wrench::default());
                 }
                 continue;
@@ -170,7 +183,19 @@ impl<L: ContactLaw> View<'_, L> {
                         own += on_a;
                         on_other += on_b;
                     }
-                    if matches!(meeting.other, Other::Body(..)) && (ALL || patches.len() > known) {
+                    let mut result = result;
+                    if L::FILMS
+                        && patches.len() == known
+                        && let Some(film) = self.film(&meeting)
+                    {
+                        let Film { on_both: [on_a, on_b], stiffness } = film;
+                        own += on_a;
+                        on_other += on_b;
+                        *films += 1;
+                        result = result.map(|r| larger(stiffness, r));
+                    }
+                    if matches!(meeting.other, Other::Body(..)) && (ALL || L::FILMS || patches.len() > known)
+                    {
                         add(pair.b, on_other);
                     }
                     result

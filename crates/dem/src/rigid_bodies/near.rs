@@ -123,7 +123,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             Kind::Disc => Aabb::around(centre, Vector::new(r, r, 0.0)),
             Kind::Other => self.constants[b].shape.aabb().posed(&Pose { position: centre, orientation }),
         };
-        own.grown(margin)
+        own.grown(margin + 0.5 * self.law.reach())
     }
 
     /// Lists the pairs whose boxes may meet within `dt`, or within some sub-steps: of all bodies, so that long passes before it has to be done again.
@@ -164,12 +164,12 @@ impl<L: ContactLaw> RigidBodies<L> {
         self.near.clear();
         // Boxes that meet at their corners hold balls that are far apart.
         let (bodies, listed, periods) = (&self.bodies, &self.listed, &self.periods);
-        let (constants, sleepers) = (&self.constants, &self.sleepers);
+        let (constants, sleepers, film) = (&self.constants, &self.sleepers, self.law.reach());
         let lies = |b: usize| sleepers.lies(b, &bodies[b], &constants[b]);
         let spheres_meet = |pair: &&NearPair| {
             let (a, b) = (pair.a as usize, pair.b as usize);
             let apart = listed[b].centre + shift(periods, pair.image) - listed[a].centre;
-            let within = bodies[a].radius + listed[a].margin + bodies[b].radius + listed[b].margin;
+            let within = bodies[a].radius + listed[a].margin + bodies[b].radius + listed[b].margin + film;
             let lie = sleepers.n > 0 && lies(a) && lies(b);
             apart.norm_squared() <= within * within && !lie
         };
@@ -177,7 +177,7 @@ impl<L: ContactLaw> RigidBodies<L> {
         let pairs = self.near.len();
         for (w, wall) in self.walls.iter().enumerate() {
             for (b, listed) in self.listed.iter().enumerate() {
-                let reach = self.bodies[b].radius + listed.margin;
+                let reach = self.bodies[b].radius + listed.margin + film;
                 if self.movable[b]
                     && !self.sleepers.is_asleep(b)
                     && wall.plane.signed_distance(listed.centre) <= reach

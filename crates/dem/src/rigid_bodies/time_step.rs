@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 /// Sub-steps per half period of the stiffest contact foreseen.
 const STEPS_PER_CONTACT: f64 = 33.0;
 /// Sub-steps per half period of contacts that are stiffer than was foreseen, and what is still accepted.
-const LEAST_STEPS: f64 = 28.0;
+pub(super) const LEAST_STEPS: f64 = 28.0;
 const FEWEST_STEPS: f64 = 22.0;
 /// Overlap, in radii of the smaller body, up to which that stiffness is foreseen.
 const FORESEEN_DEPTH: f64 = 0.05;

@@ -1,6 +1,7 @@
 //! Contacts and motion against closed forms; what the files share.
 mod bad_input;
 mod collisions;
+mod film;
 mod friction;
 mod many;
 mod near;

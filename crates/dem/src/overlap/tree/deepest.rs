@@ -14,6 +14,14 @@ pub(crate) struct Deepest {
     pub(crate) across: Vector,
 }
 
+/// Where the larger one of both distances is least.
+pub(super) struct Least {
+    pub(super) at: Vector,
+    pub(super) distances: [f64; 2],
+    /// Of the distances, before the last step.
+    pub(super) slopes: [Vector; 2],
+}
+
 /// Both bodies, in the frame around the `half`-widths that their boxes share.
 #[derive(Clone, Copy)]
 pub(crate) struct Search<'a> {
@@ -44,9 +52,27 @@ impl Search<'_> {
         [0, 1].map(|i| self.slope(i, x, d[i], step))
     }
 
+    /// Down from `x` in steps of about `t` at first to where both bodies are deep, if there is such a place.
+    pub(crate) fn descend(&self, x: Vector, t: f64) -> Option<Deepest> {
+        let Least { at, distances: d, slopes } = self.least(x, t, ENOUGH);
+        let level = d[0].max(d[1]);
+        if level >= 0.0 {
+            return None;
+        }
+        // One of them alone decides deep within the other.
+        let [a, b] = slopes;
+        let across = match () {
+            _ if (d[0] - d[1]).abs() <= 0.5 * level.abs() && (a - b).norm_squared() > 0.25 => a - b,
+            _ if d[0] > d[1] => a,
+            _ => -b,
+        };
+        let across = across.try_normalize(0.0).unwrap_or(Vector::z());
+        Some(Deepest { at, distances: d, level, across })
+    }
+
     /// Down from `x` in steps of about `t` at first: the least of the larger of two functions by proximal steps,
-    /// min over s of max(d_A + g_A·s, d_B + g_B·s) + s²/2t.
-    pub(crate) fn descend(&self, mut x: Vector, mut t: f64) -> Option<Deepest> {
+    /// min over s of max(d_A + g_A·s, d_B + g_B·s) + s²/2t, until no more than this share of it is left to gain.
+    pub(super) fn least(&self, mut x: Vector, mut t: f64, enough: f64) -> Least {
         let size = self.size();
         let mut d = self.distances(x);
         let mut fine = STEPS[1] * size;
@@ -81,22 +107,10 @@ impl Search<'_> {
             }
             let level = d[0].max(d[1]);
             // Only a little is left to gain, all in all.
-            if !moved || gain < ENOUGH * level.abs() {
+            if !moved || gain < enough * level.abs() {
                 break;
             }
         }
-        let level = d[0].max(d[1]);
-        if level >= 0.0 {
-            return None;
-        }
-        // One of them alone decides deep within the other.
-        let [a, b] = slopes;
-        let across = match () {
-            _ if (d[0] - d[1]).abs() <= 0.5 * level.abs() && (a - b).norm_squared() > 0.25 => a - b,
-            _ if d[0] > d[1] => a,
-            _ => -b,
-        };
-        let across = across.try_normalize(0.0).unwrap_or(Vector::z());
-        Some(Deepest { at: x, distances: d, level, across })
+        Least { at: x, distances: d, slopes }
     }
 }

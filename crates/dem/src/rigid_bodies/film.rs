@@ -1,0 +1,118 @@
+//! Bodies that are close without touching.
+use super::body::{Constants, Kind};
+use super::contacts::View;
+use super::meeting::{Meeting, Other};
+use super::time_step::LEAST_STEPS;
+use crate::contact::{ContactLaw, FilmForce, Gap};
+use crate::overlap::tree::{Closest, closest};
+use interfaces::{BodyId, Point, Pose, Vector, Wrench};
+use nalgebra::Matrix2;
+use std::f64::consts::PI;
+
+/// Largest share of a relative velocity that a film takes in a sub-step.
+const MOST_TAKEN: f64 = 0.3;
+/// Surfaces count as no flatter than a sphere of so many radii of the smaller body.
+const FLATTEST: f64 = 1.0;
+
+/// What a film does to both bodies, and the stiffness over mass that asks for as short a step \[1/s²\].
+pub(super) struct Film {
+    pub(super) on_both: [Wrench; 2],
+    pub(super) stiffness: f64,
+}
+
+/// The closest places of two bodies.
+struct Place {
+    at: Point,
+    gap: f64,
+    normal: Vector,
+    radius: f64,
+    curvatures: [f64; 2],
+}
+
+impl<L: ContactLaw> View<'_, L> {
+    /// What the film between two that do not touch does, if there is one.
+    pub(super) fn film(&self, meeting: &Meeting<'_>) -> Option<Film> {
+        let Place { at, gap, normal, radius, curvatures } = self.place(meeting)?;
+        let a = meeting.a;
+        let (mut velocity, mut spin) = (a.twist.at(at - a.pose.position), a.twist.angular);
+        if let Other::Body(b, at_b) = meeting.other {
+            velocity -= b.twist.at(at - at_b);
+            spin -= b.twist.angular;
+        }
+        let wall = matches!(meeting.other, Other::Wall(_));
+        let film = Gap { distance: gap, normal, velocity, spin, radius, curvatures, wall };
+        let FilmForce { force, couple, resistance } = self.law.across(&film);
+        let inverse_mass = |b: u32, c: &Constants| {
+            if c.pinned() { 0.0 } else { 1.0 / (c.mass + self.loads.of(BodyId(b as usize).0).added_mass) }
+        };
+        let mut inverse = inverse_mass(meeting.pair.a, meeting.constants());
+        if !wall {
+            inverse += inverse_mass(meeting.pair.b, meeting.others());
+        }
+        let rate = PI * resistance * inverse / (LEAST_STEPS * MOST_TAKEN);
+        Some(Film { on_both: meeting.wrenches(at, force, couple), stiffness: rate * rate })
+    }
+
+    /// Where the two are closest, if that is within reach.
+    fn place(&self, meeting: &Meeting<'_>) -> Option<Place> {
+        let (a, reach) = (meeting.a, self.law.reach());
+        let at_a = a.pose.position;
+        let ball = |b: &super::Body| b.kind == Kind::Ball;
+        let placed = |normal: Vector, gap: f64, k: f64| {
+            let at = at_a + normal * (a.radius + 0.5 * gap);
+            let own = 1.0 / a.radius;
+            (gap > 0.0 && gap <= reach).then(|| Place {
+                at,
+                gap,
+                normal,
+                radius: 1.0 / (own + k),
+                curvatures: [own, k],
+            })
+        };
+        match meeting.other {
+            Other::Body(b, at_b) if ball(a) && ball(b) => {
+                let apart = at_b - at_a;
+                let distance = apart.norm();
+                placed(apart / distance, distance - a.radius - b.radius, 1.0 / b.radius)
+            }
+            Other::Wall(wall) if ball(a) => {
+                placed(-wall.plane.normal(), wall.plane.signed_distance(at_a) - a.radius, 0.0)
+            }
+            Other::Body(b, at_b) => {
+                let within = a.radius + b.radius + reach;
+                if (at_b - at_a).norm_squared() > within * within {
+                    return None;
+                }
+                let (first, second) = (meeting.constants(), meeting.others());
+                let pose = Pose { position: at_b, ..b.pose };
+                let found = closest(&*first.shape, &a.pose, &*second.shape, &pose, reach)?;
+                Some(curved(&found, first.size.min(second.size)))
+            }
+            Other::Wall(wall) => {
+                if wall.plane.signed_distance(at_a) > a.radius + reach {
+                    return None;
+                }
+                let first = meeting.constants();
+                let found = closest(&*first.shape, &a.pose, &wall.plane, &Pose::at([0.0; 3]), reach)?;
+                Some(curved(&found, first.size))
+            }
+        }
+    }
+}
+
+/// Closest places of bodies the smaller of which has this size.
+fn curved(found: &Closest, size: f64) -> Place {
+    let Closest { at, gap, normal, curvatures: [a, b] } = *found;
+    // The level surfaces half-way between are rounder than the bodies' own by half the gap.
+    let flattest = 1.0 / (FLATTEST * size);
+    let sum: Matrix2<f64> = a + b;
+    let [k, l] = {
+        let eigen = sum.symmetric_eigenvalues();
+        [eigen.x, eigen.y].map(|k| k.max(flattest))
+    };
+    let mean = [a, b].map(|c| (0.5 * c.trace()).max(0.0));
+    // As flat as both may be together.
+    let missing = (flattest - mean[0] - mean[1]).max(0.0);
+    let radius = (2.0 / ((k + l) * (k * l).sqrt())).sqrt();
+    Place { at, gap, normal, radius, curvatures: [mean[0] + missing, mean[1]] }
+}

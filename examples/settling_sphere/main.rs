@@ -19,6 +19,7 @@ use example_support::Outcome;
 use example_support::coupled::{Plan, RunOptions, run};
 use example_support::granular::{Ending, main_of};
 use example_support::settling_sphere::{Case, SettlingSphere};
+use siltflow::dem::{Chen, ContactLaw};
 use siltflow::ibm::SmoothForcing;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
@@ -33,30 +34,33 @@ struct Cli {
     /// Cells across the sphere, at least 4.
     #[arg(long, default_value_t = 12)]
     cells_per_diameter: usize,
+    /// No model of what the grid does not resolve of the film between sphere and floor.
+    #[arg(long)]
+    no_lubrication: bool,
     #[command(flatten)]
     run: RunOptions,
 }
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    main_of(cli.run.threads, |stop| settle(&cli, stop))
+    let scene = SettlingSphere { case: cli.case, cells_per_diameter: cli.cells_per_diameter };
+    main_of(cli.run.threads, |stop| match cli.no_lubrication {
+        true => settle(&cli, &scene, Chen::default(), stop),
+        false => settle(&cli, &scene, scene.lubricated()?, stop),
+    })
 }
 
-fn settle(cli: &Cli, stop: &AtomicBool) -> Outcome<Ending> {
-    let scene = SettlingSphere { case: cli.case, cells_per_diameter: cli.cells_per_diameter };
+fn settle<L: ContactLaw>(cli: &Cli, scene: &SettlingSphere, law: L, stop: &AtomicBool) -> Outcome<Ending> {
     let mut forcing = SmoothForcing::new(cli.case.fluid().density);
     if let Some(kernel) = cli.run.kernel {
         forcing = forcing.with_kernel(kernel);
     }
-    let mut fall = scene.build(forcing)?;
+    let setup = format!("{scene:?} {law:?}");
+    let mut fall = scene.build(forcing, law)?;
     let out = cli.run.out.clone().unwrap_or_else(|| "out/settling_sphere".into());
-    let plan = Plan {
-        end: cli.run.end.unwrap_or(cli.case.end()),
-        out: &out,
-        setup: &format!("{scene:?}"),
-        view: scene.view(),
-    };
+    let plan =
+        Plan { end: cli.run.end.unwrap_or(cli.case.end()), out: &out, setup: &setup, view: scene.view() };
     let record = run(&mut fall, &cli.run, &plan, stop)?;
-    report::tell(&scene, &record, &plan, cli.run.no_images)?;
+    report::tell(scene, &record, &plan, cli.run.no_images)?;
     Ok(record.ending)
 }

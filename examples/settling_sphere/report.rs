@@ -6,14 +6,15 @@ use example_support::reference_curve::{Distance, at};
 use example_support::settling_sphere::{Case, DIAMETER, SettlingSphere};
 use example_support::table::{Table, grouped, number, write_json};
 use serde_json::json;
+use siltflow::dem::ContactLaw;
 
 /// Below so many cells between sphere and floor the flow is not resolved.
 const RESOLVED_GAP: f64 = 2.0;
 
-pub(crate) fn tell(
+pub(crate) fn tell<L: ContactLaw>(
     scene: &SettlingSphere,
     record: &Record,
-    plan: &Plan<'_, 3>,
+    plan: &Plan<'_, 3, L>,
     no_images: bool,
 ) -> Outcome<()> {
     let velocity = record.motion.over_time(0, |s| s.velocity[2]);
@@ -79,7 +80,7 @@ pub(crate) fn tell(
 }
 
 /// The flow at three times, speed and gap over time.
-fn figure(case: Case, record: &Record, plan: &Plan<'_, 3>) -> Outcome<()> {
+fn figure<L: ContactLaw>(case: Case, record: &Record, plan: &Plan<'_, 3, L>) -> Outcome<()> {
     let n = record.slices.len();
     let mut chosen: Vec<usize> = [n / 4, n / 2, n - n.min(1 + n / 12)].into();
     chosen.dedup();

@@ -7,11 +7,12 @@ use example_support::settling_sphere::{Case, SettlingSphere};
 use example_support::sheared_body::{Shear, settled_spin};
 use example_support::sinking_discs::{BOX, DIAMETER, FLUID_DENSITY, SinkingDiscs};
 use siltflow::coupling::{self, Schedule};
+use siltflow::dem::ContactLaw;
 use siltflow::ibm::SmoothForcing;
 use std::sync::atomic::AtomicBool;
 
 /// How the bodies moved up to `end` \[s\].
-fn motion<const D: usize>(fall: &mut Fall<D>, end: f64, courant: f64) -> Motion {
+fn motion<const D: usize, L: ContactLaw>(fall: &mut Fall<D, L>, end: f64, courant: f64) -> Motion {
     let schedule = Schedule { end, intervals: 1, courant, ..Schedule::default() };
     let mut motion = Motion::default();
     coupling::run(fall, &schedule, &mut motion, &AtomicBool::new(false)).unwrap();
@@ -25,7 +26,8 @@ fn a_sphere_settles_as_measured() {
     with_threads(1, || {
         let case = Case::E4;
         let scene = SettlingSphere { case, cells_per_diameter: 8 };
-        let mut fall = scene.build(SmoothForcing::new(case.fluid().density)).unwrap();
+        let mut fall =
+            scene.build(SmoothForcing::new(case.fluid().density), scene.lubricated().unwrap()).unwrap();
         let velocity = motion(&mut fall, 1.0, 0.2).over_time(0, |s| s.velocity[2]);
         let peak = velocity.iter().fold(0.0, |most: f64, v| most.max(-v.1));
         let measured = case.peak().unwrap();

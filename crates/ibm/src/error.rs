@@ -43,6 +43,12 @@ pub enum IbmError {
         /// Largest distance of neighbouring nodes \[m\].
         most: f64,
     },
+    /// A spacing is not a length.
+    #[error("the spacing of the cells is {spacing} m: give a positive, finite length")]
+    Spacing {
+        /// The spacing \[m\].
+        spacing: f64,
+    },
     /// A body is longer than the period of the grid.
     #[error(
         "body {} is {size:.3e} m long along axis {axis}, longer than the period of {period:.3e} m: make the body smaller or the box larger", body.0

@@ -14,6 +14,8 @@
 //! gradients given on bodies ([`Reconstruction`] is what both it and `Hfdib` use), [`Pockets`] finds fluid that bodies
 //! have closed in.
 //!
+//! [`SmoothFilm`] tells what the flow leaves of thin films between bodies to a model of lubrication.
+//!
 //! Turbulence models get the distance from bodies and walls from [`WallDistance`], and what wall functions need beside bodies
 //! from [`WallRows`].
 //!
@@ -25,6 +27,7 @@ mod control_volume;
 mod crowd;
 mod cut_link;
 mod error;
+mod film;
 mod forcing;
 mod fraction;
 mod hfdib;
@@ -50,6 +53,7 @@ mod wall_rows;
 pub use control_volume::ControlVolume;
 pub use cut_link::cut_walls;
 pub use error::IbmError;
+pub use film::SmoothFilm;
 pub use forcing::{Forcing, Layer};
 pub use fraction::{cell_fraction, plane_fraction};
 pub use hfdib::Hfdib;

@@ -5,9 +5,9 @@ use crate::picture::{Disc, Domain};
 use crate::reference_curve;
 use clap::ValueEnum;
 use coupling::{Particles, Simulation, WeightBalance};
-use dem::{HalfSpace, Material, RigidBodies, Sphere};
+use dem::{Chen, ContactLaw, HalfSpace, Lubricated, Material, RigidBodies, Sphere};
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Sampler, Side};
-use ibm::SmoothForcing;
+use ibm::{SmoothFilm, SmoothForcing};
 use interfaces::{BodyId, Freedom, Kinematics, Periods, Point, Pose, Twist, Vector};
 
 /// Edges of the box \[m\]; gravity acts along −z.
@@ -111,16 +111,25 @@ impl SettlingSphere {
         DIAMETER / self.cells_per_diameter as f64
     }
 
+    /// Contact with a film of the oil before it.
+    ///
+    /// # Errors
+    /// None with a sensible number of cells.
+    pub fn lubricated(&self) -> Outcome<Lubricated<Chen>> {
+        let [_, viscosity] = self.case.oil();
+        Ok(Lubricated::new(Chen::default(), viscosity, SmoothFilm::new(self.spacing())?)?)
+    }
+
     /// Cells along x, y and z: as nearly cubes as the box allows.
     pub fn cells(&self) -> [usize; 3] {
         BOX.map(|l| (l / self.spacing()).round().max(1.0) as usize)
     }
 
-    /// Sphere, walls and fluid at rest.
+    /// Sphere, walls and fluid at rest; the sphere meets the floor by `law`.
     ///
     /// # Errors
     /// Those of grid, flow and bodies.
-    pub fn build(&self, forcing: SmoothForcing) -> Outcome<Fall<3>> {
+    pub fn build<L: ContactLaw>(&self, forcing: SmoothForcing, law: L) -> Outcome<Fall<3, L>> {
         if self.cells_per_diameter < LEAST_CELLS {
             return Err(format!(
                 "{} cells across the sphere; at least {LEAST_CELLS} are needed: raise --cells-per-diameter",
@@ -135,7 +144,7 @@ impl SettlingSphere {
         let flow = Projection::new(CartesianGrid::new(cells, lengths)?, Side::WALL.everywhere(), fluid)?
             .with_diffusion(Diffusion::Explicit);
         let material = Material { density: DENSITY, youngs_modulus: YOUNGS_MODULUS, ..Material::default() };
-        let mut bodies = RigidBodies::new(Periods::default());
+        let mut bodies = RigidBodies::with_law(Periods::default(), law);
         bodies.add_wall(HalfSpace::new(Point::origin(), Vector::z())?, material)?;
         let start = Pose::at([0.5 * lengths[0], 0.5 * lengths[1], START]);
         bodies.add(Sphere::new(0.5 * DIAMETER)?, material, start, Twist::default(), Freedom::FREE)?;
@@ -145,7 +154,7 @@ impl SettlingSphere {
     }
 
     /// The plane through the sphere's centre, x to the right and z upwards.
-    pub fn view(&self) -> View<3> {
+    pub fn view<L: ContactLaw>(&self) -> View<3, L> {
         let [nx, _, nz] = self.cells();
         let domain = Domain {
             width: nx as f64 * self.spacing(),
@@ -163,7 +172,7 @@ impl SettlingSphere {
     }
 }
 
-fn slice(fall: &Fall<3>) -> Slice {
+fn slice<L: ContactLaw>(fall: &Fall<3, L>) -> Slice {
     let (flow, bodies) = (&fall.flow, &fall.particles.bodies);
     let (grid, pose) = (flow.grid(), bodies.pose(BodyId(0)));
     let [nx, _, nz] = grid.cells();

@@ -3,6 +3,7 @@ use super::run::Fall;
 use crate::picture::comparison::Field;
 use crate::picture::{Disc, Domain, Frames, Scalar};
 use coupling::{CouplingError, Observer, StepInfo};
+use dem::{Chen, ContactLaw};
 use std::path::{Path, PathBuf};
 
 /// Speeds on a rectangle at one time, and the bodies in it.
@@ -27,26 +28,26 @@ impl Slice {
 }
 
 /// What pictures show.
-pub struct View<const D: usize> {
+pub struct View<const D: usize, L: ContactLaw = Chen> {
     /// The rectangle.
     pub domain: Domain,
     /// Top of the colour scale \[m/s\].
     pub max_speed: f64,
     /// The flow on it now.
-    pub slice: fn(&Fall<D>) -> Slice,
+    pub slice: fn(&Fall<D, L>) -> Slice,
 }
 
 /// A PNG at every snapshot; all of them stay at hand for the figure of the run.
-pub struct Album<const D: usize> {
+pub struct Album<const D: usize, L: ContactLaw = Chen> {
     folder: PathBuf,
     frames: Frames,
-    look: fn(&Fall<D>) -> Slice,
+    look: fn(&Fall<D, L>) -> Slice,
     /// In the order of time.
     pub slices: Vec<Slice>,
 }
 
-impl<const D: usize> Album<D> {
-    pub(super) fn new(out: &Path, view: &View<D>) -> std::io::Result<Self> {
+impl<const D: usize, L: ContactLaw> Album<D, L> {
+    pub(super) fn new(out: &Path, view: &View<D, L>) -> std::io::Result<Self> {
         let folder = out.join("frames");
         std::fs::create_dir_all(&folder)?;
         let frames = Frames::new(view.domain, view.max_speed);
@@ -54,8 +55,8 @@ impl<const D: usize> Album<D> {
     }
 }
 
-impl<const D: usize> Observer<Fall<D>> for Album<D> {
-    fn snapshot(&mut self, fall: &mut Fall<D>, index: usize, _: &StepInfo) -> Result<(), CouplingError> {
+impl<const D: usize, L: ContactLaw> Observer<Fall<D, L>> for Album<D, L> {
+    fn snapshot(&mut self, fall: &mut Fall<D, L>, index: usize, _: &StepInfo) -> Result<(), CouplingError> {
         let slice = (self.look)(fall);
         let [nx, ny] = slice.cells;
         let field = |values| Scalar { nx, ny, values };

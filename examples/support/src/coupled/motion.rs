@@ -1,6 +1,7 @@
 //! How bodies moved, step by step.
 use super::run::Fall;
 use coupling::{CouplingError, Observer, StepInfo};
+use dem::ContactLaw;
 use interfaces::{BodyId, Kinematics};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -78,7 +79,7 @@ impl Motion {
         self.bodies.get(b).map_or_else(Vec::new, |s| s.iter().map(|s| (s.time, quantity(s))).collect())
     }
 
-    fn push<const D: usize>(&mut self, fall: &Fall<D>, time: f64) {
+    fn push<const D: usize, L: ContactLaw>(&mut self, fall: &Fall<D, L>, time: f64) {
         let bodies = &fall.particles.bodies;
         self.bodies.resize_with(bodies.n_bodies(), Vec::new);
         for (b, states) in self.bodies.iter_mut().enumerate() {
@@ -94,13 +95,13 @@ impl Motion {
     }
 }
 
-impl<const D: usize> Observer<Fall<D>> for Motion {
-    fn begin(&mut self, fall: &mut Fall<D>) {
+impl<const D: usize, L: ContactLaw> Observer<Fall<D, L>> for Motion {
+    fn begin(&mut self, fall: &mut Fall<D, L>) {
         if self.bodies.is_empty() {
             self.push(fall, fall.flow.time());
         }
     }
-    fn step(&mut self, fall: &mut Fall<D>, info: &StepInfo) -> Result<(), CouplingError> {
+    fn step(&mut self, fall: &mut Fall<D, L>, info: &StepInfo) -> Result<(), CouplingError> {
         self.push(fall, info.time);
         Ok(())
     }

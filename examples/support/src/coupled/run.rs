@@ -10,16 +10,16 @@ use crate::progress::{Progress, Status};
 use coupling::{
     CouplingError, FileOutput, Module, Observer, Particles, RunSummary, Schedule, Simulation, StepInfo,
 };
-use dem::RigidBodies;
+use dem::{Chen, ContactLaw, RigidBodies};
 use ibm::SmoothForcing;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 /// Bodies that the flow, gravity and contacts move.
-pub type Fall<const D: usize> = Simulation<D, Particles<SmoothForcing, RigidBodies>>;
+pub type Fall<const D: usize, L = Chen> = Simulation<D, Particles<SmoothForcing, RigidBodies<L>>>;
 
 /// What is to be run.
-pub struct Plan<'a, const D: usize> {
+pub struct Plan<'a, const D: usize, L: ContactLaw = Chen> {
     /// End time \[s\].
     pub end: f64,
     /// Folder for the files.
@@ -27,7 +27,7 @@ pub struct Plan<'a, const D: usize> {
     /// What a run that goes on must have in common with the one before, besides the options.
     pub setup: &'a str,
     /// What pictures show.
-    pub view: View<D>,
+    pub view: View<D, L>,
 }
 
 /// What came of it.
@@ -53,11 +53,11 @@ struct Watch<'a> {
     save: Save,
 }
 
-impl<const D: usize> Observer<Fall<D>> for Watch<'_> {
-    fn begin(&mut self, fall: &mut Fall<D>) {
+impl<const D: usize, L: ContactLaw> Observer<Fall<D, L>> for Watch<'_> {
+    fn begin(&mut self, fall: &mut Fall<D, L>) {
         self.motion.begin(fall);
     }
-    fn step(&mut self, fall: &mut Fall<D>, info: &StepInfo) -> Result<(), CouplingError> {
+    fn step(&mut self, fall: &mut Fall<D, L>, info: &StepInfo) -> Result<(), CouplingError> {
         self.motion.step(fall, info)?;
         self.progress.step(info.step, || Status {
             time: info.time,
@@ -80,10 +80,10 @@ impl<const D: usize> Observer<Fall<D>> for Watch<'_> {
 ///
 /// # Errors
 /// Those of flow and bodies, and of the disk.
-pub fn run<const D: usize>(
-    fall: &mut Fall<D>,
+pub fn run<const D: usize, L: ContactLaw>(
+    fall: &mut Fall<D, L>,
     options: &RunOptions,
-    plan: &Plan<'_, D>,
+    plan: &Plan<'_, D, L>,
     stop: &AtomicBool,
 ) -> Outcome<Record> {
     options.check()?;

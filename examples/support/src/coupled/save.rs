@@ -2,6 +2,7 @@
 use super::motion::Motion;
 use super::run::Fall;
 use coupling::{self, CheckpointError};
+use dem::ContactLaw;
 use interfaces::{Checkpoint, RestartError};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -10,19 +11,19 @@ use std::time::{Duration, Instant};
 const SAVE_EVERY: Duration = Duration::from_secs(30);
 
 /// A run together with a number for its set-up, which must be the same when it goes on.
-struct Resumable<'a, const D: usize> {
-    fall: &'a mut Fall<D>,
+struct Resumable<'a, const D: usize, L: ContactLaw> {
+    fall: &'a mut Fall<D, L>,
     setup: u64,
 }
 
-impl<const D: usize> Resumable<'_, D> {
+impl<const D: usize, L: ContactLaw> Resumable<'_, D, L> {
     /// All bits as numbers that a state can hold.
     fn setup(&self) -> [f64; 2] {
         [f64::from((self.setup >> 32) as u32), f64::from(self.setup as u32)]
     }
 }
 
-impl<const D: usize> Checkpoint for Resumable<'_, D> {
+impl<const D: usize, L: ContactLaw> Checkpoint for Resumable<'_, D, L> {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         sink("setup", &self.setup());
         self.fall.save(sink);
@@ -36,9 +37,9 @@ impl<const D: usize> Checkpoint for Resumable<'_, D> {
 }
 
 /// Takes up the state saved in `path`.
-pub(super) fn load<const D: usize>(
+pub(super) fn load<const D: usize, L: ContactLaw>(
     path: &Path,
-    fall: &mut Fall<D>,
+    fall: &mut Fall<D, L>,
     setup: u64,
 ) -> Result<(), CheckpointError> {
     coupling::load(path, &mut Resumable { fall, setup })
@@ -59,7 +60,11 @@ impl Save {
         self.last.elapsed() >= SAVE_EVERY
     }
     /// The motion first: what it knows beyond a state is dropped when a run goes on.
-    pub(super) fn now<const D: usize>(&mut self, fall: &mut Fall<D>, motion: &Motion) -> io::Result<()> {
+    pub(super) fn now<const D: usize, L: ContactLaw>(
+        &mut self,
+        fall: &mut Fall<D, L>,
+        motion: &Motion,
+    ) -> io::Result<()> {
         motion.write(&self.folder.join("motion.csv"))?;
         let state = self.folder.join("state.bin");
         coupling::save(&state, &Resumable { fall, setup: self.setup }).map_err(io::Error::other)?;

@@ -16,7 +16,7 @@ mod report;
 
 use clap::Parser;
 use example_support::Outcome;
-use example_support::coupled::{Plan, RunOptions, run};
+use example_support::coupled::{Motion, Plan, RunOptions, run};
 use example_support::granular::{Ending, main_of};
 use example_support::settling_sphere::{Case, SettlingSphere};
 use siltflow::ibm::SmoothForcing;
@@ -56,7 +56,7 @@ fn settle(cli: &Cli, stop: &AtomicBool) -> Outcome<Ending> {
         setup: &format!("{scene:?}"),
         view: scene.view(),
     };
-    let record = run(&mut fall, &cli.run, &plan, stop)?;
+    let record = run(&mut fall, &cli.run, &plan, Motion::default(), stop)?;
     report::tell(&scene, &record, &plan, cli.run.no_images)?;
     Ok(record.ending)
 }

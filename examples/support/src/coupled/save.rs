@@ -1,5 +1,5 @@
 //! Saved state, so that an interrupted run can go on.
-use super::motion::Motion;
+use super::motion::Diary;
 use super::run::Fall;
 use coupling::{self, CheckpointError};
 use interfaces::{Checkpoint, RestartError};
@@ -9,39 +9,43 @@ use std::time::{Duration, Instant};
 
 const SAVE_EVERY: Duration = Duration::from_secs(30);
 
-/// A run together with a number for its set-up, which must be the same when it goes on.
-struct Resumable<'a, const D: usize> {
+/// A run and what is kept of its motion, together with a number for its set-up, which must be the same when it goes on.
+struct Resumable<'a, const D: usize, M> {
     fall: &'a mut Fall<D>,
+    motion: &'a mut M,
     setup: u64,
 }
 
-impl<const D: usize> Resumable<'_, D> {
+impl<const D: usize, M> Resumable<'_, D, M> {
     /// All bits as numbers that a state can hold.
     fn setup(&self) -> [f64; 2] {
         [f64::from((self.setup >> 32) as u32), f64::from(self.setup as u32)]
     }
 }
 
-impl<const D: usize> Checkpoint for Resumable<'_, D> {
+impl<const D: usize, M: Checkpoint> Checkpoint for Resumable<'_, D, M> {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         sink("setup", &self.setup());
         self.fall.save(sink);
+        self.motion.save(&mut |name, values| sink(&format!("motion.{name}"), values));
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         if RestartError::take(source, "setup", 2)? != self.setup() {
             return Err(RestartError::Differs("flags".into()));
         }
-        self.fall.restore(source)
+        self.fall.restore(source)?;
+        self.motion.restore(&|name| source(&format!("motion.{name}")))
     }
 }
 
 /// Takes up the state saved in `path`.
-pub(super) fn load<const D: usize>(
+pub(super) fn load<const D: usize, M: Checkpoint>(
     path: &Path,
     fall: &mut Fall<D>,
+    motion: &mut M,
     setup: u64,
 ) -> Result<(), CheckpointError> {
-    coupling::load(path, &mut Resumable { fall, setup })
+    coupling::load(path, &mut Resumable { fall, motion, setup })
 }
 
 /// Saves the state, and beside it the motion so far, every half a minute and when told.
@@ -59,10 +63,14 @@ impl Save {
         self.last.elapsed() >= SAVE_EVERY
     }
     /// The motion first: what it knows beyond a state is dropped when a run goes on.
-    pub(super) fn now<const D: usize>(&mut self, fall: &mut Fall<D>, motion: &Motion) -> io::Result<()> {
+    pub(super) fn now<const D: usize, M: Diary<D>>(
+        &mut self,
+        fall: &mut Fall<D>,
+        motion: &mut M,
+    ) -> io::Result<()> {
         motion.write(&self.folder.join("motion.csv"))?;
         let state = self.folder.join("state.bin");
-        coupling::save(&state, &Resumable { fall, setup: self.setup }).map_err(io::Error::other)?;
+        coupling::save(&state, &Resumable { fall, motion, setup: self.setup }).map_err(io::Error::other)?;
         self.last = Instant::now();
         Ok(())
     }

@@ -25,6 +25,8 @@ const SLENDER: f64 = 1.25;
 const SWOLLEN: f64 = 1.03;
 /// Fewer cells across the smallest body cannot hold its markers.
 const LEAST_CELLS: usize = 5;
+/// Points of a picture per cell along each axis.
+const FINER: usize = 3;
 /// Solid fraction to which polyhedra settle, roughly.
 const SETTLED: f64 = 0.56;
 
@@ -106,10 +108,10 @@ impl Suspension {
         let n = (4.7 + 2.35 * x) / (1.0 + x);
         self.alone() * (1.0 - self.fraction).powf(n)
     }
-    /// Time until all is at rest, roughly \[s\]: twice what the uppermost bodies need.
+    /// Time until all is at rest, roughly \[s\]: three times what the uppermost bodies need.
     pub fn end(&self) -> f64 {
         let way = self.lengths(self.volume_foreseen())[2] * (1.0 - (self.fraction / SETTLED).min(0.95));
-        2.0 * way / self.hindered()
+        3.0 * way / self.hindered()
     }
     /// Of all bodies, from the law of their sizes \[m³\].
     fn volume_foreseen(&self) -> f64 {
@@ -217,23 +219,21 @@ impl Suspension {
 fn slice(fall: &Fall<3>) -> Slice {
     let (flow, bodies) = (&fall.flow, &fall.particles.bodies);
     let grid = flow.grid();
-    let ([nx, ny, nz], h) = (grid.cells(), grid.spacing()[0]);
+    let ([nx, _, nz], fine) = (grid.cells().map(|n| FINER * n), grid.spacing()[0] / FINER as f64);
+    let middle = 0.5 * grid.lengths()[1];
     let sampler = Sampler::new(grid, flow.sides());
-    let at = |i: usize| [grid.axis(0).centre(i % nx), grid.axis(1).centre(ny / 2), grid.axis(2).centre(i / nx)];
+    let at = |i: usize| [((i % nx) as f64 + 0.5) * fine, middle, ((i / nx) as f64 + 0.5) * fine];
     let speed = |i| sampler.velocity(flow.velocity(), at(i)).map_or(f64::NAN, |u| Vector::from(u).norm());
-    // As wide as a cell, by the distance from the surface.
-    let solid = |i| {
-        let share = |b| {
-            let (pose, solid) = (bodies.pose(b), bodies.solid(b));
-            let away = bodies.periods().nearest(Point::from(at(i)) - pose.position);
-            if away.norm() > bodies.shape(b).bounding_radius() + h {
-                return 0.0;
-            }
-            let place = Point::from(pose.orientation.inverse_transform_vector(&away));
-            (0.5 - solid.signed_distance(place, h) / h).clamp(0.0, 1.0)
-        };
-        bodies.ids().map(share).fold(0.0, f64::max)
+    // By the distance from the surface.
+    let share = |i, b| {
+        let away = bodies.periods().nearest(Point::from(at(i)) - bodies.pose(b).position);
+        if away.norm() > bodies.shape(b).bounding_radius() + fine {
+            return 0.0;
+        }
+        let place = Point::from(bodies.pose(b).orientation.inverse_transform_vector(&away));
+        (0.5 - bodies.solid(b).signed_distance(place, fine) / fine).clamp(0.0, 1.0)
     };
+    let solid = |i| bodies.ids().map(|b| share(i, b)).fold(0.0, f64::max);
     Slice {
         time: flow.time(),
         cells: [nx, nz],

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Instructions per step of each mode of examples/skipping, by callgrind (valgrind must be installed):
 # the difference between a run of 20 and one of 10 steps, which leaves out set-up and reading of files.
+# Then, for each absent part, the program with its slot, filled with `()`, against one that has no such slot. Fails if any costs more than 2 %.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 command -v valgrind >/dev/null || { echo "valgrind is not installed; no instructions counted" >&2; exit 1; }
@@ -14,12 +15,28 @@ count() { # mode steps
         awk '/Collected/ { print $4 }'
 }
 
-printf '%-8s %16s %10s\n' mode instructions/step "of plain"
-for mode in plain hooks nobody fixed moving apart; do
+declare -A per
+printf '%-20s %17s %10s\n' mode instructions/step "of plain"
+for mode in plain hooks nobody fixed moving apart scalar_by_hand scalar closure_by_hand closure contactless_by_hand contactless; do
     few=$(count "$mode" 10)
     many=$(count "$mode" 20)
-    per=$(((many - few) / 10))
-    [ "$mode" = plain ] && plain=$per
-    printf '%-8s %16d %10s\n' "$mode" "$per" "$(awk -v a="$per" -v b="$plain" 'BEGIN { printf "%.4f", a / b }')"
+    per[$mode]=$(((many - few) / 10))
+    printf '%-20s %17d %10s\n' "$mode" "${per[$mode]}" "$(awk -v a="${per[$mode]}" -v b="${per[plain]}" 'BEGIN { printf "%.4f", a / b }')"
 done
-for mode in fixed moving apart; do "$binary" "$mode" 20; done
+
+failed=0
+compare() { # absent part, program with the slot, leaner program
+    verdict=$(awk -v a="${per[$2]}" -v b="${per[$3]}" 'BEGIN { printf "%.4f %s", a / b, (a <= 1.02 * b) ? "pass" : "FAIL" }')
+    [[ $verdict == *pass ]] || failed=1
+    printf '%-8s %-12s %17d   %-20s %17d %8s %s\n' "$1" "$2" "${per[$2]}" "$3" "${per[$3]}" $verdict
+}
+printf '\n%-8s %-12s %17s   %-20s %17s %8s at most 1.02\n' absent "slot is ()" instructions/step "no slot" instructions/step ratio
+compare bodies nobody plain
+compare contact contactless contactless_by_hand
+compare closure scalar scalar_by_hand
+compare scalar closure closure_by_hand
+compare all hooks plain
+
+echo
+for mode in fixed moving apart contactless_by_hand contactless; do "$binary" "$mode" 20; done
+exit $failed

@@ -15,7 +15,7 @@ mod report;
 
 use clap::Parser;
 use example_support::Outcome;
-use example_support::coupled::{Plan, RunOptions, run};
+use example_support::coupled::{Motion, Plan, RunOptions, run};
 use example_support::granular::{Ending, main_of};
 use example_support::sinking_discs::{FLUID_DENSITY, SinkingDiscs};
 use siltflow::ibm::SmoothForcing;
@@ -58,7 +58,7 @@ fn sink(cli: &Cli, stop: &AtomicBool) -> Outcome<Ending> {
     let out = cli.run.out.clone().unwrap_or_else(|| "out/drafting_kissing_tumbling".into());
     let plan =
         Plan { end: cli.run.end.unwrap_or(end), out: &out, setup: &format!("{scene:?}"), view: scene.view() };
-    let record = run(&mut fall, &cli.run, &plan, stop)?;
+    let record = run(&mut fall, &cli.run, &plan, Motion::default(), stop)?;
     match cli.bodies {
         1 => report::one(&scene, &record, &plan, cli.run.no_images)?,
         _ => report::two(&scene, &record, &plan, cli.run.no_images)?,

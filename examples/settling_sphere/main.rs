@@ -16,7 +16,7 @@ mod report;
 
 use clap::Parser;
 use example_support::Outcome;
-use example_support::coupled::{Plan, RunOptions, run};
+use example_support::coupled::{Motion, Plan, RunOptions, run};
 use example_support::granular::{Ending, main_of};
 use example_support::settling_sphere::{Case, SettlingSphere};
 use siltflow::dem::{Chen, ContactLaw};
@@ -60,7 +60,7 @@ fn settle<L: ContactLaw>(cli: &Cli, scene: &SettlingSphere, law: L, stop: &Atomi
     let out = cli.run.out.clone().unwrap_or_else(|| "out/settling_sphere".into());
     let plan =
         Plan { end: cli.run.end.unwrap_or(cli.case.end()), out: &out, setup: &setup, view: scene.view() };
-    let record = run(&mut fall, &cli.run, &plan, stop)?;
+    let record = run(&mut fall, &cli.run, &plan, Motion::default(), stop)?;
     report::tell(scene, &record, &plan, cli.run.no_images)?;
     Ok(record.ending)
 }

@@ -13,6 +13,7 @@ mod restart;
 mod skipping;
 mod strategies;
 mod stretched;
+mod suspension;
 mod wall_rows;
 mod walls;
 

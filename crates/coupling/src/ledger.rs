@@ -1,7 +1,7 @@
 //! The books of momentum and energy.
 use crate::{CouplingError, Observer, Particles, Simulation, StepInfo, Strategy};
 use ibm::Forcing;
-use interfaces::{BodyId, Dynamics, Twist, Vector};
+use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Twist, Vector};
 
 /// Keeps, step by step, the momentum of fluid and bodies against the impulses on them, the kinetic
 /// energy against work and dissipation, and the divergence.
@@ -11,12 +11,17 @@ use interfaces::{BodyId, Dynamics, Twist, Vector};
 /// what holds bodies that are not free, and what the box's own walls do to the fluid. Energy: E = ½ρ∫_Ω u² + Σ½(1 − ρ/ρ_s)(mU² + ΩIΩ)
 /// against the work of net weight, body force and contacts less the viscous dissipation ρν∫|∇u|²
 /// (trapezoidal in time).
+///
+/// The books open where a run begins. Those of an interrupted run go on, bit for bit, if they are saved beside the simulation and restored
+/// before the next.
 #[derive(Clone, Debug, Default)]
 pub struct Ledger {
     last: Option<Books>,
     /// How the bodies moved at the last books.
     twists: Vec<Twist>,
     report: LedgerReport,
+    /// They go on from a saved state.
+    resumed: bool,
 }
 
 /// The state of the books after a step.
@@ -100,6 +105,9 @@ impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy> Observer<Simulation<D
     for Ledger
 {
     fn begin(&mut self, simulation: &mut Simulation<D, Particles<F, B, S>>) {
+        if std::mem::take(&mut self.resumed) {
+            return;
+        }
         let (books, report) = Self::balance(simulation);
         self.report = LedgerReport { energy: [books.energy; 2], divergence: 0.0, ..report };
         self.last = Some(books);
@@ -150,6 +158,90 @@ impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy> Observer<Simulation<D
         r.contact_work += contact_work;
         r.energy[1] = books.energy;
         r.energy_residual = r.energy[1] - r.energy[0] - r.work - r.contact_work + r.dissipation;
+        Ok(())
+    }
+}
+
+impl LedgerReport {
+    /// All numbers.
+    const LENGTH: usize = 17;
+
+    fn numbers(&self) -> [f64; Self::LENGTH] {
+        let Self { divergence, momentum_step, momentum_total, impulses, in_transit, .. } = *self;
+        let Self { work, dissipation, contact_work, energy_residual, .. } = *self;
+        let (flow, [before, now], residual) = (self.volume_flow, self.energy, self.residual);
+        [
+            divergence,
+            momentum_step,
+            momentum_total,
+            impulses,
+            in_transit,
+            flow.x,
+            flow.y,
+            flow.z,
+            before,
+            now,
+            work,
+            dissipation,
+            contact_work,
+            energy_residual,
+            residual.x,
+            residual.y,
+            residual.z,
+        ]
+    }
+    fn of(n: &[f64]) -> Self {
+        Self {
+            divergence: n[0],
+            momentum_step: n[1],
+            momentum_total: n[2],
+            impulses: n[3],
+            in_transit: n[4],
+            volume_flow: Vector::new(n[5], n[6], n[7]),
+            energy: [n[8], n[9]],
+            work: n[10],
+            dissipation: n[11],
+            contact_work: n[12],
+            energy_residual: n[13],
+            residual: Vector::new(n[14], n[15], n[16]),
+        }
+    }
+}
+
+impl Checkpoint for Ledger {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        sink("report", &self.report.numbers());
+        let last = self.last.map(|l| {
+            let p = l.momentum;
+            [p.x, p.y, p.z, l.energy, l.power, l.dissipation]
+        });
+        sink("last", last.as_ref().map_or(&[], |l| &l[..]));
+        let six = |t: &Twist| [t.linear.x, t.linear.y, t.linear.z, t.angular.x, t.angular.y, t.angular.z];
+        sink("twists", &self.twists.iter().flat_map(six).collect::<Vec<_>>());
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        let missing = |name: &str| RestartError::Missing(name.into());
+        let report = LedgerReport::of(RestartError::take(source, "report", LedgerReport::LENGTH)?);
+        let last = source("last").ok_or_else(|| missing("last"))?;
+        let twists = source("twists").ok_or_else(|| missing("twists"))?;
+        let last = match last {
+            [] => None,
+            &[x, y, z, energy, power, dissipation] => {
+                Some(Books { momentum: Vector::new(x, y, z), energy, power, dissipation })
+            }
+            other => {
+                return Err(RestartError::Length { name: "last".into(), expected: 6, found: other.len() });
+            }
+        };
+        let (rows, rest) = twists.as_chunks::<6>();
+        if !rest.is_empty() {
+            let (expected, found) = (6 * rows.len(), twists.len());
+            return Err(RestartError::Length { name: "twists".into(), expected, found });
+        }
+        let twists = rows
+            .iter()
+            .map(|&[x, y, z, a, b, c]| Twist { linear: Vector::new(x, y, z), angular: Vector::new(a, b, c) });
+        *self = Self { last, twists: twists.collect(), report, resumed: last.is_some() };
         Ok(())
     }
 }

@@ -6,6 +6,6 @@ mod run;
 mod save;
 
 pub use album::{Album, Slice, View};
-pub use motion::{Motion, State};
+pub use motion::{Diary, Motion, State};
 pub use options::RunOptions;
 pub use run::{Fall, Plan, Record, run};

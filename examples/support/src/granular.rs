@@ -10,6 +10,7 @@ mod record;
 pub mod report;
 mod run;
 mod scene;
+mod squeeze;
 
 pub use grains::{Grain, Kind};
 pub use law::{Granulate, Law, Ways};
@@ -21,3 +22,4 @@ pub use record::History;
 pub(crate) use run::fingerprint;
 pub use run::{Ending, main_of, run};
 pub use scene::Scene;
+pub use squeeze::squeezed;

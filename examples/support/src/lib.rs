@@ -25,6 +25,7 @@ pub mod sheared_body;
 pub mod sinking_discs;
 pub mod sphere_stream;
 pub mod startup_theory;
+pub mod suspension;
 pub mod table;
 pub mod unfolded;
 pub mod wake;

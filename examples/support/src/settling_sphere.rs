@@ -187,5 +187,11 @@ fn slice<L: ContactLaw>(fall: &Fall<3, L>) -> Slice {
         radius: 0.5 * DIAMETER,
         angle: -pose.orientation.scaled_axis().y,
     };
-    Slice { time: flow.time(), cells: [nx, nz], speed: (0..nx * nz).map(at).collect(), discs: vec![disc] }
+    Slice {
+        time: flow.time(),
+        cells: [nx, nz],
+        speed: (0..nx * nz).map(at).collect(),
+        discs: vec![disc],
+        ..Slice::default()
+    }
 }

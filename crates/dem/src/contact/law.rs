@@ -4,7 +4,7 @@ use crate::{DemError, Overlap, PairProperties};
 use interfaces::Vector;
 use std::fmt::Debug;
 
-/// The force between two bodies that overlap.
+/// The force between two bodies that overlap. `()` is none: bodies pass through one another and through walls, and nobody looks who is near.
 pub trait ContactLaw: Clone + Debug + Send + Sync {
     /// What is kept per patch from one sub-step to the next.
     type Memory: Memory;
@@ -19,6 +19,8 @@ pub trait ContactLaw: Clone + Debug + Send + Sync {
 
     /// Does it ask for [`Touch::mobility`]?
     const MOBILITY: bool = false;
+    /// Is there a force at all? If not, pairs are not looked for.
+    const TOUCHES: bool = true;
 
     /// Does it act [across](Self::across) gaps, too? Others pay nothing for it.
     const FILMS: bool = false;
@@ -39,6 +41,19 @@ pub trait ContactLaw: Clone + Debug + Send + Sync {
     /// # Errors
     /// [`DemError::LengthFactor`], [`DemError::Film`].
     fn check(&self) -> Result<(), DemError>;
+}
+
+impl ContactLaw for () {
+    type Memory = ();
+    const TOUCHES: bool = false;
+
+    #[inline(always)]
+    fn push(&self, _: &PairProperties, _: &Touch<'_>, (): &mut ()) -> Push {
+        Push { force: Vector::zeros(), couple: Vector::zeros(), stiffness: 0.0 }
+    }
+    fn check(&self) -> Result<(), DemError> {
+        Ok(())
+    }
 }
 
 /// Where and how two bodies touch at one instant: one patch of their overlap.
@@ -94,6 +109,13 @@ pub trait Memory: Copy + Default + Debug + Send + Sync {
     fn save(&self, out: &mut Vec<f64>);
     /// Reads them back.
     fn load(from: &[f64]) -> Self;
+}
+
+/// Nothing.
+impl Memory for () {
+    const N: usize = 0;
+    fn save(&self, _: &mut Vec<f64>) {}
+    fn load(_: &[f64]) -> Self {}
 }
 
 /// The elastic tangential force on the first body.

@@ -83,6 +83,9 @@ fn path(body: &Body, constants: &Constants, pull: &Pull<'_>, dt: f64) -> f64 {
 impl<L: ContactLaw> RigidBodies<L> {
     /// May a body leave what was listed for it within `dt`?
     pub(super) fn may_stray(&self, dt: f64) -> bool {
+        if !L::TOUCHES {
+            return self.listed.iter().any(|l| l.margin < 0.0);
+        }
         self.bodies.iter().zip(&self.listed).enumerate().any(|(b, (body, listed))| {
             if self.sleepers.is_asleep(b) {
                 return listed.margin < 0.0;
@@ -108,8 +111,10 @@ impl<L: ContactLaw> RigidBodies<L> {
     /// Where body `b` may be within `dt`.
     fn listing(&self, b: usize, dt: f64) -> Listed {
         let body = &self.bodies[b];
-        if self.sleepers.is_asleep(b) {
-            Listed { centre: body.pose.position, orientation: body.pose.orientation, margin: 0.0 }
+        if !L::TOUCHES || self.sleepers.is_asleep(b) {
+            // Where nobody touches anybody, no way is too far.
+            let margin = if L::TOUCHES { 0.0 } else { f64::INFINITY };
+            Listed { centre: body.pose.position, orientation: body.pose.orientation, margin }
         } else {
             Listed::new(body, &self.constants[b], &self.pull(b), dt)
         }
@@ -139,6 +144,9 @@ impl<L: ContactLaw> RigidBodies<L> {
 
     /// Lists the pairs by where bodies are listed to be.
     pub(super) fn list_again(&mut self) -> Result<(), DemError> {
+        if !L::TOUCHES {
+            return Ok(());
+        }
         self.boxes.clear();
         self.boxes.reserve(self.bodies.len());
         for b in 0..self.bodies.len() {

@@ -1,4 +1,5 @@
 //! Contacts and motion against closed forms; what the files share.
+mod absent;
 mod bad_input;
 mod collisions;
 mod film;

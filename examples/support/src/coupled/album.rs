@@ -15,6 +15,8 @@ pub struct Slice {
     pub cells: [usize; 2],
     /// |u| in these cells \[m/s\].
     pub speed: Vec<f64>,
+    /// How much of them is solid, 0 to 1; empty where bodies are outlined, not shaded.
+    pub solid: Vec<f64>,
     /// What is outlined.
     pub discs: Vec<Disc>,
 }
@@ -60,11 +62,11 @@ impl<const D: usize, L: ContactLaw> Observer<Fall<D, L>> for Album<D, L> {
         let slice = (self.look)(fall);
         let [nx, ny] = slice.cells;
         let field = |values| Scalar { nx, ny, values };
-        // The bodies are outlined, not shaded.
-        let none = vec![0.0; slice.speed.len()];
+        let mut solid = slice.solid.clone();
+        solid.resize(slice.speed.len(), 0.0);
         let path = self.folder.join(format!("{index:05}.png"));
         let title = format!("t = {:.3} s", slice.time);
-        self.frames.draw(&path, &field(&slice.speed), &field(&none), &slice.discs, &title).map_err(
+        self.frames.draw(&path, &field(&slice.speed), &field(&solid), &slice.discs, &title).map_err(
             |source| CouplingError::Output { what: format!("drawing {}", path.display()), source },
         )?;
         self.slices.push(slice);

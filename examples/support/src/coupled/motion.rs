@@ -1,8 +1,8 @@
 //! How bodies moved, step by step.
 use super::run::Fall;
 use coupling::{CouplingError, Observer, StepInfo};
-use dem::ContactLaw;
-use interfaces::{BodyId, Kinematics};
+use dem::{Chen, ContactLaw};
+use interfaces::{BodyId, Checkpoint, Kinematics, RestartError};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -29,14 +29,24 @@ pub struct Motion {
     pub contact_seconds: f64,
 }
 
-const HEADER: &str = "# time s; x, y, z m; v m/s; w rad/s\ntime,body,x,y,z,vx,vy,vz,wx,wy,wz";
-
-impl Motion {
+/// What a run keeps of its motion, step by step, in memory and in `motion.csv`; what it cannot read there is in its saved state.
+pub trait Diary<const D: usize, L: ContactLaw = Chen>: Observer<Fall<D, L>> + Checkpoint {
     /// Takes over what an interrupted run wrote up to `time` \[s\].
     ///
     /// # Errors
     /// When the file cannot be read.
-    pub fn read(&mut self, path: &Path, time: f64) -> io::Result<()> {
+    fn read(&mut self, path: &Path, time: f64) -> io::Result<()>;
+    /// Writes all of it, numbers with all digits.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    fn write(&self, path: &Path) -> io::Result<()>;
+}
+
+const HEADER: &str = "# time s; x, y, z m; v m/s; w rad/s\ntime,body,x,y,z,vx,vy,vz,wx,wy,wz";
+
+impl<const D: usize, L: ContactLaw> Diary<D, L> for Motion {
+    fn read(&mut self, path: &Path, time: f64) -> io::Result<()> {
         for line in std::fs::read_to_string(path)?.lines() {
             let values: Vec<f64> = line.split(',').map_while(|v| v.parse().ok()).collect();
             let &[t, body, x, y, z, u, v, w, a, b, c] = &values[..] else { continue };
@@ -54,11 +64,7 @@ impl Motion {
         Ok(())
     }
 
-    /// Writes all of it, numbers with all digits.
-    ///
-    /// # Errors
-    /// When the file cannot be written.
-    pub fn write(&self, path: &Path) -> io::Result<()> {
+    fn write(&self, path: &Path) -> io::Result<()> {
         let mut out = BufWriter::new(File::create(path)?);
         writeln!(out, "{HEADER}")?;
         for row in 0..self.bodies.first().map_or(0, Vec::len) {
@@ -73,7 +79,17 @@ impl Motion {
         }
         out.flush()
     }
+}
 
+/// All of it is in the file.
+impl Checkpoint for Motion {
+    fn save(&self, _: &mut dyn FnMut(&str, &[f64])) {}
+    fn restore<'a>(&mut self, _: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        Ok(())
+    }
+}
+
+impl Motion {
     /// One quantity of body `b` over time.
     pub fn over_time(&self, b: usize, quantity: impl Fn(&State) -> f64) -> Vec<(f64, f64)> {
         self.bodies.get(b).map_or_else(Vec::new, |s| s.iter().map(|s| (s.time, quantity(s))).collect())

@@ -1,6 +1,6 @@
 //! A run.
 use super::album::{Album, Slice, View};
-use super::motion::Motion;
+use super::motion::{Diary, Motion};
 use super::options::RunOptions;
 use super::save::{Save, load};
 use crate::Outcome;
@@ -31,13 +31,13 @@ pub struct Plan<'a, const D: usize, L: ContactLaw = Chen> {
 }
 
 /// What came of it.
-pub struct Record {
+pub struct Record<M = Motion> {
     /// Did it come to its end?
     pub ending: Ending,
     /// Steps.
     pub summary: RunSummary,
     /// How the bodies moved.
-    pub motion: Motion,
+    pub motion: M,
     /// The flow at every snapshot of this run; none without pictures.
     pub slices: Vec<Slice>,
     /// What it cost.
@@ -47,13 +47,13 @@ pub struct Record {
 }
 
 /// The observer of every step: motion, progress, saved state.
-struct Watch<'a> {
-    motion: &'a mut Motion,
+struct Watch<M> {
+    motion: M,
     progress: Progress,
     save: Save,
 }
 
-impl<const D: usize, L: ContactLaw> Observer<Fall<D, L>> for Watch<'_> {
+impl<const D: usize, L: ContactLaw, M: Diary<D, L>> Observer<Fall<D, L>> for Watch<M> {
     fn begin(&mut self, fall: &mut Fall<D, L>) {
         self.motion.begin(fall);
     }
@@ -68,24 +68,33 @@ impl<const D: usize, L: ContactLaw> Observer<Fall<D, L>> for Watch<'_> {
         if self.save.is_due() {
             let what = || "saving the state".into();
             self.save
-                .now(fall, self.motion)
+                .now(fall, &mut self.motion)
                 .map_err(|source| CouplingError::Output { what: what(), source })?;
         }
         Ok(())
     }
+    fn snapshot(
+        &mut self,
+        fall: &mut Fall<D, L>,
+        index: usize,
+        info: &StepInfo,
+    ) -> Result<(), CouplingError> {
+        self.motion.snapshot(fall, index, info)
+    }
 }
 
-/// Runs to the end or until `stop` is set. Writes to the folder: `motion.csv` (every step), `frames/*.png`, `state.bin`, and for ParaView
+/// Runs to the end or until `stop` is set; `motion` keeps how the bodies move. Writes to the folder: `motion.csv`, `frames/*.png`, `state.bin`, and for ParaView
 /// `fields.pvd` and `bodies.pvd` with what belongs to them.
 ///
 /// # Errors
 /// Those of flow and bodies, and of the disk.
-pub fn run<const D: usize, L: ContactLaw>(
+pub fn run<const D: usize, L: ContactLaw, M: Diary<D, L>>(
     fall: &mut Fall<D, L>,
     options: &RunOptions,
     plan: &Plan<'_, D, L>,
+    mut motion: M,
     stop: &AtomicBool,
-) -> Outcome<Record> {
+) -> Outcome<Record<M>> {
     options.check()?;
     let watch = Stopwatch::start();
     let Plan { end, out, setup, view } = plan;
@@ -99,9 +108,8 @@ pub fn run<const D: usize, L: ContactLaw>(
     schedule.check()?;
     std::fs::create_dir_all(out).map_err(|e| format!("making {}: {e}", out.display()))?;
     let setup = fingerprint(&format!("{setup} {} {end:?}", options.setup()));
-    let mut motion = Motion::default();
     let mut files = if options.resume {
-        load(&out.join("state.bin"), fall, setup).map_err(|e| {
+        load(&out.join("state.bin"), fall, &mut motion, setup).map_err(|e| {
             format!("{e}; without an interrupted run of this scene there, leave out --resume")
         })?;
         motion.read(&out.join("motion.csv"), fall.flow.time())?;
@@ -115,12 +123,12 @@ pub fn run<const D: usize, L: ContactLaw>(
     };
     let mut album = if options.no_images { None } else { Some(Album::new(out, view)?) };
     let progress = Progress::new(fall.flow.time(), *end);
-    let mut steps = Watch { motion: &mut motion, progress, save: Save::new(out, setup) };
+    let mut steps = Watch { motion, progress, save: Save::new(out, setup) };
     let summary = coupling::run(fall, &schedule, &mut (&mut steps, (&mut files, &mut album)), stop)?;
     if let Some(files) = &mut files {
         files.finish()?;
     }
-    steps.save.now(fall, steps.motion)?;
+    steps.save.now(fall, &mut steps.motion)?;
     steps.progress.finish(summary.steps, if summary.stopped { "stopped" } else { "done" });
     let ending = if summary.stopped {
         eprintln!("the state is saved; give the same flags with --resume to go on");
@@ -131,7 +139,7 @@ pub fn run<const D: usize, L: ContactLaw>(
     Ok(Record {
         ending,
         summary,
-        motion,
+        motion: steps.motion,
         slices: album.map_or_else(Vec::new, |a| a.slices),
         elapsed: watch.elapsed(),
         modules: Module::ALL.map(|m| (m.name(), fall.timings().seconds(m))),

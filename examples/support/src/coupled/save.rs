@@ -1,5 +1,5 @@
 //! Saved state, so that an interrupted run can go on.
-use super::motion::Motion;
+use super::motion::Diary;
 use super::run::Fall;
 use coupling::{self, CheckpointError};
 use dem::ContactLaw;
@@ -10,39 +10,43 @@ use std::time::{Duration, Instant};
 
 const SAVE_EVERY: Duration = Duration::from_secs(30);
 
-/// A run together with a number for its set-up, which must be the same when it goes on.
-struct Resumable<'a, const D: usize, L: ContactLaw> {
+/// A run and what is kept of its motion, together with a number for its set-up, which must be the same when it goes on.
+struct Resumable<'a, const D: usize, L: ContactLaw, M> {
     fall: &'a mut Fall<D, L>,
+    motion: &'a mut M,
     setup: u64,
 }
 
-impl<const D: usize, L: ContactLaw> Resumable<'_, D, L> {
+impl<const D: usize, L: ContactLaw, M> Resumable<'_, D, L, M> {
     /// All bits as numbers that a state can hold.
     fn setup(&self) -> [f64; 2] {
         [f64::from((self.setup >> 32) as u32), f64::from(self.setup as u32)]
     }
 }
 
-impl<const D: usize, L: ContactLaw> Checkpoint for Resumable<'_, D, L> {
+impl<const D: usize, L: ContactLaw, M: Checkpoint> Checkpoint for Resumable<'_, D, L, M> {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         sink("setup", &self.setup());
         self.fall.save(sink);
+        self.motion.save(&mut |name, values| sink(&format!("motion.{name}"), values));
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         if RestartError::take(source, "setup", 2)? != self.setup() {
             return Err(RestartError::Differs("flags".into()));
         }
-        self.fall.restore(source)
+        self.fall.restore(source)?;
+        self.motion.restore(&|name| source(&format!("motion.{name}")))
     }
 }
 
 /// Takes up the state saved in `path`.
-pub(super) fn load<const D: usize, L: ContactLaw>(
+pub(super) fn load<const D: usize, L: ContactLaw, M: Checkpoint>(
     path: &Path,
     fall: &mut Fall<D, L>,
+    motion: &mut M,
     setup: u64,
 ) -> Result<(), CheckpointError> {
-    coupling::load(path, &mut Resumable { fall, setup })
+    coupling::load(path, &mut Resumable { fall, motion, setup })
 }
 
 /// Saves the state, and beside it the motion so far, every half a minute and when told.
@@ -60,14 +64,14 @@ impl Save {
         self.last.elapsed() >= SAVE_EVERY
     }
     /// The motion first: what it knows beyond a state is dropped when a run goes on.
-    pub(super) fn now<const D: usize, L: ContactLaw>(
+    pub(super) fn now<const D: usize, L: ContactLaw, M: Diary<D, L>>(
         &mut self,
         fall: &mut Fall<D, L>,
-        motion: &Motion,
+        motion: &mut M,
     ) -> io::Result<()> {
         motion.write(&self.folder.join("motion.csv"))?;
         let state = self.folder.join("state.bin");
-        coupling::save(&state, &Resumable { fall, setup: self.setup }).map_err(io::Error::other)?;
+        coupling::save(&state, &Resumable { fall, motion, setup: self.setup }).map_err(io::Error::other)?;
         self.last = Instant::now();
         Ok(())
     }

@@ -58,6 +58,16 @@ impl Kind {
         const ALL: [Kind; 4] = [Kind::Sphere, Kind::Cube, Kind::Ellipsoid, Kind::Polyhedron];
         if self == Self::Mixed { ALL[i % 4] } else { self }
     }
+    /// Grains of these sizes.
+    ///
+    /// # Errors
+    /// For sizes that no shape has.
+    pub fn grains(self, sizes: &[f64]) -> Outcome<Vec<Grain>> {
+        let different = if self == Self::Mixed { 4 * DIFFERENT } else { DIFFERENT };
+        let mut grains = shared(sizes, |i| i % different, "", |i, size| self.shape(i, size))?;
+        grains.iter_mut().enumerate().for_each(|(i, g)| g.kind = self.of(i).word());
+        Ok(grains)
+    }
     fn shape(self, i: usize, size: f64) -> Outcome<Arc<dyn Shape>> {
         Ok(match self.of(i) {
             Self::Sphere | Self::Mixed => Arc::new(Sphere::new(0.5 * size)?),
@@ -112,10 +122,7 @@ impl GrainOptions {
                 },
             );
         }
-        let different = if self.shape == Kind::Mixed { 4 * DIFFERENT } else { DIFFERENT };
-        let mut grains = shared(&sizes, |i| i % different, "", |i, size| self.shape.shape(i, size))?;
-        grains.iter_mut().enumerate().for_each(|(i, g)| g.kind = self.shape.of(i).word());
-        Ok(grains)
+        self.shape.grains(&sizes)
     }
 
     fn sizes(&self, number: usize) -> Outcome<Vec<f64>> {

@@ -1,6 +1,6 @@
 //! What is measured of many bodies.
 use super::law::Granulate;
-use dem::{Form, Partner};
+use dem::{ContactLaw, Form, Partner, RigidBodies};
 use interfaces::{Aabb, Bodies, BodyId, Kinematics};
 use std::f64::consts::PI;
 
@@ -56,7 +56,7 @@ impl Totals {
 }
 
 /// The sums over the bodies from number `first` on; `domain` is where they should be.
-pub fn totals(bodies: &Granulate, first: usize, domain: &Aabb) -> Totals {
+pub fn totals<L: ContactLaw>(bodies: &RigidBodies<L>, first: usize, domain: &Aabb) -> Totals {
     let mut t = Totals { grains: bodies.n_bodies().saturating_sub(first), ..Totals::default() };
     for b in bodies.ids().skip(first) {
         let (inertia, pose, twist) = (bodies.inertia(b), bodies.pose(b), bodies.twist(b));
@@ -92,7 +92,7 @@ pub fn totals(bodies: &Granulate, first: usize, domain: &Aabb) -> Totals {
 }
 
 /// Of a sphere as large as the body.
-fn radius(bodies: &Granulate, b: BodyId) -> f64 {
+fn radius<L: ContactLaw>(bodies: &RigidBodies<L>, b: BodyId) -> f64 {
     (0.75 * bodies.inertia(b).volume / PI).cbrt()
 }
 
@@ -146,7 +146,7 @@ pub fn line(points: &[(f64, f64)]) -> (f64, f64) {
 mod tests {
     use super::*;
     use crate::granular::{Law, Ways};
-    use dem::{HalfSpace, Material, RigidBodies, Rolling, Sphere};
+    use dem::{HalfSpace, Material, Rolling, Sphere};
     use interfaces::{Dynamics, Freedom, Periods, Point, Pose, Twist, Vector};
 
     fn two() -> Granulate {

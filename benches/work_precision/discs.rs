@@ -6,7 +6,8 @@
 use example_support::Outcome;
 use example_support::cpu::Stopwatch;
 use example_support::scene::{FLUID, Scene};
-use siltflow::coupling::{self, Schedule};
+use siltflow::coupling::{self, Exchange, FlowSolver, Particles, Schedule, Simulation};
+use siltflow::dem::RigidBodies;
 use siltflow::ibm::{Forcing, Hfdib, SmoothForcing};
 use siltflow::interfaces::{BodyId, Kinematics};
 use std::sync::atomic::AtomicBool;
@@ -18,8 +19,16 @@ fn speeds(
     dt: Option<f64>,
     forcing: impl Forcing,
 ) -> Outcome<(Vec<[f64; 2]>, u64, f64)> {
+    speeds_of(scene.build(forcing)?, times, dt)
+}
+
+/// The same of any discs.
+fn speeds_of<A: FlowSolver<2>, F: Forcing, S: Exchange<2, A>>(
+    mut simulation: Simulation<2, Particles<F, RigidBodies, S>, A>,
+    times: &[f64],
+    dt: Option<f64>,
+) -> Outcome<(Vec<[f64; 2]>, u64, f64)> {
     let watch = Stopwatch::start();
-    let mut simulation = scene.build(forcing)?;
     let mut speeds = Vec::new();
     for &end in times {
         // Intervals of a millisecond, as in the example.
@@ -59,6 +68,8 @@ pub(crate) fn run() -> Outcome<()> {
         let rows = [
             ("smooth", speeds(&at(cells), &times, None, smooth())?),
             ("hfdib", speeds(&paper, &times, None, Hfdib::new(FLUID.density))?),
+            // With the longest step of the others.
+            ("preset", speeds_of(at(cells).hfdib_dem()?, &times, Some(at(cells).flow()?.stable_dt(0.1)))?),
         ];
         for (name, (speeds, _, seconds)) in rows {
             print!("{cells:6}{name:>8} ");

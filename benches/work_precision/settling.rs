@@ -7,7 +7,8 @@ use example_support::Outcome;
 use example_support::cpu::Stopwatch;
 use example_support::free_body::{FreeBody, Speeds};
 use example_support::picture::plot;
-use siltflow::coupling::{Explicit, Iterated, Module, OneSolve, Schedule, Strategy, Timings, run as run_to};
+use siltflow::coupling::{Exchange, Explicit, Iterated, Module, OneSolve, Schedule, Timings, run as run_to};
+use siltflow::flow::Projection;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -22,7 +23,7 @@ struct Course {
     timings: Timings,
 }
 
-fn course<S: Strategy>(scene: &FreeBody, strategy: S) -> Outcome<Course> {
+fn course<S: Exchange<3, Projection<3>>>(scene: &FreeBody, strategy: S) -> Outcome<Course> {
     let watch = Stopwatch::start();
     let mut simulation = scene.build(strategy)?;
     let (mut speeds, stop) = (Speeds::default(), AtomicBool::new(false));

@@ -9,6 +9,7 @@ mod immersed_stress;
 mod meshes;
 mod moving;
 mod physics;
+mod preset;
 mod restart;
 mod skipping;
 mod strategies;

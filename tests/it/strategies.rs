@@ -4,13 +4,14 @@ use example_support::free_body::{FreeBody, Speeds};
 use example_support::rock::Rock;
 use example_support::scene::{FLUID, Scene};
 use siltflow::coupling::{
-    self, Explicit, Iterated, Ledger, LedgerReport, OneSolve, Schedule, Simulation, Strategy,
+    self, Exchange, Explicit, Iterated, Ledger, LedgerReport, OneSolve, Schedule, Simulation,
 };
+use siltflow::flow::Projection;
 use siltflow::ibm::SmoothForcing;
 use siltflow::interfaces::{BodyId, Kinematics};
 use std::sync::atomic::AtomicBool;
 
-fn run<S: Strategy>(
+fn run<S: Exchange<2, Projection<2>>>(
     scene: &Scene,
     schedule: &Schedule,
     strategy: S,

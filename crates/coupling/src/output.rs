@@ -1,5 +1,5 @@
 //! Files of a run: fields and bodies for ParaView, trajectories for everyone.
-use crate::{CouplingError, Observer, Particles, Simulation, StepInfo, Strategy};
+use crate::{CouplingError, FlowSolver, Observer, Particles, Simulation, StepInfo, Strategy};
 use dem::{ContactLaw, RigidBodies};
 use fv_mesh::{CellWriter, TimeSeries};
 use ibm::{Forcing, SolidFraction};
@@ -124,9 +124,9 @@ impl FileOutput {
         })
     }
 
-    fn write<const D: usize, F: Forcing, L: ContactLaw, S: Strategy>(
+    fn write<const D: usize, F: Forcing, L: ContactLaw, S: Strategy, A: FlowSolver<D>>(
         &mut self,
-        simulation: &Simulation<D, Particles<F, RigidBodies<L>, S>>,
+        simulation: &Simulation<D, Particles<F, RigidBodies<L>, S>, A>,
         index: usize,
         info: &StepInfo,
     ) -> io::Result<()> {
@@ -186,12 +186,12 @@ impl Drop for FileOutput {
     }
 }
 
-impl<const D: usize, F: Forcing, L: ContactLaw, S: Strategy>
-    Observer<Simulation<D, Particles<F, RigidBodies<L>, S>>> for FileOutput
+impl<const D: usize, F: Forcing, L: ContactLaw, S: Strategy, A: FlowSolver<D>>
+    Observer<Simulation<D, Particles<F, RigidBodies<L>, S>, A>> for FileOutput
 {
     fn snapshot(
         &mut self,
-        simulation: &mut Simulation<D, Particles<F, RigidBodies<L>, S>>,
+        simulation: &mut Simulation<D, Particles<F, RigidBodies<L>, S>, A>,
         index: usize,
         info: &StepInfo,
     ) -> Result<(), CouplingError> {

@@ -1,7 +1,6 @@
 //! Bodies in a flow.
-use crate::strategy::{OneSolve, Strategy};
-use crate::{CouplingError, Immersed, Module, Timings};
-use fv_mesh::Projection;
+use crate::strategy::{Exchange, OneSolve, Strategy};
+use crate::{CouplingError, FlowSolver, Immersed, Module, Timings};
 use ibm::{Forcing, Layer};
 use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Twist, Vector, VelocityField, Wrench};
 use nalgebra::{Matrix6, Vector6};
@@ -156,14 +155,14 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
         self.bodies.advance(dt).map_err(|e| CouplingError::Dynamics { time, source: Box::new(e) })
     }
 
-    /// Makes the fluid follow the bodies and free of divergence, as often as the forcing asks for.
-    pub(crate) fn force<const D: usize>(
+    /// Makes the fluid follow the bodies and free of divergence, as often as forcing and flow ask for.
+    pub(crate) fn force<const D: usize, A: FlowSolver<D>>(
         &mut self,
-        flow: &mut Projection<D>,
+        flow: &mut A,
         dt: f64,
         timings: &mut Timings,
     ) -> Result<(), CouplingError> {
-        for _ in 0..self.forcing.rounds() {
+        for _ in 0..self.forcing.rounds().max(flow.rounds()) {
             timings.measure(Module::Forcing, || self.forcing.force(flow.velocity_mut(), &self.bodies));
             timings.measure(Module::Pressure, || flow.project(dt))?;
         }
@@ -171,13 +170,17 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
     }
 
     /// The impulse J that the fluid has put on body `b` so far in this step, and its momentum inside the body.
-    pub(crate) fn impulse(&mut self, velocity: &dyn VelocityField, b: BodyId) -> [Vector6<f64>; 2] {
-        let internal = self.inside(velocity, b);
-        [six(self.forcing.reaction(b)) + internal - self.states[b.0].internal, internal]
+    pub(crate) fn impulse<const D: usize, A: FlowSolver<D>>(
+        &mut self,
+        flow: &A,
+        b: BodyId,
+    ) -> [Vector6<f64>; 2] {
+        let internal = self.inside(flow.velocity(), b);
+        [flow.inertia() * six(self.forcing.reaction(b)) + internal - self.states[b.0].internal, internal]
     }
 
     /// No body's centre may leave through a bounded side.
-    fn check_inside<const D: usize>(&self, flow: &Projection<D>) -> Result<(), CouplingError> {
+    fn check_inside<const D: usize, A: FlowSolver<D>>(&self, flow: &A) -> Result<(), CouplingError> {
         let grid = flow.grid();
         for axis in (0..D).filter(|&a| !flow.sides().periodic(a)) {
             let box_ = [grid.origin()[axis], grid.origin()[axis] + grid.lengths()[axis]];
@@ -222,13 +225,14 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
     }
 }
 
-impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy> Immersed<D> for Particles<F, B, S> {
-    fn couple(
-        &mut self,
-        flow: &mut Projection<D>,
-        dt: f64,
-        timings: &mut Timings,
-    ) -> Result<(), CouplingError> {
+impl<const D: usize, F, B, S, A> Immersed<D, A> for Particles<F, B, S>
+where
+    F: Forcing,
+    B: Dynamics,
+    S: Exchange<D, A>,
+    A: FlowSolver<D>,
+{
+    fn couple(&mut self, flow: &mut A, dt: f64, timings: &mut Timings) -> Result<(), CouplingError> {
         let time = flow.time();
         timings.measure(Module::Contact, || self.advance(dt, time))?;
         self.check_inside(flow)?;
@@ -236,7 +240,7 @@ impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy> Immersed<D> for Parti
         S::exchange(self, flow, dt, timings)
     }
 
-    fn begin(&mut self, flow: &Projection<D>) -> Result<(), CouplingError> {
+    fn begin(&mut self, flow: &A) -> Result<(), CouplingError> {
         let n = self.bodies.n_bodies();
         if self.started == n {
             return Ok(());
@@ -250,7 +254,7 @@ impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy> Immersed<D> for Parti
         Ok(())
     }
 
-    fn check(&self, flow: &Projection<D>) -> Result<(), CouplingError> {
+    fn check(&self, flow: &A) -> Result<(), CouplingError> {
         let (density, grid) = (flow.fluid().density, flow.grid());
         for told in [self.density, self.forcing.density()] {
             if density != told {

@@ -1,5 +1,5 @@
 //! The run loop.
-use crate::{CouplingError, Immersed, Simulation};
+use crate::{CouplingError, FlowSolver, Immersed, Simulation};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How long to run, in which steps, and when to show the state.
@@ -176,10 +176,10 @@ pub struct RunSummary {
 /// # Errors
 /// The first error of a step or an observer. After an error within a step the simulation is between
 /// two steps: go on from a saved state.
-pub fn run<const D: usize, P: Immersed<D>>(
-    simulation: &mut Simulation<D, P>,
+pub fn run<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>>(
+    simulation: &mut Simulation<D, P, A>,
     schedule: &Schedule,
-    observer: &mut impl Observer<Simulation<D, P>>,
+    observer: &mut impl Observer<Simulation<D, P, A>>,
     stop: &AtomicBool,
 ) -> Result<RunSummary, CouplingError> {
     schedule.check()?;

@@ -1,28 +1,23 @@
 //! Flow and what is immersed in it.
-use crate::CouplingError;
+use crate::{CouplingError, FlowSolver};
 use fv_mesh::Projection;
 use interfaces::{Checkpoint, RestartError, Vector};
 use std::time::{Duration, Instant};
 
-/// What is immersed in a flow; `()` is nothing.
-pub trait Immersed<const D: usize>: Checkpoint {
+/// What is immersed in a flow `A`; `()` is nothing.
+pub trait Immersed<const D: usize, A = Projection<D>>: Checkpoint {
     /// Between predictor and end of a step: moves what is immersed, forces the velocity and makes
     /// it free of divergence.
     ///
     /// # Errors
     /// [`CouplingError`] when flow or bodies cannot go on.
-    fn couple(
-        &mut self,
-        flow: &mut Projection<D>,
-        dt: f64,
-        timings: &mut Timings,
-    ) -> Result<(), CouplingError>;
+    fn couple(&mut self, flow: &mut A, dt: f64, timings: &mut Timings) -> Result<(), CouplingError>;
 
     /// Can this be immersed in this flow?
     ///
     /// # Errors
     /// [`CouplingError`] that names what does not fit and why.
-    fn check(&self, _flow: &Projection<D>) -> Result<(), CouplingError> {
+    fn check(&self, _flow: &A) -> Result<(), CouplingError> {
         Ok(())
     }
 
@@ -30,7 +25,7 @@ pub trait Immersed<const D: usize>: Checkpoint {
     ///
     /// # Errors
     /// [`CouplingError`] when this cannot be put on the flow's grid.
-    fn begin(&mut self, _flow: &Projection<D>) -> Result<(), CouplingError> {
+    fn begin(&mut self, _flow: &A) -> Result<(), CouplingError> {
         Ok(())
     }
 
@@ -40,14 +35,11 @@ pub trait Immersed<const D: usize>: Checkpoint {
     }
 }
 
-impl<const D: usize> Immersed<D> for () {
-    fn couple(
-        &mut self,
-        flow: &mut Projection<D>,
-        dt: f64,
-        timings: &mut Timings,
-    ) -> Result<(), CouplingError> {
-        timings.measure(Module::Pressure, || flow.project(dt))?;
+impl<const D: usize, A: FlowSolver<D>> Immersed<D, A> for () {
+    fn couple(&mut self, flow: &mut A, dt: f64, timings: &mut Timings) -> Result<(), CouplingError> {
+        for _ in 0..flow.rounds() {
+            timings.measure(Module::Pressure, || flow.project(dt))?;
+        }
         Ok(())
     }
 }
@@ -118,10 +110,10 @@ impl Timings {
     }
 }
 
-/// A flow and what is immersed in it (`P`; `()` for nothing).
-pub struct Simulation<const D: usize, P = ()> {
+/// A flow `A` and what is immersed in it (`P`; `()` for nothing).
+pub struct Simulation<const D: usize, P = (), A = Projection<D>> {
     /// The flow.
-    pub flow: Projection<D>,
+    pub flow: A,
     /// What is immersed.
     pub particles: P,
     balance: WeightBalance,
@@ -129,12 +121,12 @@ pub struct Simulation<const D: usize, P = ()> {
     timings: Timings,
 }
 
-impl<const D: usize, P: Immersed<D>> Simulation<D, P> {
+impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Simulation<D, P, A> {
     /// Puts the two together.
     ///
     /// # Errors
     /// [`CouplingError`] when the two do not fit ([`Immersed::check`]).
-    pub fn new(flow: Projection<D>, particles: P, balance: WeightBalance) -> Result<Self, CouplingError> {
+    pub fn new(flow: A, particles: P, balance: WeightBalance) -> Result<Self, CouplingError> {
         particles.check(&flow)?;
         Ok(Self { flow, particles, balance, force: Vector::zeros(), timings: Timings::default() })
     }
@@ -164,7 +156,9 @@ impl<const D: usize, P: Immersed<D>> Simulation<D, P> {
         timings.measure(Module::Finish, || flow.finish(dt))?;
         Ok(())
     }
+}
 
+impl<const D: usize, P, A> Simulation<D, P, A> {
     /// The body force of the last step, per mass \[m/s²\].
     pub fn body_force(&self) -> Vector {
         self.force
@@ -175,7 +169,7 @@ impl<const D: usize, P: Immersed<D>> Simulation<D, P> {
     }
 }
 
-impl<const D: usize, P: Immersed<D>> Checkpoint for Simulation<D, P> {
+impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Checkpoint for Simulation<D, P, A> {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         self.flow.save(&mut |name, values| sink(&format!("flow.{name}"), values));
         self.particles.save(&mut |name, values| sink(&format!("particles.{name}"), values));

@@ -4,8 +4,7 @@ mod iterated;
 mod one_solve;
 
 use crate::particles::State;
-use crate::{CouplingError, Particles, Timings};
-use fv_mesh::Projection;
+use crate::{CouplingError, FlowSolver, Particles, Timings};
 use ibm::Forcing;
 use interfaces::{Dynamics, Load};
 use nalgebra::Vector6;
@@ -23,17 +22,24 @@ pub use one_solve::OneSolve;
 /// | [`Explicit`] | 1 | bodies a good deal heavier than the fluid | a step later |
 pub trait Strategy: sealed::Strategy {}
 
+/// A strategy that works with the flow `A`.
+pub trait Exchange<const D: usize, A: FlowSolver<D>>: Strategy + sealed::Exchange<D, A> {}
+
+impl<const D: usize, A: FlowSolver<D>, S: Strategy + sealed::Exchange<D, A>> Exchange<D, A> for S {}
+
 pub(crate) mod sealed {
     use super::*;
 
     pub trait Strategy: Sized + Send {
         /// What a body feels while it is moved through a step of `dt`. `known`: is the last step a guide?
         fn held(state: &State, weight: Vector6<f64>, dt: f64, known: bool) -> Load;
+    }
 
+    pub trait Exchange<const D: usize, A: FlowSolver<D>>: Strategy {
         /// With the bodies at their new places, gives them and the fluid their new velocities.
-        fn exchange<const D: usize, F: Forcing, B: Dynamics>(
+        fn exchange<F: Forcing, B: Dynamics>(
             particles: &mut Particles<F, B, Self>,
-            flow: &mut Projection<D>,
+            flow: &mut A,
             dt: f64,
             timings: &mut Timings,
         ) -> Result<(), CouplingError>

@@ -231,6 +231,16 @@ macro_rules! show_clock {
         pub fn velocity_mut(&mut self) -> &mut $crate::Velocity<D> {
             &mut self.state.velocity
         }
+        /// The mean of the velocity component `c` at the two faces of every cell, row after row.
+        pub fn centred_velocity(&self, c: usize) -> impl Iterator<Item = f64> + '_ {
+            let $crate::flow_state::FlowState { grid, velocity, pressure, .. } = &self.state;
+            let (n, s) = (grid.cells()[0], grid.stride()[c]);
+            let u = velocity.components[c].data();
+            (0..pressure.n_rows()).flat_map(move |r| {
+                let o = pressure.row_start(r);
+                (o..o + n).map(move |i| 0.5 * (u[i] + u[i + s]))
+            })
+        }
         /// Courant number dt Σ_a max(|u_a|/h_a) of a step of length `dt`, what moves at the sides included.
         pub fn courant(&self, dt: f64) -> f64 {
             self.state.courant(dt)

@@ -1,6 +1,6 @@
 //! Bodies that rise or settle in a periodic box.
 use crate::Outcome;
-use coupling::{CouplingError, Observer, Particles, Simulation, StepInfo, Strategy, WeightBalance};
+use coupling::{CouplingError, Exchange, Observer, Particles, Simulation, StepInfo, Strategy, WeightBalance};
 use dem::{Ellipsoid, Material, RigidBodies, Shape, Sphere, TriangleMesh};
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Side};
 use ibm::{Forcing, SmoothForcing};
@@ -97,7 +97,7 @@ impl FreeBody {
     ///
     /// # Errors
     /// For what makes no scene.
-    pub fn build<S: Strategy>(&self, strategy: S) -> Outcome<Fall<S>> {
+    pub fn build<S: Exchange<3, Projection<3>>>(&self, strategy: S) -> Outcome<Fall<S>> {
         let size = self.box_.map(|n| n as f64);
         let grid = CartesianGrid::new(self.box_.map(|n| n * self.per_diameter), size)?;
         let fluid = Fluid { density: 1.0, viscosity: self.viscosity() };

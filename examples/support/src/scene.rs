@@ -1,7 +1,7 @@
 //! The falling discs (see examples/falling_discs): the scene as data, and its parts put together.
-use coupling::{CouplingError, Particles, Simulation, WeightBalance};
+use coupling::{CouplingError, HfdibDem, Particles, Simulation, WeightBalance, hfdib_dem};
 use dem::{DemError, Disc, HalfSpace, Material, RigidBodies};
-use fv_mesh::{CartesianGrid, Diffusion, FlowError, Fluid, Projection, Side};
+use fv_mesh::{CartesianGrid, Diffusion, FlowError, Fluid, Piso, Projection, Side};
 use ibm::Forcing;
 use interfaces::{Freedom, Periods, Point, Pose, Twist, Vector};
 
@@ -135,7 +135,20 @@ impl Scene {
     }
 
     /// The fluid alone.
+    ///
+    /// # Errors
+    /// Where the scene makes no sense.
     pub fn flow(&self) -> Result<Projection<2>, SceneError> {
+        let flow = Projection::new(self.grid()?, self.sides(), FLUID)?;
+        // The immersed boundary's accuracy is known for explicit diffusion.
+        Ok(flow.with_diffusion(Diffusion::Explicit))
+    }
+
+    fn sides(&self) -> [[Side; 2]; 2] {
+        [Side::Periodic.both(), if self.floor { Side::WALL.both() } else { Side::Periodic.both() }]
+    }
+
+    fn grid(&self) -> Result<CartesianGrid<2>, SceneError> {
         if !(self.diameter.is_finite() && self.diameter > 0.0) {
             return Err(SceneError::Diameter { found: self.diameter });
         }
@@ -146,11 +159,7 @@ impl Scene {
         if cells[0].saturating_mul(cells[1]) > MOST_CELLS {
             return Err(SceneError::TooFine { cells });
         }
-        let grid = CartesianGrid::new(cells, BOX)?;
-        let vertical = if self.floor { Side::WALL.both() } else { Side::Periodic.both() };
-        let flow = Projection::new(grid, [Side::Periodic.both(), vertical], FLUID)?;
-        // The immersed boundary's accuracy is known for explicit diffusion.
-        Ok(flow.with_diffusion(Diffusion::Explicit))
+        Ok(CartesianGrid::new(cells, BOX)?)
     }
 
     /// The discs alone, without fluid.
@@ -189,7 +198,19 @@ impl Scene {
         if let Some(factor) = self.virtual_mass {
             particles = particles.with_virtual_mass(factor);
         }
-        let balance = if self.floor { WeightBalance::None } else { self.balance };
-        Ok(Simulation::new(flow, particles, balance)?)
+        Ok(Simulation::new(flow, particles, self.weight_balance())?)
+    }
+
+    fn weight_balance(&self) -> WeightBalance {
+        if self.floor { WeightBalance::None } else { self.balance }
+    }
+
+    /// The same by the paper's algorithm.
+    ///
+    /// # Errors
+    /// Where the scene makes no sense.
+    pub fn hfdib_dem(&self) -> Result<HfdibDem<2>, SceneError> {
+        let flow = Piso::new(self.grid()?, self.sides(), FLUID)?;
+        Ok(hfdib_dem(flow, self.discs()?, Vector::new(0.0, -GRAVITY, 0.0), self.weight_balance())?)
     }
 }

@@ -1,8 +1,7 @@
 //! Bodies feel what the flow did to them in the step before.
 use super::{Strategy, sealed};
 use crate::particles::{State, six, wrench};
-use crate::{CouplingError, Module, Particles, Timings};
-use fv_mesh::Projection;
+use crate::{CouplingError, FlowSolver, Module, Particles, Timings};
 use ibm::Forcing;
 use interfaces::{BodyId, Dynamics, Load};
 use nalgebra::Vector6;
@@ -24,17 +23,19 @@ impl sealed::Strategy for Explicit {
     fn held(state: &State, weight: Vector6<f64>, dt: f64, _: bool) -> Load {
         Load { wrench: wrench(state.deferred / dt + weight), ..Load::default() }
     }
+}
 
-    fn exchange<const D: usize, F: Forcing, B: Dynamics>(
+impl<const D: usize, A: FlowSolver<D>> sealed::Exchange<D, A> for Explicit {
+    fn exchange<F: Forcing, B: Dynamics>(
         particles: &mut Particles<F, B, Self>,
-        flow: &mut Projection<D>,
+        flow: &mut A,
         dt: f64,
         timings: &mut Timings,
     ) -> Result<(), CouplingError> {
         particles.force(flow, dt, timings)?;
         timings.measure(Module::Forcing, || {
             for b in (0..particles.states.len()).map(BodyId) {
-                let [impulse, internal] = particles.impulse(flow.velocity(), b);
+                let [impulse, internal] = particles.impulse(flow, b);
                 let now = particles.mass_matrix(b) * particles.velocity(b);
                 let given = dt * particles.pull(b) + six(particles.bodies.contact_impulse(b));
                 let s = &mut particles.states[b.0];

@@ -53,8 +53,10 @@ impl sealed::Strategy for Iterated {
     fn held(state: &State, weight: Vector6<f64>, dt: f64, known: bool) -> Load {
         OneSolve::held(state, weight, dt, known)
     }
+}
 
-    fn exchange<const D: usize, F: Forcing, B: Dynamics>(
+impl<const D: usize> sealed::Exchange<D, Projection<D>> for Iterated {
+    fn exchange<F: Forcing, B: Dynamics>(
         particles: &mut Particles<F, B, Self>,
         flow: &mut Projection<D>,
         dt: f64,
@@ -101,7 +103,7 @@ impl<F: Forcing, B: Dynamics> Particles<F, B, Iterated> {
 
     /// Notes J and what the equation of motion of body `b` leaves; is that little?
     fn compare<const D: usize>(&mut self, flow: &Projection<D>, b: BodyId, dt: f64, tolerance: f64) -> bool {
-        let [impulse, _] = self.impulse(flow.velocity(), b);
+        let [impulse, _] = self.impulse(flow, b);
         let now = self.mass_matrix(b) * self.velocity(b);
         let (weight, contact) = (dt * self.pull(b), six(self.bodies.contact_impulse(b)));
         let (freedom, resistance) = (self.freedom(b), self.resistance(b));

@@ -1,10 +1,9 @@
 //! One pressure solution per step, the fluid's reaction foreseen.
 use super::{Strategy, sealed};
 use crate::particles::{State, six, wrench};
-use crate::{CouplingError, Module, Particles, Timings};
-use fv_mesh::Projection;
+use crate::{CouplingError, FlowSolver, Module, Particles, Timings};
 use ibm::Forcing;
-use interfaces::{BodyId, Dynamics, Load, VelocityField};
+use interfaces::{BodyId, Dynamics, Load};
 use nalgebra::Vector6;
 
 /// The new velocity from one linear system per body before the forcing, with the fluid's reaction predicted implicitly
@@ -32,10 +31,12 @@ impl sealed::Strategy for OneSolve {
         }
         Load { wrench: wrench(state.load), added_mass: state.added[0], added_moment: state.added[1] }
     }
+}
 
-    fn exchange<const D: usize, F: Forcing, B: Dynamics>(
+impl<const D: usize, A: FlowSolver<D>> sealed::Exchange<D, A> for OneSolve {
+    fn exchange<F: Forcing, B: Dynamics>(
         particles: &mut Particles<F, B, Self>,
-        flow: &mut Projection<D>,
+        flow: &mut A,
         dt: f64,
         timings: &mut Timings,
     ) -> Result<(), CouplingError> {
@@ -43,7 +44,7 @@ impl sealed::Strategy for OneSolve {
         particles.force(flow, dt, timings)?;
         timings.measure(Module::Forcing, || {
             for b in 0..particles.states.len() {
-                let [impulse, internal] = particles.impulse(flow.velocity(), BodyId(b));
+                let [impulse, internal] = particles.impulse(flow, BodyId(b));
                 let s = &mut particles.states[b];
                 s.deferred = impulse - s.foreseen;
                 s.internal = internal;
@@ -55,30 +56,32 @@ impl sealed::Strategy for OneSolve {
 }
 
 /// Gives all bodies the velocities that the linear systems foresee.
-pub(super) fn foresee<const D: usize, F: Forcing, B: Dynamics, S: Strategy>(
+pub(super) fn foresee<const D: usize, A: FlowSolver<D>, F: Forcing, B: Dynamics, S: Strategy>(
     particles: &mut Particles<F, B, S>,
-    flow: &Projection<D>,
+    flow: &A,
     dt: f64,
     virtual_mass: Option<f64>,
 ) -> Result<(), CouplingError> {
     for body in (0..particles.states.len()).map(BodyId) {
-        solve(particles, body, flow.velocity(), dt, virtual_mass)
+        solve(particles, body, flow, dt, virtual_mass)
             .ok_or(CouplingError::Motion { body, time: flow.time() })?;
     }
     Ok(())
 }
 
 /// Gives body `b` its velocity at the end of the step, and notes the impulse of the fluid that it foresees.
-fn solve<F: Forcing, B: Dynamics, S: Strategy>(
+fn solve<const D: usize, A: FlowSolver<D>, F: Forcing, B: Dynamics, S: Strategy>(
     particles: &mut Particles<F, B, S>,
     b: BodyId,
-    velocity: &dyn VelocityField,
+    flow: &A,
     dt: f64,
     virtual_mass: Option<f64>,
 ) -> Option<()> {
     let (own, displaced) = (particles.bodies.inertia(b).mass, particles.displaced(b));
-    let layer = particles.layer(velocity, b);
-    let internal = particles.inside(velocity, b);
+    let mut layer = particles.layer(flow.velocity(), b);
+    layer.mass *= flow.inertia();
+    layer.momentum *= flow.inertia();
+    let internal = particles.inside(flow.velocity(), b);
     let mass = particles.mass_matrix(b);
     let factor = virtual_mass.unwrap_or(if own < 0.7 * displaced { 0.3 } else { 0.0 });
     let virtual_mass = mass * (factor * displaced / own);

@@ -67,6 +67,8 @@ pub struct Piso<const D: usize> {
     imposed: [Vec<(usize, usize, f64)>; D],
     /// Corrections made in this step.
     corrections: usize,
+    /// w₀ dt of this step.
+    inertia: f64,
 }
 
 impl<const D: usize> Piso<D> {
@@ -99,6 +101,7 @@ impl<const D: usize> Piso<D> {
             eddy: None,
             imposed: std::array::from_fn(|_| Vec::new()),
             corrections: 0,
+            inertia: 1.0,
             params,
             state,
         })
@@ -123,6 +126,17 @@ impl<const D: usize> Piso<D> {
         self.correction = PressureCorrection::new(grid, metrics, boundaries, tolerance, ITERATIONS)?;
         self.params = params;
         Ok(self)
+    }
+
+    /// w₀ dt: a change of the velocity between the parts of this step takes so many times the impulse that it gives to the fluid at once; 1 by Euler, 3/2 with equal
+    /// steps by BDF2.
+    pub fn inertia(&self) -> f64 {
+        self.inertia
+    }
+
+    /// The parameters.
+    pub fn params(&self) -> &PisoParams {
+        &self.params
     }
 
     /// Sets every velocity component to `u(x)[c]` at its nodes \[m/s\], outlets included; walls and inlets keep theirs.
@@ -171,6 +185,7 @@ impl<const D: usize> Piso<D> {
             r = 0.0;
         }
         let weights = [(1.0 + 2.0 * r) / (1.0 + r), -(1.0 + r), r * r / (1.0 + r)].map(|w| w / dt);
+        self.inertia = weights[0] * dt;
         std::mem::swap(&mut self.old, &mut self.older);
         for (c, u) in self.state.velocity.components.iter_mut().enumerate() {
             let (u, old, older) = (u.data_mut(), self.old[c].data_mut(), self.older[c].data());

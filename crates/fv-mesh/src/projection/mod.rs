@@ -354,16 +354,6 @@ impl<const D: usize> Projection<D> {
     pub fn imbalance(&self) -> f64 {
         self.state.boundaries.imbalance
     }
-    /// The mean of the velocity component `c` at the two faces of every cell, row after row.
-    pub fn centred_velocity(&self, c: usize) -> impl Iterator<Item = f64> + '_ {
-        let FlowState { grid, velocity, pressure, .. } = &self.state;
-        let (n, s) = (grid.cells()[0], grid.stride()[c]);
-        let u = velocity.components[c].data();
-        (0..pressure.n_rows()).flat_map(move |r| {
-            let o = pressure.row_start(r);
-            (o..o + n).map(move |i| 0.5 * (u[i] + u[i + s]))
-        })
-    }
 }
 
 /// The stiffness of viscous terms along each axis. At a wall the parabolic ghost raises the largest eigenvalue from 4/h² to

@@ -1,0 +1,141 @@
+//! What is asked of a flow.
+use fv_mesh::{CartesianGrid, Field, FlowError, FlowStatistics, Fluid, Piso, Projection, Sides, Velocity};
+use interfaces::Checkpoint;
+
+/// An algorithm for incompressible flow whose step has parts, so that bodies can act in between: `predict`, then as many
+/// [`rounds`](Self::rounds) of forcing and `project` as it asks for, then `finish`.
+pub trait FlowSolver<const D: usize>: Checkpoint {
+    /// First part of a step of `dt` \[s\] under the body force `force` per mass \[m/s²\]: the velocity becomes u*.
+    ///
+    /// # Errors
+    /// [`FlowError`] when the step cannot be made.
+    fn predict(&mut self, dt: f64, force: [f64; D]) -> Result<(), FlowError>;
+    /// Makes the velocity free of divergence.
+    ///
+    /// # Errors
+    /// [`FlowError`] when the pressure cannot be found.
+    fn project(&mut self, dt: f64) -> Result<(), FlowError>;
+    /// Ends the step.
+    ///
+    /// # Errors
+    /// [`FlowError`] when the velocity is not finite.
+    fn finish(&mut self, dt: f64) -> Result<(), FlowError>;
+    /// How often the pressure is solved for in a step, at least.
+    fn rounds(&self) -> usize {
+        1
+    }
+    /// By what the momentum of a change of the velocity between the parts of a step has to be multiplied to be the impulse it takes: 1 for schemes that know two
+    /// times, 3/2 for BDF2.
+    fn inertia(&self) -> f64 {
+        1.0
+    }
+    /// The grid.
+    fn grid(&self) -> &CartesianGrid<D>;
+    /// The sides of the box.
+    fn sides(&self) -> &Sides<D>;
+    /// The fluid.
+    fn fluid(&self) -> Fluid;
+    /// The velocity \[m/s\]; between the parts of a step it is u*.
+    fn velocity(&self) -> &Velocity<D>;
+    /// The same, to be changed.
+    fn velocity_mut(&mut self) -> &mut Velocity<D>;
+    /// The pressure \[Pa\].
+    fn pressure(&self) -> &Field<D>;
+    /// Component `c` of the velocity at the centres of the cells.
+    fn centred_velocity(&self, c: usize) -> impl Iterator<Item = f64> + '_;
+    /// Sums and extremes.
+    fn statistics(&mut self) -> FlowStatistics;
+    /// Time \[s\].
+    fn time(&self) -> f64;
+    /// Sets the clock exactly.
+    fn set_time(&mut self, time: f64);
+    /// Steps made.
+    fn steps(&self) -> u64;
+    /// Length of the last step \[s\].
+    fn last_dt(&self) -> f64;
+    /// Courant number of a step of `dt`.
+    fn courant(&self, dt: f64) -> f64;
+    /// The longest step \[s\] with Courant number ≤ `courant` that is stable.
+    fn stable_dt(&self, courant: f64) -> f64;
+    /// The longest step that viscous terms allow \[s\]; infinite if any is stable.
+    fn viscous_limit(&self) -> f64 {
+        f64::INFINITY
+    }
+}
+
+/// What the types have anyway.
+macro_rules! forward {
+    ($flow:ident) => {
+        fn predict(&mut self, dt: f64, force: [f64; D]) -> Result<(), FlowError> {
+            $flow::predict(self, dt, force)
+        }
+        fn finish(&mut self, dt: f64) -> Result<(), FlowError> {
+            $flow::finish(self, dt)
+        }
+        fn grid(&self) -> &CartesianGrid<D> {
+            $flow::grid(self)
+        }
+        fn sides(&self) -> &Sides<D> {
+            $flow::sides(self)
+        }
+        fn fluid(&self) -> Fluid {
+            $flow::fluid(self)
+        }
+        fn velocity(&self) -> &Velocity<D> {
+            $flow::velocity(self)
+        }
+        fn velocity_mut(&mut self) -> &mut Velocity<D> {
+            $flow::velocity_mut(self)
+        }
+        fn pressure(&self) -> &Field<D> {
+            $flow::pressure(self)
+        }
+        fn centred_velocity(&self, c: usize) -> impl Iterator<Item = f64> + '_ {
+            $flow::centred_velocity(self, c)
+        }
+        fn statistics(&mut self) -> FlowStatistics {
+            $flow::statistics(self)
+        }
+        fn time(&self) -> f64 {
+            $flow::time(self)
+        }
+        fn set_time(&mut self, time: f64) {
+            $flow::set_time(self, time);
+        }
+        fn steps(&self) -> u64 {
+            $flow::steps(self)
+        }
+        fn last_dt(&self) -> f64 {
+            $flow::last_dt(self)
+        }
+        fn courant(&self, dt: f64) -> f64 {
+            $flow::courant(self, dt)
+        }
+        fn stable_dt(&self, courant: f64) -> f64 {
+            $flow::stable_dt(self, courant)
+        }
+    };
+}
+
+impl<const D: usize> FlowSolver<D> for Projection<D> {
+    forward!(Projection);
+    fn project(&mut self, dt: f64) -> Result<(), FlowError> {
+        Projection::project(self, dt)
+    }
+    fn viscous_limit(&self) -> f64 {
+        Projection::viscous_limit(self)
+    }
+}
+
+impl<const D: usize> FlowSolver<D> for Piso<D> {
+    forward!(Piso);
+    fn project(&mut self, dt: f64) -> Result<(), FlowError> {
+        self.correct(dt)
+    }
+    fn rounds(&self) -> usize {
+        self.params().correctors
+    }
+    fn inertia(&self) -> f64 {
+        Piso::inertia(self)
+    }
+}

@@ -1,0 +1,64 @@
+//! The paper's algorithm, as one call.
+use crate::with_threads;
+use example_support::scene::Scene;
+use siltflow::coupling::{self, HfdibDem, Schedule};
+use siltflow::flow::{PisoParams, TimeScheme};
+use siltflow::interfaces::{BodyId, Checkpoint, Kinematics};
+use std::collections::BTreeMap;
+use std::sync::atomic::AtomicBool;
+
+/// Speeds of the two discs at 0.03 s \[mm/s\].
+fn speeds(mut simulation: HfdibDem<2>) -> [f64; 2] {
+    let schedule = Schedule { end: 0.03, intervals: 30, dt: Some(2.5e-4), ..Schedule::default() };
+    coupling::run(&mut simulation, &schedule, &mut (), &AtomicBool::new(false)).unwrap();
+    assert!(simulation.flow.statistics().divergence < 1e-3);
+    [0, 1].map(|b| 1e3 * simulation.particles.bodies.twist(BodyId(b)).linear.norm())
+}
+
+/// 15 cells per diameter; 5.45 and 2.96 mm/s by unsteady Stokes theory.
+#[test]
+fn two_discs_sink_by_the_papers_algorithm() {
+    with_threads(1, || {
+        let found = speeds(Scene::default().hfdib_dem().unwrap());
+        for (speed, theory) in found.into_iter().zip([5.45, 2.96]) {
+            assert!((speed / theory - 1.0).abs() < 0.05, "{speed} {theory}");
+        }
+    });
+}
+
+/// By BDF2 a change of the velocity takes 3/2 of its momentum: heavy discs sink as by Euler's scheme.
+#[test]
+fn the_scheme_in_time_does_not_matter_to_heavy_discs() {
+    with_threads(1, || {
+        let scene = Scene { densities: vec![2000.0], cells_per_diameter: 10, ..Scene::default() };
+        let euler = speeds(scene.hfdib_dem().unwrap());
+        let mut simulation = scene.hfdib_dem().unwrap();
+        let params = PisoParams { time_scheme: TimeScheme::Bdf2, ..*simulation.flow.params() };
+        simulation.flow = simulation.flow.with_params(params).unwrap();
+        for (second, first) in speeds(simulation).into_iter().zip(euler) {
+            assert!((second / first - 1.0).abs() < 0.01, "{second} {first}");
+        }
+    });
+}
+
+/// A run that is stopped and resumed ends as one that is not, to the last bit.
+#[test]
+fn the_papers_algorithm_is_resumed() {
+    with_threads(1, || {
+        let scene = Scene { cells_per_diameter: 8, ..Scene::default() };
+        let run = |from: Option<&BTreeMap<String, Vec<f64>>>, steps: usize| {
+            let mut simulation = scene.hfdib_dem().unwrap();
+            if let Some(state) = from {
+                simulation.restore(&|name| state.get(name).map(Vec::as_slice)).unwrap();
+            }
+            (0..steps).for_each(|_| simulation.step(5e-4).unwrap());
+            let mut state = BTreeMap::new();
+            simulation.save(&mut |name, values| {
+                state.insert(name.to_string(), values.to_vec());
+            });
+            state
+        };
+        let half = run(None, 10);
+        assert!(run(Some(&half), 7) == run(None, 17));
+    });
+}

@@ -104,8 +104,7 @@ fn settle(cli: &Cli, stop: &AtomicBool) -> Outcome<Ending> {
         setup: &format!("{scene:?}"),
         view: scene.view(&fall),
     };
-    let portraits =
-        if cli.run.no_images { None } else { Some(Portraits::new(&out, &fall, scene.periodic)?) };
+    let portraits = if cli.run.no_images { None } else { Some(Portraits::new(&out, &fall, scene.periodic)?) };
     let diary = Diary::new(scene.diameter, scene.periodic, portraits);
     let record = run(&mut fall, &cli.run, &plan, diary, stop)?;
     report::tell(&scene, &fall, &record, &plan, cli.run.no_images)?;

@@ -13,7 +13,11 @@ pub(crate) fn scalar(flow: &Projection<2>, diffusivity: f64) -> Result<Scalar<2>
 }
 
 /// A step of flow and scalar, without any slot.
-pub(crate) fn with_scalar(flow: &mut Projection<2>, scalar: &mut Scalar<2>, dt: f64) -> Result<(), FlowError> {
+pub(crate) fn with_scalar(
+    flow: &mut Projection<2>,
+    scalar: &mut Scalar<2>,
+    dt: f64,
+) -> Result<(), FlowError> {
     scalar.advance(flow.velocity(), flow.time(), dt)?;
     flow.predict(dt, [0.0; 2])?;
     flow.project(dt)?;

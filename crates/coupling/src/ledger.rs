@@ -238,10 +238,9 @@ impl Checkpoint for Ledger {
             let (expected, found) = (6 * rows.len(), twists.len());
             return Err(RestartError::Length { name: "twists".into(), expected, found });
         }
-        let twists = rows.iter().map(|&[x, y, z, a, b, c]| Twist {
-            linear: Vector::new(x, y, z),
-            angular: Vector::new(a, b, c),
-        });
+        let twists = rows
+            .iter()
+            .map(|&[x, y, z, a, b, c]| Twist { linear: Vector::new(x, y, z), angular: Vector::new(a, b, c) });
         *self = Self { last, twists: twists.collect(), report, resumed: last.is_some() };
         Ok(())
     }

@@ -178,5 +178,11 @@ fn slice(fall: &Fall<3>) -> Slice {
         radius: 0.5 * DIAMETER,
         angle: -pose.orientation.scaled_axis().y,
     };
-    Slice { time: flow.time(), cells: [nx, nz], speed: (0..nx * nz).map(at).collect(), discs: vec![disc], ..Slice::default() }
+    Slice {
+        time: flow.time(),
+        cells: [nx, nz],
+        speed: (0..nx * nz).map(at).collect(),
+        discs: vec![disc],
+        ..Slice::default()
+    }
 }

@@ -126,5 +126,11 @@ fn slice(fall: &Fall<2>) -> Slice {
         let angle = pose.orientation.scaled_axis().z;
         Outline { x: pose.position.x, y: pose.position.y, radius: 0.5 * DIAMETER, angle }
     };
-    Slice { time: flow.time(), cells: flow.grid().cells(), speed, discs: bodies.ids().map(outline).collect(), ..Slice::default() }
+    Slice {
+        time: flow.time(),
+        cells: flow.grid().cells(),
+        speed,
+        discs: bodies.ids().map(outline).collect(),
+        ..Slice::default()
+    }
 }

@@ -9,7 +9,8 @@ fn scene() -> RigidBodies<()> {
     bodies.set_gravity(Vector::new(0.0, 0.0, -9.81));
     bodies.add_wall(HalfSpace::new(Point::origin(), Vector::z()).unwrap(), Material::default()).unwrap();
     for side in [-1.0, 1.0] {
-        let (at, twist) = (Pose::at([3.0 * side * R, 0.0, 2.0 * R]), moving([-side, 0.0, 0.0], [0.0, 0.0, side]));
+        let (at, twist) =
+            (Pose::at([3.0 * side * R, 0.0, 2.0 * R]), moving([-side, 0.0, 0.0], [0.0, 0.0, side]));
         bodies.add(Sphere::new(R).unwrap(), Material::default(), at, twist, Freedom::FREE).unwrap();
     }
     bodies
@@ -44,9 +45,7 @@ fn they_go_on_from_a_saved_state() {
             whole.save(&mut |name, values| saved.push((name.to_owned(), values.to_vec())));
         }
     }
-    second
-        .restore(&|name| saved.iter().find(|(n, _)| n == name).map(|(_, values)| &values[..]))
-        .unwrap();
+    second.restore(&|name| saved.iter().find(|(n, _)| n == name).map(|(_, values)| &values[..])).unwrap();
     (0..10).for_each(|_| second.advance(0.003).unwrap());
     assert!(whole.ids().all(|b| whole.pose(b) == second.pose(b) && whole.twist(b) == second.twist(b)));
 }

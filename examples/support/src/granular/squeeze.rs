@@ -106,8 +106,7 @@ impl<'a> Crowd<'a> {
         }
         // The image of the first that is next to the second.
         let image = Pose { position: poses[b].position + away, ..poses[a] };
-        let patches =
-            self.solver.solve(&*self.grains[a].shape, &image, &*self.grains[b].shape, &poses[b])?;
+        let patches = self.solver.solve(&*self.grains[a].shape, &image, &*self.grains[b].shape, &poses[b])?;
         let second = poses[b].position;
         for patch in patches {
             let mut slopes = [slope(patch, image.position), slope(patch, second)];

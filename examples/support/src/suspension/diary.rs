@@ -16,7 +16,7 @@ const EVERY: u64 = 10;
 /// Slabs of a profile.
 const SLABS: usize = 40;
 
-const COLUMNS: [&str; 21] = [
+const COLUMNS: [&str; 22] = [
     "time",
     "fastest",
     "centroid",
@@ -25,6 +25,7 @@ const COLUMNS: [&str; 21] = [
     "coordination",
     "overlap",
     "largest_overlap",
+    "shared",
     "bed_height",
     "bed_fraction",
     "core_fraction",
@@ -88,6 +89,7 @@ impl Diary {
         let lengths = fall.flow.grid().lengths();
         let t: Totals = totals(bodies, 0, &Aabb { min: Point::origin(), max: lengths.into() });
         let height = |b| bodies.inertia(b).mass * bodies.pose(b).position.z;
+        let volume: f64 = bodies.ids().map(|b| bodies.inertia(b).volume).sum();
         let mass: f64 = bodies.ids().map(|b| bodies.inertia(b).mass).sum();
         let bed = Bed::of(bodies, lengths[0], self.margin)?;
         let (l, centroid) = (self.ledger.report(), bodies.ids().map(height).sum::<f64>() / mass);
@@ -103,6 +105,7 @@ impl Diary {
             t.coordination,
             t.overlap[0],
             t.overlap[1],
+            bodies.contacts().map(|c| c.volume).sum::<f64>() / volume,
             bed.height,
             bed.whole,
             bed.core.unwrap_or(f64::NAN),
@@ -140,8 +143,10 @@ impl Observer<Fall<3>> for Diary {
     fn snapshot(&mut self, fall: &mut Fall<3>, index: usize, info: &StepInfo) -> Result<(), CouplingError> {
         let [width, _, height] = fall.flow.grid().lengths();
         let bodies = &fall.particles.bodies;
-        let now = profile(bodies, width * width, height, SLABS)
-            .map_err(|e| CouplingError::Output { what: "measuring the bed".into(), source: io::Error::other(e) })?;
+        let now = profile(bodies, width * width, height, SLABS).map_err(|e| CouplingError::Output {
+            what: "measuring the bed".into(),
+            source: io::Error::other(e),
+        })?;
         if index == 0 {
             told("measuring the bed")(self.push(fall, 0.0, 0.0))?;
             self.profiles[0] = now.clone();
@@ -221,8 +226,10 @@ impl Portraits {
             plates.push(plate([w + t, t, high + t], [0.5 * (w - t), w + 0.5 * t, 0.5 * (high - t)])?);
             plates.push(plate([t, w, high + t], [-0.5 * t, 0.5 * w, 0.5 * (high - t)])?);
         }
-        let mut models: Vec<Model<'_>> =
-            plates.iter().map(|(s, pose)| Model { shape: s as &dyn Shape, pose: *pose, tint: Tint::Grey(0.78) }).collect();
+        let mut models: Vec<Model<'_>> = plates
+            .iter()
+            .map(|(s, pose)| Model { shape: s as &dyn Shape, pose: *pose, tint: Tint::Grey(0.78) })
+            .collect();
         models.extend(bodies.ids().map(|b: BodyId| {
             let pose = bodies.pose(b);
             let position = bodies.periods().wrap(pose.position, Point::origin());

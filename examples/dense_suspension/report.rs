@@ -47,6 +47,7 @@ pub(crate) fn tell(
     t.row("contacts per body at the end", number(last("coordination")), "");
     t.row("overlap by radius at the end, mean", number(100.0 * last("overlap")), "%");
     t.row("  largest of all", number(100.0 * most("largest_overlap")), "%");
+    t.row("volume of overlaps by volume of bodies at the end", number(100.0 * last("shared")), "%");
     t.section("Bed");
     t.row(
         "height below which 19 of 20 centres are",
@@ -91,7 +92,7 @@ pub(crate) fn tell(
         "bodies": bodies.n_bodies(), "cells": [nx, ny, nz], "cells_per_diameter": scene.cells_per_diameter,
         "fraction_at_the_start": started, "time": fall.flow.time(), "steps": record.summary.steps, "dt": record.summary.dt,
         "outside": most("outside"), "finite": diary.lost().is_none(), "fastest": most("fastest"),
-        "fastest_at_the_end": last("fastest"), "coordination": last("coordination"), "largest_overlap": most("largest_overlap"),
+        "fastest_at_the_end": last("fastest"), "coordination": last("coordination"), "largest_overlap": most("largest_overlap"), "shared": last("shared"),
         "bed_height": last("bed_height"), "porosity": 1.0 - last("bed_fraction"),
         "porosity_of_the_core": 1.0 - last("core_fraction"), "momentum_residual_step": l.momentum_step,
         "momentum_residual_total": l.momentum_total, "kinetic_energy": l.energy, "work": l.work,

@@ -16,7 +16,7 @@ const EVERY: u64 = 10;
 /// Slabs of a profile.
 const SLABS: usize = 40;
 
-const COLUMNS: [&str; 21] = [
+const COLUMNS: [&str; 22] = [
     "time",
     "fastest",
     "centroid",
@@ -25,6 +25,7 @@ const COLUMNS: [&str; 21] = [
     "coordination",
     "overlap",
     "largest_overlap",
+    "shared",
     "bed_height",
     "bed_fraction",
     "core_fraction",
@@ -88,6 +89,7 @@ impl Diary {
         let lengths = fall.flow.grid().lengths();
         let t: Totals = totals(bodies, 0, &Aabb { min: Point::origin(), max: lengths.into() });
         let height = |b| bodies.inertia(b).mass * bodies.pose(b).position.z;
+        let volume: f64 = bodies.ids().map(|b| bodies.inertia(b).volume).sum();
         let mass: f64 = bodies.ids().map(|b| bodies.inertia(b).mass).sum();
         let bed = Bed::of(bodies, lengths[0], self.margin)?;
         let (l, centroid) = (self.ledger.report(), bodies.ids().map(height).sum::<f64>() / mass);
@@ -103,6 +105,7 @@ impl Diary {
             t.coordination,
             t.overlap[0],
             t.overlap[1],
+            bodies.contacts().map(|c| c.volume).sum::<f64>() / volume,
             bed.height,
             bed.whole,
             bed.core.unwrap_or(f64::NAN),

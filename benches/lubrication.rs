@@ -69,9 +69,9 @@ fn sink() -> Outcome<()> {
         "per d", "δ/h", "δ/R", "exact", "grid", "off, %", "with model", "off, %"
     );
     for per_diameter in [8, 12, 16] {
-        let bare = sinking(per_diameter, Chen::default(), 0.045)?;
+        let bare = sinking(per_diameter, Chen::default(), [1.2, 0.045], 0.1)?;
         let film = SmoothFilm::new(1.0 / per_diameter as f64)?;
-        let whole = sinking(per_diameter, Lubricated::new(Chen::default(), 1.0, film)?, 0.045)?;
+        let whole = sinking(per_diameter, Lubricated::new(Chen::default(), 1.0, film)?, [1.2, 0.045], 0.1)?;
         for gap in [1.0, 0.5, 0.3, 0.2, 0.1, 0.05] {
             let exact = brenner(gap);
             let at = |series: &[[f64; 2]]| series.iter().find(|s| s[0] <= gap).map_or(f64::NAN, |s| s[1]);

@@ -3,7 +3,7 @@ use crate::IbmError;
 use interfaces::UnresolvedFilm;
 
 /// What a flow on cells of one size, with bodies forced by [`SmoothForcing`](crate::SmoothForcing), leaves of the films between bodies, and between bodies and the sides of its box: measured
-/// (`cargo bench --bench lubrication`) with spheres of 8 to 24 cells per diameter and the kernel for space, against Brenner's (1961, Chem. Eng. Sci. 16, 242) series.
+/// (`cargo bench --bench lubrication`) with spheres of 6 to 24 cells per diameter and the kernel for space, against Brenner's (1961, Chem. Eng. Sci. 16, 242) series.
 ///
 /// With q the share by which the flow's own film is stronger than 1/δ, −q/δ is left. Markers that reach across the film make it stronger below two cells (q up to
 /// 0.6 at a wall, 1 between bodies, whose markers reach from both sides), and below a quarter of a cell ever weaker: there the flow knows no
@@ -31,7 +31,8 @@ impl SmoothFilm {
 /// Gaps in cells.
 const GAPS: [f64; 10] = [0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.9, 1.2, 2.0, 3.0];
 /// Reduced radii in cells, and q at these gaps: at walls, between bodies.
-const WALLS: [(f64, [f64; 10]); 3] = [
+const WALLS: [(f64, [f64; 10]); 4] = [
+    (3.0, [-0.491, -0.100, 0.377, 0.547, 0.545, 0.401, 0.285, 0.258, 0.217, 0.199]),
     (4.0, [-0.450, -0.032, 0.466, 0.623, 0.588, 0.385, 0.227, 0.190, 0.146, 0.126]),
     (6.0, [-0.563, -0.230, 0.181, 0.346, 0.367, 0.272, 0.170, 0.138, 0.095, 0.073]),
     (8.0, [-0.653, -0.384, -0.034, 0.134, 0.190, 0.179, 0.133, 0.114, 0.077, 0.060]),
@@ -40,7 +41,7 @@ const BODIES: [(f64, [f64; 10]); 2] = [
     (2.0, [-0.530, -0.141, 0.410, 0.700, 0.894, 0.968, 0.840, 0.700, 0.470, 0.300]),
     (3.0, [-0.549, -0.165, 0.396, 0.690, 0.885, 0.926, 0.740, 0.593, 0.352, 0.220]),
 ];
-/// How far beyond the measured radii the tables are trusted: they change with the logarithm of the radius.
+/// How far beyond the largest measured radius the tables are trusted: they change with the logarithm of the radius.
 const BEYOND: f64 = 2.0;
 /// Gaps, in cells, between which the model fades out.
 const FADES: [f64; 2] = [2.0, 3.0];
@@ -57,7 +58,7 @@ fn between(x: f64, at: impl Fn(usize) -> f64, n: usize) -> (usize, f64) {
 fn excess(table: &[(f64, [f64; 10])], gap: f64, radius: f64) -> f64 {
     let thin = gap.max(GAPS[0]);
     let (g, part) = between(thin, |i| GAPS[i], GAPS.len());
-    let (least, most) = (table[0].0 / BEYOND, table[table.len() - 1].0 * BEYOND);
+    let (least, most) = (table[0].0, table[table.len() - 1].0 * BEYOND);
     let (r, share) = between(radius.clamp(least, most), |i| table[i].0, table.len());
     let at = |r: usize| table[r].1[g] + part.min(1.0) * (table[r].1[g + 1] - table[r].1[g]);
     let q = at(r) + share * (at(r + 1) - at(r));

@@ -95,26 +95,31 @@ pub fn resistance(
     }
 }
 
-/// A sphere that sinks slowly onto a wall: its distance from it over R, and its net weight over 6πμR times its speed, at each step until the distance is `least` R.
+/// A sphere that sinks slowly onto a wall: its distance from it over R, and its net weight over 6πμR times its speed, at each step from `start` R until the distance is `least` R.
 ///
-/// Net weight 6πμR · 0.2 ν/d, twice the fluid's density, a box of 8 diameters, from rest at 1.2 R.
+/// Net weight 6πμR times `stokes` (in ν/d; what it accelerates is felt at 0.2 still: 1 to 4 % of the weight), twice the fluid's density, a box of 6 diameters, from rest.
 ///
 /// # Errors
 /// Those of grid, flow and bodies.
-pub fn sinking<L: ContactLaw>(per_diameter: usize, law: L, least: f64) -> Outcome<Vec<[f64; 2]>> {
-    let (edge, h) = (8.0, 1.0 / per_diameter as f64);
+pub fn sinking<L: ContactLaw>(
+    per_diameter: usize,
+    law: L,
+    [start, least]: [f64; 2],
+    stokes: f64,
+) -> Outcome<Vec<[f64; 2]>> {
+    let (edge, h) = (6.0, 1.0 / per_diameter as f64);
     let patch = [-1.0, 1.0].map(|side| 0.5 * edge + side * (0.5 + 10.0 * h));
     let across = |shift| gathered(edge, h, patch, 1.2, shift);
-    let z = gathered(edge, h, [0.0, 1.6 + 10.0 * h], 1.2, 0.0)?;
+    let z = gathered(edge, h, [0.0, 1.0 + 0.5 * start + 10.0 * h], 1.2, 0.0)?;
     let grid = CartesianGrid::from_axes([across(0.37)?, across(0.11)?, z])?;
     let fluid = Fluid { density: 1.0, viscosity: 1.0 };
     let flow = Projection::new(grid, Side::WALL.everywhere(), fluid)?.with_diffusion(Diffusion::Explicit);
     let stone = Material { density: 2.0, youngs_modulus: 1e4, ..Material::default() };
     let mut bodies = RigidBodies::with_law(Periods::default(), law);
     bodies.add_wall(HalfSpace::new(Point::origin(), Vector::z())?, stone)?;
-    let start = Pose::at([0.5 * edge, 0.5 * edge, 0.5 + 0.6]);
+    let start = Pose::at([0.5 * edge, 0.5 * edge, 0.5 + 0.5 * start]);
     bodies.add(Sphere::new(0.5)?, stone, start, Twist::default(), Freedom::FREE)?;
-    let (stokes, volume) = (0.2, PI / 6.0);
+    let volume = PI / 6.0;
     let gravity = Vector::new(0.0, 0.0, -3.0 * PI * stokes / volume);
     let particles = Particles::new(bodies, SmoothForcing::new(1.0), 1.0, gravity);
     let mut fall = Simulation::new(flow, particles, WeightBalance::None)?;

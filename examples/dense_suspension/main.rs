@@ -1,8 +1,8 @@
 //! A dense suspension of polyhedra settles in a fluid and becomes a bed.
 //!
-//! 500 irregular polyhedra of 26 vertices, each with a shape of its own, of 85 % to 115 % of the middle diameter, fill 0.4 of a closed box of fluid at random; they are
-//! 2.5 times as heavy as the fluid. They are placed by random addition in a higher box whose lid then comes down step by step, bodies that overlap
-//! being pushed apart, all of it 3 % larger than they are. Then fluid and bodies are let go from rest. Every body is resolved by the grid and the
+//! 500 irregular convex polyhedra of 26 vertices, of twenty shapes and of 85 % to 115 % of the middle diameter, fill 0.4 of a closed box of fluid at
+//! random; they are 2.5 times as heavy as the fluid. They are placed by random addition in a higher box whose lid then comes down step by step, bodies that overlap
+//! being moved and turned apart, all of it 3 % larger than they are. Then fluid and bodies are let go from rest. Every body is resolved by the grid and the
 //! markers on its surface; bodies that touch push and rub by Chen's law on the volume that they share.
 //!
 //! Told at the end: where the bodies are, the books of momentum and energy, the porosity of the bed, and what each module cost. The porosity is that
@@ -11,8 +11,8 @@
 //!
 //! Sample runs:
 //! ```text
-//! cargo run --release --example dense_suspension                                            # 500 bodies, 8 cells per diameter
-//! cargo run --release --example dense_suspension -- --bodies 40 --cells-per-diameter 6      # about a minute
+//! cargo run --release --example dense_suspension                                            # 500 bodies, 8 cells per diameter: about 13 CPU minutes
+//! cargo run --release --example dense_suspension -- --bodies 40 --cells-per-diameter 6      # half a minute
 //! cargo run --release --example dense_suspension -- --periodic --friction 0
 //! ```
 mod report;

@@ -22,6 +22,9 @@ const DT: f64 = 1e-4;
 /// Diffusivity of the scalar \[m²/s\].
 const DIFFUSIVITY: f64 = 1e-6;
 
+/// A step of the flow, in one of the ways that are compared.
+type Step = Box<dyn FnMut(&mut Projection<2>) -> Result<(), FlowError>>;
+
 /// A vortex, so that there is something to compute.
 fn swirl(x: [f64; 2]) -> [f64; 2] {
     [1e-3 * (x[1] * 314.16).sin(), 1e-3 * (x[0] * 628.32).cos()]
@@ -32,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mode = args.next().unwrap_or_else(|| "plain".into());
     let steps: usize = args.next().map_or(Ok(20), |n| n.parse())?;
     let mut scene = Scene { cells_per_diameter: 8, ..Scene::default() };
-    let flow = |mut step: Box<dyn FnMut(&mut Projection<2>) -> Result<(), FlowError>>| {
+    let flow = |mut step: Step| {
         let mut flow = scene.flow()?;
         flow.set_velocity(swirl);
         (0..steps).try_for_each(|_| step(&mut flow))?;

@@ -56,6 +56,13 @@ fn a_stopped_run_leaves_whole_files_and_its_rest_the_same_as_one_run() {
     for name in ["trajectories.csv", "fields.pvd", "bodies.pvd"] {
         assert!(read(&whole, name) == read(&parts, name), "{name}");
     }
+    // Stopped before the first step.
+    let none = folder("none");
+    run(&none, 0, false);
+    run(&none, usize::MAX, true);
+    for name in ["trajectories.csv", "fields.pvd", "bodies.pvd"] {
+        assert!(read(&whole, name) == read(&none, name), "{name}");
+    }
     for name in ["fields/00010.vti", "bodies/00010.vtp", "fields/00005.vti"] {
         assert!(
             std::fs::read(whole.join(name)).unwrap() == std::fs::read(parts.join(name)).unwrap(),

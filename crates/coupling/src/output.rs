@@ -64,6 +64,10 @@ impl FileOutput {
     /// # Errors
     /// [`CouplingError::Output`] when its files cannot be read or written.
     pub fn resume(folder: &Path, time: f64) -> Result<Self, CouplingError> {
+        if time <= 0.0 {
+            // Nothing but the start was shown, and that is shown again.
+            return Self::new(folder);
+        }
         let path = folder.join("trajectories.csv");
         let go_on = || {
             // Times are written with ten digits.

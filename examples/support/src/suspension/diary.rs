@@ -177,7 +177,8 @@ impl Kept<3> for Diary {
         self.rows.clear();
         for line in std::fs::read_to_string(path)?.lines().skip(1) {
             let row: Vec<f64> = line.split(',').map_while(|v| v.parse().ok()).collect();
-            if row.len() == COLUMNS.len() && row[0] <= time {
+            // What there is before the first step comes again.
+            if row.len() == COLUMNS.len() && row[0] <= time && time > 0.0 {
                 self.rows.push(row);
             }
         }

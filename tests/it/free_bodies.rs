@@ -20,8 +20,8 @@ fn motion<const D: usize, L: ContactLaw>(fall: &mut Fall<D, L>, end: f64, couran
     motion
 }
 
-/// ten Cate et al. (2002), case E4 with 8 cells per diameter: the largest speed, and the curve of the speed up to then. Measured: 4.6 % too slow
-/// (12 cells: 2.6 %), and 6.2 % of the peak off, root mean square (12 cells: 3.6 %).
+/// ten Cate et al. (2002), case E4 with 8 cells per diameter: the largest speed, and the curve of the speed up to then. Measured: 2.4 % too slow
+/// (12 cells: 1.6 %), and 4.0 % of the peak off, root mean square (12 cells: 2.6 %).
 #[test]
 fn a_sphere_settles_as_measured() {
     with_threads(1, || {
@@ -33,8 +33,8 @@ fn a_sphere_settles_as_measured() {
         let peak = velocity.iter().fold(0.0, |most: f64, v| most.max(-v.1));
         let measured = case.peak().unwrap();
         let off = Distance::between(&velocity, &case.velocity(), |_| true);
-        assert!((0.94..1.01).contains(&(peak / measured)), "{peak} {measured}");
-        assert!(off.rms < 0.07 * measured && off.points > 20, "{off:?}");
+        assert!((0.96..1.01).contains(&(peak / measured)), "{peak} {measured}");
+        assert!(off.rms < 0.05 * measured && off.points > 20, "{off:?}");
     });
 }
 

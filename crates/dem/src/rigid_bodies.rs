@@ -331,10 +331,6 @@ impl<L: ContactLaw> RigidBodies<L> {
         let awake: usize = self.chunks.iter().map(|c| c.patches.len()).sum();
         awake + self.sleepers.patches.len() + self.sleepers.woken.len()
     }
-    /// How many pairs a [film](crate::Lubricated) kept apart in the last sub-step, those with walls included.
-    pub fn n_films(&self) -> usize {
-        self.chunks.iter().map(|c| c.films).sum()
-    }
     /// How many overlaps were computed in all steps so far; pairs whose boxes are apart cost none.
     pub fn overlap_calls(&self) -> u64 {
         self.overlap_calls

@@ -1,11 +1,12 @@
 //! Bodies that are close without touching.
+use super::RigidBodies;
 use super::body::{Constants, Kind};
 use super::contacts::View;
 use super::meeting::{Meeting, Other};
 use super::time_step::LEAST_STEPS;
 use crate::contact::{ContactLaw, FilmForce, Gap};
 use crate::overlap::tree::{Closest, closest};
-use interfaces::{BodyId, Point, Pose, Vector, Wrench};
+use interfaces::{Point, Pose, Vector, Wrench};
 use nalgebra::Matrix2;
 use std::f64::consts::PI;
 
@@ -29,6 +30,13 @@ struct Place {
     curvatures: [f64; 2],
 }
 
+impl<L: ContactLaw> RigidBodies<L> {
+    /// How many pairs a [film](crate::Lubricated) kept apart in the last sub-step, those with walls included.
+    pub fn n_films(&self) -> usize {
+        self.chunks.iter().map(|c| c.films).sum()
+    }
+}
+
 impl<L: ContactLaw> View<'_, L> {
     /// What the film between two that do not touch does, if there is one.
     pub(super) fn film(&self, meeting: &Meeting<'_>) -> Option<Film> {
@@ -43,7 +51,7 @@ impl<L: ContactLaw> View<'_, L> {
         let film = Gap { distance: gap, normal, velocity, spin, radius, curvatures, wall };
         let FilmForce { force, couple, resistance } = self.law.across(&film);
         let inverse_mass = |b: u32, c: &Constants| {
-            if c.pinned() { 0.0 } else { 1.0 / (c.mass + self.loads.of(BodyId(b as usize).0).added_mass) }
+            if c.pinned() { 0.0 } else { 1.0 / (c.mass + self.loads.of(b as usize).added_mass) }
         };
         let mut inverse = inverse_mass(meeting.pair.a, meeting.constants());
         if !wall {

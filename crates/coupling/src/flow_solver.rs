@@ -24,10 +24,10 @@ pub trait FlowSolver<const D: usize>: Checkpoint {
     fn rounds(&self) -> usize {
         1
     }
-    /// By what the momentum of a change of the velocity between the parts of a step has to be multiplied to be the impulse it takes: 1 for schemes that know two
-    /// times, 3/2 for BDF2.
-    fn inertia(&self) -> f64 {
-        1.0
+    /// The fluid's inertia in this step is (w₀uⁿ⁺¹ + w₁uⁿ + w₂uⁿ⁻¹)/dt; this is w: (1, −1, 0) for schemes that know two times, (3, −4, 1)/2 for BDF2 with equal
+    /// steps.
+    fn weights(&self) -> [f64; 3] {
+        [1.0, -1.0, 0.0]
     }
     /// The grid.
     fn grid(&self) -> &CartesianGrid<D>;
@@ -135,7 +135,7 @@ impl<const D: usize> FlowSolver<D> for Piso<D> {
     fn rounds(&self) -> usize {
         self.params().correctors
     }
-    fn inertia(&self) -> f64 {
-        Piso::inertia(self)
+    fn weights(&self) -> [f64; 3] {
+        Piso::weights(self)
     }
 }

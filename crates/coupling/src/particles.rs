@@ -14,7 +14,8 @@ use nalgebra::{Matrix6, Vector6};
 /// M_s vⁿ⁺¹ = M_s vⁿ + J + dt (ρ_s − ρ) V g + J_contact,    J = −ρ∫f_ib dV dt + Iⁿ⁺¹ − Iⁿ,
 /// ```
 ///
-/// I being the momentum of the fluid inside a body: the load includes its inertia. What a strategy hands the bodies of J too late
+/// I being the momentum of the fluid inside a body: the load includes its inertia. (Flows that look back further, [`FlowSolver::weights`], have
+/// w₀Iⁿ⁺¹ + w₁Iⁿ + w₂Iⁿ⁻¹ for the difference and w₀ times the forcing's momentum.) What a strategy hands the bodies of J too late
 /// or too early is kept (`δ`) and handed on in the next step, so every impulse that the fluid loses reaches a body.
 pub struct Particles<F, B, S = OneSolve> {
     /// The bodies.
@@ -34,8 +35,8 @@ pub struct Particles<F, B, S = OneSolve> {
 /// What is kept of one body from step to step, as (linear, angular).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct State {
-    /// Iⁿ.
-    pub internal: Vector6<f64>,
+    /// Iⁿ and Iⁿ⁻¹.
+    pub internal: [Vector6<f64>; 2],
     /// δⁿ: impulse of the fluid that the body has not been given yet.
     pub deferred: Vector6<f64>,
     /// Momentum that the virtual mass holds back.
@@ -58,6 +59,17 @@ pub struct State {
     /// What the equation of motion left in the last two rounds of the step under way, and how far the velocity was changed for it.
     pub residuals: [Vector6<f64>; 2],
     pub relaxation: f64,
+}
+
+impl State {
+    /// w₀I + w₁Iⁿ + w₂Iⁿ⁻¹: dt times the inertia of the fluid inside, when its momentum becomes I.
+    pub fn inside(&self, [w0, w1, w2]: [f64; 3], internal: Vector6<f64>) -> Vector6<f64> {
+        w0 * internal + w1 * self.internal[0] + w2 * self.internal[1]
+    }
+    /// Ends the step with the momentum I inside.
+    pub fn keep(&mut self, internal: Vector6<f64>) {
+        self.internal = [internal, self.internal[0]];
+    }
 }
 
 /// What the flow does to a body.
@@ -155,6 +167,11 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
         self.bodies.advance(dt).map_err(|e| CouplingError::Dynamics { time, source: Box::new(e) })
     }
 
+    /// How often forcing and pressure take turns in a step.
+    pub(crate) fn rounds<const D: usize, A: FlowSolver<D>>(&self, flow: &A) -> usize {
+        self.forcing.rounds().max(flow.rounds())
+    }
+
     /// Makes the fluid follow the bodies and free of divergence, as often as forcing and flow ask for.
     pub(crate) fn force<const D: usize, A: FlowSolver<D>>(
         &mut self,
@@ -162,7 +179,7 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
         dt: f64,
         timings: &mut Timings,
     ) -> Result<(), CouplingError> {
-        for _ in 0..self.forcing.rounds().max(flow.rounds()) {
+        for _ in 0..self.rounds(flow) {
             timings.measure(Module::Forcing, || self.forcing.force(flow.velocity_mut(), &self.bodies));
             timings.measure(Module::Pressure, || flow.project(dt))?;
         }
@@ -175,8 +192,9 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
         flow: &A,
         b: BodyId,
     ) -> [Vector6<f64>; 2] {
-        let internal = self.inside(flow.velocity(), b);
-        [flow.inertia() * six(self.forcing.reaction(b)) + internal - self.states[b.0].internal, internal]
+        let (internal, weights) = (self.inside(flow.velocity(), b), flow.weights());
+        let impulse = weights[0] * six(self.forcing.reaction(b)) + self.states[b.0].inside(weights, internal);
+        [impulse, internal]
     }
 
     /// No body's centre may leave through a bounded side.
@@ -203,7 +221,7 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
     }
     /// Momentum of the fluid inside body `b` after the last step.
     pub fn internal_momentum(&self, b: BodyId) -> Wrench {
-        wrench(self.states[b.0].internal)
+        wrench(self.states[b.0].internal[0])
     }
     /// Momentum on its way between fluid and body `b`: δ and what the virtual mass holds.
     pub fn momentum_in_transit(&self, b: BodyId) -> Wrench {
@@ -248,7 +266,7 @@ where
         self.states.resize(n, State::default());
         self.forcing.place(flow.velocity(), &self.bodies)?;
         for (b, s) in self.states.iter_mut().enumerate().skip(self.started) {
-            s.internal = six(self.forcing.internal_momentum(flow.velocity(), &self.bodies, BodyId(b)));
+            s.internal = [six(self.forcing.internal_momentum(flow.velocity(), &self.bodies, BodyId(b))); 2];
         }
         self.started = n;
         Ok(())
@@ -288,7 +306,9 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Checkpoint for Particles<F, B, S> {
         self.bodies.save(&mut |name, values| sink(&format!("bodies.{name}"), values));
         let mut values = Vec::with_capacity(self.states.len() * STATE);
         for s in &self.states {
-            for v in [s.internal, s.deferred, s.held, s.acceleration, s.load, s.hydrodynamic, s.constraint] {
+            let [now, before] = s.internal;
+            let rest = [s.deferred, s.held, s.acceleration, s.load, s.hydrodynamic, s.constraint];
+            for v in [now, before].iter().chain(&rest) {
                 values.extend_from_slice(v.as_slice());
             }
             values.extend_from_slice(&s.added);
@@ -305,14 +325,14 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Checkpoint for Particles<F, B, S> {
         for v in values.chunks_exact(STATE) {
             let six = |i: usize| Vector6::from_column_slice(&v[6 * i..6 * i + 6]);
             self.states.push(State {
-                internal: six(0),
-                deferred: six(1),
-                held: six(2),
-                acceleration: six(3),
-                load: six(4),
-                hydrodynamic: six(5),
-                constraint: six(6),
-                added: [v[42], v[43]],
+                internal: [six(0), six(1)],
+                deferred: six(2),
+                held: six(3),
+                acceleration: six(4),
+                load: six(5),
+                hydrodynamic: six(6),
+                constraint: six(7),
+                added: [v[48], v[49]],
                 ..State::default()
             });
         }
@@ -324,4 +344,4 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Checkpoint for Particles<F, B, S> {
 const LONGEST_GROWTH: f64 = 10.0;
 
 /// Saved numbers per body.
-const STATE: usize = 7 * 6 + 2;
+const STATE: usize = 8 * 6 + 2;

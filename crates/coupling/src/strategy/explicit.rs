@@ -41,7 +41,7 @@ impl<const D: usize, A: FlowSolver<D>> sealed::Exchange<D, A> for Explicit {
                 let s = &mut particles.states[b.0];
                 s.constraint = now - s.momentum - s.deferred - given;
                 s.deferred = impulse;
-                s.internal = internal;
+                s.keep(internal);
                 s.hydrodynamic = impulse / dt;
             }
         });

@@ -86,7 +86,7 @@ impl<const D: usize> sealed::Exchange<D, Projection<D>> for Iterated {
             let s = &mut particles.states[b.0];
             s.acceleration = (now - s.before) / dt;
             s.deferred = -s.residuals[0];
-            s.internal += s.foreseen - reaction;
+            s.keep(s.internal[0] + s.foreseen - reaction);
             s.hydrodynamic = s.foreseen / dt;
         }
         Ok(())

@@ -67,8 +67,8 @@ pub struct Piso<const D: usize> {
     imposed: [Vec<(usize, usize, f64)>; D],
     /// Corrections made in this step.
     corrections: usize,
-    /// w₀ dt of this step.
-    inertia: f64,
+    /// w dt of this step.
+    weights: [f64; 3],
 }
 
 impl<const D: usize> Piso<D> {
@@ -101,7 +101,7 @@ impl<const D: usize> Piso<D> {
             eddy: None,
             imposed: std::array::from_fn(|_| Vec::new()),
             corrections: 0,
-            inertia: 1.0,
+            weights: [1.0, -1.0, 0.0],
             params,
             state,
         })
@@ -128,10 +128,10 @@ impl<const D: usize> Piso<D> {
         Ok(self)
     }
 
-    /// w₀ dt: a change of the velocity between the parts of this step takes so many times the impulse that it gives to the fluid at once; 1 by Euler, 3/2 with equal
-    /// steps by BDF2.
-    pub fn inertia(&self) -> f64 {
-        self.inertia
+    /// (w₀, w₁, w₂) dt of this step: (1, −1, 0) by Euler's scheme, (3, −4, 1)/2 with equal steps by BDF2. A change of the velocity between the parts of the step takes w₀ dt
+    /// times the impulse that it gives to the fluid at once.
+    pub fn weights(&self) -> [f64; 3] {
+        self.weights
     }
 
     /// The parameters.
@@ -184,8 +184,8 @@ impl<const D: usize> Piso<D> {
         if r > LONGEST_RATIO || self.params.time_scheme == TimeScheme::Euler {
             r = 0.0;
         }
-        let weights = [(1.0 + 2.0 * r) / (1.0 + r), -(1.0 + r), r * r / (1.0 + r)].map(|w| w / dt);
-        self.inertia = weights[0] * dt;
+        self.weights = [(1.0 + 2.0 * r) / (1.0 + r), -(1.0 + r), r * r / (1.0 + r)];
+        let weights = self.weights.map(|w| w / dt);
         std::mem::swap(&mut self.old, &mut self.older);
         for (c, u) in self.state.velocity.components.iter_mut().enumerate() {
             let (u, old, older) = (u.data_mut(), self.old[c].data_mut(), self.older[c].data());

@@ -29,8 +29,14 @@ fn course<S: Exchange<3, Projection<3>>>(scene: &FreeBody, strategy: S) -> Outco
     let (mut speeds, stop) = (Speeds::default(), AtomicBool::new(false));
     let schedule = Schedule { end: END, intervals: 100, courant: 0.3, ..Schedule::default() };
     let summary = run_to(&mut simulation, &schedule, &mut speeds, &stop)?;
-    let speeds = speeds.0.iter().map(|(_, v)| -v.z).collect();
-    Ok(Course { speeds, cpu: watch.elapsed().cpu, steps: summary.steps, timings: *simulation.timings() })
+    let (cpu, n) = (watch.elapsed().cpu, scene.per_diameter);
+    let speeds: Vec<f64> = speeds.0.iter().map(|(_, v)| -v.z).collect();
+    let last = speeds.last().copied().unwrap_or_default();
+    eprintln!(
+        "{} × {n} cells per d: {} steps, {cpu:.1} CPU s, {last:.5} m/s at the end",
+        scene.bodies, summary.steps
+    );
+    Ok(Course { speeds, cpu, steps: summary.steps, timings: *simulation.timings() })
 }
 
 /// Root mean square of the difference over the largest speed.

@@ -10,6 +10,7 @@ mod meshes;
 mod moving;
 mod physics;
 mod preset;
+mod removal;
 mod restart;
 mod skipping;
 mod strategies;

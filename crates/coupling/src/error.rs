@@ -44,6 +44,16 @@ pub enum CouplingError {
         /// Length of the box \[m\].
         length: f64,
     },
+    /// Bodies were taken away behind the coupling's back.
+    #[error(
+        "there were {before} bodies and are {now}: call `Particles::renumber` with the numbers that `remove` answers"
+    )]
+    Renumbered {
+        /// How many there were.
+        before: usize,
+        /// How many there are.
+        now: usize,
+    },
     /// A body stands outside the box.
     #[error(
         "the centre of body {} is at {centre:.3e} m along axis {axis}, outside the box from {:.3e} to {:.3e} m: move it inside", body.0, box_[0], box_[1]

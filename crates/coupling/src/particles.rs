@@ -2,7 +2,9 @@
 use crate::strategy::{Exchange, OneSolve, Strategy};
 use crate::{CouplingError, FlowSolver, Immersed, Module, Timings};
 use ibm::{Forcing, Layer};
-use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Twist, Vector, VelocityField, Wrench};
+use interfaces::{
+    BodyId, Checkpoint, Dynamics, Renumbering, RestartError, Twist, Vector, VelocityField, Wrench,
+};
 use nalgebra::{Matrix6, Vector6};
 
 /// Bodies `B` immersed by the forcing `F`, moved by the flow, gravity and one another; `S` is the [`Strategy`] by which flow and
@@ -172,6 +174,15 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
         self.forcing.rounds().max(flow.rounds())
     }
 
+    /// Bodies were taken out of [`bodies`](Self::bodies): what is kept of each goes by its new number from now on. (Those that are added are noticed.) The fluid where they were
+    /// goes on as it moved; momentum on its way between fluid and them is lost.
+    pub fn renumber(&mut self, numbers: &Renumbering) {
+        let started = (0..self.started).filter(|b| numbers.of(BodyId(*b)).is_some()).count();
+        numbers.apply(&mut self.states);
+        self.forcing.renumber(numbers);
+        self.started = started;
+    }
+
     /// Makes the fluid follow the bodies and free of divergence, as often as forcing and flow ask for.
     pub(crate) fn force<const D: usize, A: FlowSolver<D>>(
         &mut self,
@@ -195,6 +206,21 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
         let (internal, weights) = (self.inside(flow.velocity(), b), flow.weights());
         let impulse = weights[0] * six(self.forcing.reaction(b)) + self.states[b.0].inside(weights, internal);
         [impulse, internal]
+    }
+
+    /// Bodies have to fit into the box, and be there.
+    fn fit<const D: usize, A: FlowSolver<D>>(&self, flow: &A) -> Result<(), CouplingError> {
+        let grid = flow.grid();
+        for body in (0..self.bodies.n_bodies()).map(BodyId) {
+            let bounds = self.bodies.aabb(body);
+            for axis in 0..D {
+                let (size, length) = (bounds.extent()[axis], grid.lengths()[axis]);
+                if size >= length {
+                    return Err(CouplingError::TooLarge { body, axis, size, length });
+                }
+            }
+        }
+        self.check_inside(flow)
     }
 
     /// No body's centre may leave through a bounded side.
@@ -263,6 +289,10 @@ where
         if self.started == n {
             return Ok(());
         }
+        if self.started > n {
+            return Err(CouplingError::Renumbered { before: self.started, now: n });
+        }
+        self.fit(flow)?;
         self.states.resize(n, State::default());
         self.forcing.place(flow.velocity(), &self.bodies)?;
         for (b, s) in self.states.iter_mut().enumerate().skip(self.started) {
@@ -273,22 +303,13 @@ where
     }
 
     fn check(&self, flow: &A) -> Result<(), CouplingError> {
-        let (density, grid) = (flow.fluid().density, flow.grid());
+        let density = flow.fluid().density;
         for told in [self.density, self.forcing.density()] {
             if density != told {
                 return Err(CouplingError::Density { flow: density, particles: told });
             }
         }
-        for body in (0..self.bodies.n_bodies()).map(BodyId) {
-            let bounds = self.bodies.aabb(body);
-            for axis in 0..D {
-                let (size, length) = (bounds.extent()[axis], grid.lengths()[axis]);
-                if size >= length {
-                    return Err(CouplingError::TooLarge { body, axis, size, length });
-                }
-            }
-        }
-        self.check_inside(flow)
+        self.fit(flow)
     }
 
     fn net_weight(&self) -> Vector {

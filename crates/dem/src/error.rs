@@ -302,6 +302,14 @@ pub enum DemError {
         /// The step \[s\].
         dt: f64,
     },
+    /// There is no body of this number.
+    #[error("there is no body {}: the numbers of the {bodies} bodies go from 0, and change when bodies are taken away", body.0)]
+    NoSuchBody {
+        /// The number.
+        body: BodyId,
+        /// How many there are.
+        bodies: usize,
+    },
     /// A body is lost.
     #[error("the motion of body {} is no longer finite (velocity {velocity:?} m/s); check the loads, then take a smaller time step or softer contacts", body.0)]
     Diverged {

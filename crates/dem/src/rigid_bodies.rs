@@ -7,6 +7,7 @@ mod film;
 mod meeting;
 mod near;
 mod push;
+mod removal;
 mod sleep;
 mod sweep;
 mod tether;

@@ -1,6 +1,6 @@
 //! What every immersed boundary offers.
 use crate::IbmError;
-use interfaces::{Bodies, BodyId, Kinematics, Vector, VelocityField, Wrench};
+use interfaces::{Bodies, BodyId, Kinematics, Renumbering, Vector, VelocityField, Wrench};
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
 /// How the fluid that a forcing drags along resists a change of a body's motion: with generalised
@@ -70,6 +70,9 @@ pub trait Forcing: Send {
     /// # Errors
     /// [`IbmError`] for bodies that this forcing cannot represent on this grid.
     fn place(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies) -> Result<(), IbmError>;
+
+    /// Bodies were taken away: what is kept of each goes by its new number from now on.
+    fn renumber(&mut self, numbers: &Renumbering);
 
     /// Density of the fluid it was made for \[kg/m³\].
     fn density(&self) -> f64;

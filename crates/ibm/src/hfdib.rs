@@ -2,7 +2,7 @@
 use crate::forcing::LayerSums;
 use crate::smooth::internal_momentum;
 use crate::{Forcing, FractionRule, IbmError, Layer, Reconstruction, SolidFraction, SolidNode};
-use interfaces::{Bodies, BodyId, Kinematics, Vector, VelocityField, Wrench};
+use interfaces::{Bodies, BodyId, Kinematics, Renumbering, Vector, VelocityField, Wrench};
 
 /// Hybrid fictitious domain–immersed boundary forcing (Isoz et al. 2023, equations 1–2 and
 /// figure 3): f_ib = ceil(λ) [M(u_ib) + ∇p] after discretisation, which is
@@ -64,6 +64,9 @@ impl Forcing for Hfdib {
         }
         Ok(())
     }
+
+    /// λ and reconstruction find for themselves that other bodies are there now.
+    fn renumber(&mut self, _: &Renumbering) {}
 
     fn density(&self) -> f64 {
         self.density

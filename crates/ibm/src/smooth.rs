@@ -8,7 +8,8 @@ use crate::solid_fraction::check;
 use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction, surface_elements};
 use curvature::follow_curvature;
 use interfaces::{
-    Bodies, BodyId, Kinematics, Lattice, Point, Pose, SurfaceElement, Vector, VelocityField, Wrench,
+    Bodies, BodyId, Kinematics, Lattice, Point, Pose, Renumbering, SurfaceElement, Vector, VelocityField,
+    Wrench,
 };
 use stencils::Stencils;
 
@@ -279,6 +280,12 @@ impl Forcing for SmoothForcing {
             self.find_alone(velocity, bodies);
         }
         Ok(())
+    }
+
+    fn renumber(&mut self, numbers: &Renumbering) {
+        numbers.apply(&mut self.bodies);
+        self.inside.iter_mut().for_each(|inside| inside.renumber(numbers));
+        self.moved = true;
     }
 
     fn density(&self) -> f64 {

@@ -1,7 +1,7 @@
 //! The λ field, body by body.
 use crate::IbmError;
 use crate::projection::Projector;
-use interfaces::{Aabb, Bodies, BodyId, Lattice, Pose, Vector};
+use interfaces::{Aabb, Bodies, BodyId, Lattice, Pose, Renumbering, Vector};
 
 /// A node with something solid in its control volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,6 +92,11 @@ impl SolidFraction {
             }
         }
         Ok(())
+    }
+
+    /// Bodies were taken away: λ of the others goes by their new numbers. Without being told, it is found anew.
+    pub(crate) fn renumber(&mut self, numbers: &Renumbering) {
+        numbers.apply(&mut self.bodies);
     }
 
     /// Makes room for so many bodies on this lattice; true if there was another one.

@@ -1,7 +1,7 @@
 //! One body.
 use super::turning::{Turning, turn};
 use crate::{Form, Shape};
-use interfaces::{Freedom, Inertia, Load, Point, Pose, Rotation, Twist, Vector, Wrench};
+use interfaces::{Freedom, Inertia, Load, Point, Pose, Renumbering, Rotation, Twist, Vector, Wrench};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -91,6 +91,9 @@ impl Constants {
             _ => Kind::Other,
         }
     }
+    pub(super) fn is_round(&self) -> bool {
+        self.kind() != Kind::Other
+    }
     /// May its centre not be moved? Contacts then feel an infinite mass.
     #[inline]
     pub(super) fn pinned(&self) -> bool {
@@ -123,6 +126,9 @@ impl Loads {
             added_moment: 0.0,
         };
         if self.given { &self.loads[b] } else { NONE }
+    }
+    pub(super) fn renumber(&mut self, numbers: &Renumbering) {
+        numbers.apply(&mut self.loads);
     }
     pub(super) fn set(&mut self, b: usize, load: Load) {
         self.given |= load != Load::default();

@@ -6,7 +6,7 @@ use super::near::Listed;
 use crate::DemError;
 use crate::broad_phase::NearPair;
 use crate::contact::ContactLaw;
-use interfaces::{Twist, Wrench};
+use interfaces::{BodyId, Renumbering, Twist, Wrench};
 
 /// When bodies fall asleep: all that hang together by contacts, once each has been slower than `speed` for `time`.
 ///
@@ -76,6 +76,16 @@ impl<M> Sleepers<M> {
     pub(super) fn add(&mut self) {
         self.island.push(0);
         self.slow.push(0.0);
+    }
+    /// Some are gone, all of them awake. An island has the number of one of its bodies and keeps to it.
+    pub(super) fn renumber(&mut self, numbers: &Renumbering) {
+        numbers.apply(&mut self.island);
+        numbers.apply(&mut self.slow);
+        for island in self.island.iter_mut().filter(|i| **i != 0) {
+            let now = numbers.of(BodyId(*island as usize - 1));
+            debug_assert!(now.is_some(), "an island is named after one of its own");
+            *island = now.map_or(0, |b| b.0 as u32 + 1);
+        }
     }
     /// Patches that are not in the list of near pairs.
     pub(super) fn kept(&self) -> impl Iterator<Item = (NearPair, &Patch<M>)> {

@@ -62,8 +62,11 @@ impl<L: ContactLaw> RigidBodies<L> {
     /// set-up, not of the saved state.
     ///
     /// # Errors
-    /// [`DemError::Tether`] unless all its numbers are finite, and stiffness and damping not negative.
+    /// [`DemError::NoSuchBody`]; [`DemError::Tether`] unless all its numbers are finite, and stiffness and damping not negative.
     pub fn set_tether(&mut self, b: BodyId, tether: Option<Tether>) -> Result<(), DemError> {
+        if b.0 >= self.bodies.len() {
+            return Err(DemError::NoSuchBody { body: b, bodies: self.bodies.len() });
+        }
         if let Some(Tether { stiffness, damping, .. }) = tether.filter(|t| !t.is_sensible()) {
             return Err(DemError::Tether { body: b, stiffness, damping });
         }

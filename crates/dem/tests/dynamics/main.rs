@@ -7,6 +7,7 @@ mod friction;
 mod many;
 mod near;
 mod potential;
+mod removal;
 mod rotation;
 mod sleep;
 mod state;

@@ -9,6 +9,7 @@ mod immersed_stress;
 mod meshes;
 mod moving;
 mod physics;
+mod population;
 mod preset;
 mod removal;
 mod restart;

@@ -1,7 +1,8 @@
 //! The books of momentum and energy.
+use crate::particles::Stake;
 use crate::{CouplingError, Observer, Particles, Simulation, StepInfo, Strategy};
 use ibm::Forcing;
-use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Twist, Vector};
+use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Vector};
 
 /// Keeps, step by step, the momentum of fluid and bodies against the impulses on them, the kinetic
 /// energy against work and dissipation, and the divergence.
@@ -10,15 +11,15 @@ use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Twist, Vector};
 /// way between the two (see [`Particles`]). Impulses: net weight, body force, contacts with walls,
 /// what holds bodies that are not free, and what the box's own walls do to the fluid. Energy: E = ½ρ∫_Ω u² + Σ½(1 − ρ/ρ_s)(mU² + ΩIΩ)
 /// against the work of net weight, body force and contacts less the viscous dissipation ρν∫|∇u|²
-/// (trapezoidal in time).
+/// (trapezoidal in time). What bodies bring that are put into the flow, and take along that are taken out, is no residual.
 ///
 /// The books open where a run begins. Those of an interrupted run go on, bit for bit, if they are saved beside the simulation and restored
 /// before the next.
 #[derive(Clone, Debug, Default)]
 pub struct Ledger {
     last: Option<Books>,
-    /// How the bodies moved at the last books.
-    twists: Vec<Twist>,
+    /// What every body, by its serial number, had of it.
+    stakes: Vec<(u64, Stake)>,
     report: LedgerReport,
     /// They go on from a saved state.
     resumed: bool,
@@ -57,7 +58,9 @@ pub struct LedgerReport {
     pub dissipation: f64,
     /// Work of contacts on the bodies \[J\]: negative while it is stored or lost in them.
     pub contact_work: f64,
-    /// Energy gained − work − contact work + dissipation \[J\].
+    /// Kinetic energy that bodies brought which came, less what those took along that went \[J\].
+    pub brought: f64,
+    /// Energy gained − work − contact work + dissipation − brought \[J\].
     pub energy_residual: f64,
     residual: Vector,
 }
@@ -70,6 +73,37 @@ impl Ledger {
     /// What they say.
     pub fn report(&self) -> &LedgerReport {
         &self.report
+    }
+
+    fn stakes<F: Forcing, B: Dynamics, S: Strategy>(particles: &Particles<F, B, S>) -> Vec<(u64, Stake)> {
+        let ids = (0..particles.bodies.n_bodies()).map(BodyId);
+        ids.filter_map(|b| Some((particles.serial(b)?, particles.stake(b)))).collect()
+    }
+
+    /// What those brought that came since the last books, less what those had that went.
+    fn turnover<F: Forcing, B: Dynamics, S: Strategy>(&mut self, particles: &Particles<F, B, S>) -> Stake {
+        let now = Self::stakes(particles);
+        let before = std::mem::take(&mut self.stakes);
+        let mut brought = Stake::default();
+        // Both lists ascend.
+        let mut old = before.iter().peekable();
+        for (b, (serial, _)) in now.iter().enumerate() {
+            while let Some((_, gone)) = old.next_if(|(s, _)| s < serial) {
+                brought.momentum -= gone.momentum;
+                brought.energy -= gone.energy;
+            }
+            if old.next_if(|(s, _)| s == serial).is_none() {
+                let new = particles.stake_brought(BodyId(b));
+                brought.momentum += new.momentum;
+                brought.energy += new.energy;
+            }
+        }
+        for (_, gone) in old {
+            brought.momentum -= gone.momentum;
+            brought.energy -= gone.energy;
+        }
+        self.stakes = now;
+        brought
     }
 
     fn balance<const D: usize, F: Forcing, B: Dynamics, S: Strategy>(
@@ -86,15 +120,11 @@ impl Ledger {
             dissipation: flow.dissipation,
         };
         for b in (0..particles.bodies.n_bodies()).map(BodyId) {
-            let (inertia, twist) = (particles.bodies.inertia(b), particles.bodies.twist(b));
-            let turned = particles.bodies.pose(b).orientation.inverse_transform_vector(&twist.angular);
-            let moving = inertia.mass * twist.linear.norm_squared() + turned.dot(&(inertia.tensor * turned));
-            let displaced = density * inertia.volume;
-            let transit = particles.momentum_in_transit(b).force;
-            books.momentum += inertia.mass * twist.linear + transit - particles.internal_momentum(b).force;
-            books.energy += 0.5 * (1.0 - displaced / inertia.mass) * moving;
-            books.power += (inertia.mass - displaced) * particles.gravity().dot(&twist.linear);
-            report.in_transit += transit.norm();
+            let Stake { momentum, energy } = particles.stake(b);
+            books.momentum += momentum;
+            books.energy += energy;
+            books.power += particles.weight(b).dot(&particles.bodies.twist(b).linear);
+            report.in_transit += particles.momentum_in_transit(b).force.norm();
         }
         report.divergence = flow.divergence;
         (books, report)
@@ -111,8 +141,7 @@ impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy> Observer<Simulation<D
         let (books, report) = Self::balance(simulation);
         self.report = LedgerReport { energy: [books.energy; 2], divergence: 0.0, ..report };
         self.last = Some(books);
-        let bodies = &simulation.particles.bodies;
-        self.twists = (0..bodies.n_bodies()).map(|b| bodies.twist(BodyId(b))).collect();
+        self.stakes = Self::stakes(&simulation.particles);
     }
 
     fn step(
@@ -126,7 +155,7 @@ impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy> Observer<Simulation<D
         let (flow, particles) = (&simulation.flow, &simulation.particles);
         let body_force = dt * flow.fluid().density * flow.grid().volume() * simulation.body_force();
         let walls = flow.wall_impulse();
-        self.twists.resize(particles.bodies.n_bodies(), Twist::default());
+        let brought = self.turnover(particles);
         let (mut contacts, mut weight, mut held) = (Vector::zeros(), Vector::zeros(), Vector::zeros());
         let (mut contact_work, mut sum) = (0.0, 0.0);
         for b in (0..particles.bodies.n_bodies()).map(BodyId) {
@@ -135,14 +164,14 @@ impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy> Observer<Simulation<D
             weight += dt * particles.weight(b);
             held += particles.constraint_impulse(b).force;
             // What an impulse does to the kinetic energy: its product with the mean velocity.
-            let before = std::mem::replace(&mut self.twists[b.0], twist);
+            let before = particles.twist_before(b);
             contact_work += 0.5 * impulse.force.dot(&(before.linear + twist.linear));
             contact_work += 0.5 * impulse.torque.dot(&(before.angular + twist.angular));
             sum += impulse.force.norm();
         }
         let impulse = weight + body_force + contacts + walls + held;
         sum += weight.norm() + body_force.norm() + walls.norm() + held.norm();
-        let residual = books.momentum - last.momentum - impulse;
+        let residual = books.momentum - last.momentum - brought.momentum - impulse;
 
         let r = &mut self.report;
         r.residual += residual;
@@ -156,19 +185,20 @@ impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy> Observer<Simulation<D
         r.work += 0.5 * dt * (last.power + books.power);
         r.dissipation += 0.5 * dt * (last.dissipation + books.dissipation);
         r.contact_work += contact_work;
+        r.brought += brought.energy;
         r.energy[1] = books.energy;
-        r.energy_residual = r.energy[1] - r.energy[0] - r.work - r.contact_work + r.dissipation;
+        r.energy_residual = r.energy[1] - r.energy[0] - r.work - r.contact_work + r.dissipation - r.brought;
         Ok(())
     }
 }
 
 impl LedgerReport {
     /// All numbers.
-    const LENGTH: usize = 17;
+    const LENGTH: usize = 18;
 
     fn numbers(&self) -> [f64; Self::LENGTH] {
         let Self { divergence, momentum_step, momentum_total, impulses, in_transit, .. } = *self;
-        let Self { work, dissipation, contact_work, energy_residual, .. } = *self;
+        let Self { work, dissipation, contact_work, energy_residual, brought, .. } = *self;
         let (flow, [before, now], residual) = (self.volume_flow, self.energy, self.residual);
         [
             divergence,
@@ -188,6 +218,7 @@ impl LedgerReport {
             residual.x,
             residual.y,
             residual.z,
+            brought,
         ]
     }
     fn of(n: &[f64]) -> Self {
@@ -204,6 +235,7 @@ impl LedgerReport {
             contact_work: n[12],
             energy_residual: n[13],
             residual: Vector::new(n[14], n[15], n[16]),
+            brought: n[17],
         }
     }
 }
@@ -216,14 +248,15 @@ impl Checkpoint for Ledger {
             [p.x, p.y, p.z, l.energy, l.power, l.dissipation]
         });
         sink("last", last.as_ref().map_or(&[], |l| &l[..]));
-        let six = |t: &Twist| [t.linear.x, t.linear.y, t.linear.z, t.angular.x, t.angular.y, t.angular.z];
-        sink("twists", &self.twists.iter().flat_map(six).collect::<Vec<_>>());
+        let row =
+            |(serial, s): &(u64, Stake)| [*serial as f64, s.momentum.x, s.momentum.y, s.momentum.z, s.energy];
+        sink("stakes", &self.stakes.iter().flat_map(row).collect::<Vec<_>>());
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         let missing = |name: &str| RestartError::Missing(name.into());
         let report = LedgerReport::of(RestartError::take(source, "report", LedgerReport::LENGTH)?);
         let last = source("last").ok_or_else(|| missing("last"))?;
-        let twists = source("twists").ok_or_else(|| missing("twists"))?;
+        let stakes = source("stakes").ok_or_else(|| missing("stakes"))?;
         let last = match last {
             [] => None,
             &[x, y, z, energy, power, dissipation] => {
@@ -233,15 +266,15 @@ impl Checkpoint for Ledger {
                 return Err(RestartError::Length { name: "last".into(), expected: 6, found: other.len() });
             }
         };
-        let (rows, rest) = twists.as_chunks::<6>();
+        let (rows, rest) = stakes.as_chunks::<5>();
         if !rest.is_empty() {
-            let (expected, found) = (6 * rows.len(), twists.len());
-            return Err(RestartError::Length { name: "twists".into(), expected, found });
+            let (expected, found) = (5 * rows.len(), stakes.len());
+            return Err(RestartError::Length { name: "stakes".into(), expected, found });
         }
-        let twists = rows
-            .iter()
-            .map(|&[x, y, z, a, b, c]| Twist { linear: Vector::new(x, y, z), angular: Vector::new(a, b, c) });
-        *self = Self { last, twists: twists.collect(), report, resumed: last.is_some() };
+        let row =
+            |&[s, x, y, z, energy]: &[f64; 5]| (s as u64, Stake { momentum: Vector::new(x, y, z), energy });
+        let stakes = rows.iter().map(row).collect();
+        *self = Self { last, stakes, report, resumed: last.is_some() };
         Ok(())
     }
 }

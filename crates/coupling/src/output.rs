@@ -1,9 +1,9 @@
 //! Files of a run: fields and bodies for ParaView, trajectories for everyone.
 use crate::{CouplingError, FlowSolver, Observer, Particles, Simulation, StepInfo, Strategy};
-use dem::{ContactLaw, RigidBodies};
+use dem::RigidDynamics;
 use fv_mesh::{CellWriter, TimeSeries};
 use ibm::{Forcing, SolidFraction};
-use interfaces::{BodyId, Kinematics, Point};
+use interfaces::{BodyId, Point};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 /// Writes at every snapshot `fields/NNNNN.vti` (`.vtr` on a stretched grid: λ, velocity, pressure at the cell centres) and
 /// `bodies/NNNNN.vtp`, the series `fields.pvd` and `bodies.pvd`, and a line per body to
-/// `trajectories.csv`. What is listed is complete; the lists lag a second behind at most, and the
+/// `trajectories.csv` under the body's [serial number](Particles::serial). What is listed is complete; the lists lag a second behind at most, and the
 /// output must be finished or dropped at the end.
 pub struct FileOutput {
     folder: PathBuf,
@@ -128,9 +128,9 @@ impl FileOutput {
         })
     }
 
-    fn write<const D: usize, F: Forcing, L: ContactLaw, S: Strategy, A: FlowSolver<D>>(
+    fn write<const D: usize, F: Forcing, B: RigidDynamics, S: Strategy, A: FlowSolver<D>>(
         &mut self,
-        simulation: &Simulation<D, Particles<F, RigidBodies<L>, S>, A>,
+        simulation: &Simulation<D, Particles<F, B, S>, A>,
         index: usize,
         info: &StepInfo,
     ) -> io::Result<()> {
@@ -149,7 +149,7 @@ impl FileOutput {
         let corner = grid.origin();
         let corner = Point::from(std::array::from_fn(|a| corner.get(a).copied().unwrap_or(0.0)));
         let mut file = BufWriter::new(File::create(self.folder.join(&names[1]))?);
-        particles.bodies.write_vtp(&mut file, corner)?;
+        particles.bodies.rigid_bodies().write_vtp(&mut file, corner)?;
         file.flush()?;
 
         for (series, name) in self.series.iter_mut().zip(names) {
@@ -162,7 +162,8 @@ impl FileOutput {
         for b in (0..particles.bodies.n_bodies()).map(BodyId) {
             let (pose, twist) = (particles.bodies.pose(b), particles.bodies.twist(b));
             let loads = particles.report(b, if info.dt > 0.0 { info.dt } else { 1.0 });
-            write!(self.csv, "{:.9e},{}", info.time, b.0)?;
+            let serial = particles.serial(b).unwrap_or(b.0 as u64);
+            write!(self.csv, "{:.9e},{serial}", info.time)?;
             let q = pose.orientation;
             let columns = [
                 pose.position.coords.as_slice(),
@@ -190,12 +191,12 @@ impl Drop for FileOutput {
     }
 }
 
-impl<const D: usize, F: Forcing, L: ContactLaw, S: Strategy, A: FlowSolver<D>>
-    Observer<Simulation<D, Particles<F, RigidBodies<L>, S>, A>> for FileOutput
+impl<const D: usize, F: Forcing, B: RigidDynamics, S: Strategy, A: FlowSolver<D>>
+    Observer<Simulation<D, Particles<F, B, S>, A>> for FileOutput
 {
     fn snapshot(
         &mut self,
-        simulation: &mut Simulation<D, Particles<F, RigidBodies<L>, S>, A>,
+        simulation: &mut Simulation<D, Particles<F, B, S>, A>,
         index: usize,
         info: &StepInfo,
     ) -> Result<(), CouplingError> {

@@ -30,8 +30,9 @@ pub struct Particles<F, B, S = OneSolve> {
     density: f64,
     pub(crate) states: Vec<State>,
     last_dt: f64,
-    /// So many bodies have been put into the flow.
-    started: usize,
+    /// The [serial](Self::serial) numbers of those that were put into the flow, ascending; and the next one.
+    serials: Vec<u64>,
+    next_serial: u64,
 }
 
 /// What is kept of one body from step to step, as (linear, angular).
@@ -74,6 +75,13 @@ impl State {
     }
 }
 
+/// A body's part in momentum \[N s\] and kinetic energy \[J\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Stake {
+    pub(crate) momentum: Vector,
+    pub(crate) energy: f64,
+}
+
 /// What the flow does to a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyReport {
@@ -95,7 +103,17 @@ impl<F: Forcing, B: Dynamics> Particles<F, B> {
     pub fn new(bodies: B, forcing: F, density: f64, gravity: Vector) -> Self {
         let states = vec![State::default(); bodies.n_bodies()];
         let strategy = OneSolve::default();
-        Self { bodies, forcing, strategy, gravity, density, started: 0, states, last_dt: 0.0 }
+        Self {
+            bodies,
+            forcing,
+            strategy,
+            gravity,
+            density,
+            states,
+            last_dt: 0.0,
+            serials: vec![],
+            next_serial: 0,
+        }
     }
     /// The same with a [virtual mass](OneSolve::virtual_mass).
     #[must_use]
@@ -109,8 +127,8 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
     /// The same by another strategy.
     #[must_use]
     pub fn with_strategy<T: Strategy>(self, strategy: T) -> Particles<F, B, T> {
-        let Self { bodies, forcing, gravity, density, states, last_dt, started, .. } = self;
-        Particles { bodies, forcing, strategy, gravity, density, states, last_dt, started }
+        let Self { bodies, forcing, gravity, density, states, last_dt, serials, next_serial, .. } = self;
+        Particles { bodies, forcing, strategy, gravity, density, states, last_dt, serials, next_serial }
     }
 
     /// Mass and inertia as they resist (U, Ω) in the world.
@@ -177,10 +195,13 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
     /// Bodies were taken out of [`bodies`](Self::bodies): what is kept of each goes by its new number from now on. (Those that are added are noticed.) The fluid where they were
     /// goes on as it moved; momentum on its way between fluid and them is lost.
     pub fn renumber(&mut self, numbers: &Renumbering) {
-        let started = (0..self.started).filter(|b| numbers.of(BodyId(*b)).is_some()).count();
+        numbers.apply(&mut self.serials);
         numbers.apply(&mut self.states);
         self.forcing.renumber(numbers);
-        self.started = started;
+    }
+    /// What body `b` keeps when numbers close up: bodies are counted as they are put into the flow, from 0. `None` for one that has been added since the last step.
+    pub fn serial(&self, b: BodyId) -> Option<u64> {
+        self.serials.get(b.0).copied()
     }
 
     /// Makes the fluid follow the bodies and free of divergence, as often as forcing and flow ask for.
@@ -263,6 +284,31 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
         let i = self.bodies.inertia(b);
         self.gravity * (i.mass - self.density * i.volume)
     }
+    /// What body `b` holds of the momentum \[N s\] and kinetic energy \[J\] of the books ([`Ledger`](crate::Ledger)): mU + δ − I and
+    /// ½(1 − ρ/ρ_s)(mU² + ΩIΩ).
+    pub(crate) fn stake(&self, b: BodyId) -> Stake {
+        let (inertia, twist) = (self.bodies.inertia(b), self.bodies.twist(b));
+        let turned = self.bodies.pose(b).orientation.inverse_transform_vector(&twist.angular);
+        let moving = inertia.mass * twist.linear.norm_squared() + turned.dot(&(inertia.tensor * turned));
+        let transit = self.momentum_in_transit(b).force;
+        Stake {
+            momentum: inertia.mass * twist.linear + transit - self.internal_momentum(b).force,
+            energy: 0.5 * (1.0 - self.displaced(b) / inertia.mass) * moving,
+        }
+    }
+    /// The same at the start of the last step, of a body that was put into the flow then; and its velocity.
+    pub(crate) fn stake_brought(&self, b: BodyId) -> Stake {
+        let (s, inertia) = (&self.states[b.0], self.bodies.inertia(b));
+        Stake {
+            momentum: (s.momentum - s.internal[1]).fixed_rows::<3>(0).into(),
+            energy: 0.5 * (1.0 - self.displaced(b) / inertia.mass) * s.momentum.dot(&s.before),
+        }
+    }
+    /// Velocity of body `b` before the last step.
+    pub(crate) fn twist_before(&self, b: BodyId) -> Twist {
+        let Wrench { force: linear, torque: angular } = wrench(self.states[b.0].before);
+        Twist { linear, angular }
+    }
     /// Gravity \[m/s²\].
     pub fn gravity(&self) -> Vector {
         self.gravity
@@ -285,20 +331,28 @@ where
     }
 
     fn begin(&mut self, flow: &A) -> Result<(), CouplingError> {
-        let n = self.bodies.n_bodies();
-        if self.started == n {
-            return Ok(());
+        let (n, started) = (self.bodies.n_bodies(), self.serials.len());
+        if started > n {
+            return Err(CouplingError::Renumbered { before: started, now: n });
         }
-        if self.started > n {
-            return Err(CouplingError::Renumbered { before: self.started, now: n });
+        let time = flow.time();
+        let renewed = self.bodies.renew(time);
+        if let Some(numbers) = renewed.map_err(|e| CouplingError::Dynamics { time, source: Box::new(e) })? {
+            self.renumber(&numbers);
+        }
+        let (n, started) = (self.bodies.n_bodies(), self.serials.len());
+        if started == n {
+            return Ok(());
         }
         self.fit(flow)?;
         self.states.resize(n, State::default());
         self.forcing.place(flow.velocity(), &self.bodies)?;
-        for (b, s) in self.states.iter_mut().enumerate().skip(self.started) {
+        for (b, s) in self.states.iter_mut().enumerate().skip(started) {
             s.internal = [six(self.forcing.internal_momentum(flow.velocity(), &self.bodies, BodyId(b))); 2];
         }
-        self.started = n;
+        let last = self.next_serial;
+        self.next_serial += (n - started) as u64;
+        self.serials.extend(last..self.next_serial);
         Ok(())
     }
 
@@ -336,13 +390,18 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Checkpoint for Particles<F, B, S> {
         }
         sink("coupling", &values);
         sink("last_dt", &[self.last_dt]);
+        let serials = self.serials.iter().chain([&self.next_serial]);
+        sink("serials", &serials.map(|s| *s as f64).collect::<Vec<_>>());
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         self.bodies.restore(&|name| source(&format!("bodies.{name}")))?;
         self.last_dt = RestartError::take(source, "last_dt", 1)?[0];
         let values = RestartError::take(source, "coupling", self.bodies.n_bodies() * STATE)?;
+        let serials = RestartError::take(source, "serials", self.bodies.n_bodies() + 1)?;
+        let (next, serials) = serials.split_last().unwrap_or((&0.0, &[]));
+        self.next_serial = *next as u64;
+        self.serials = serials.iter().map(|s| *s as u64).collect();
         self.states.clear();
-        self.started = self.bodies.n_bodies();
         for v in values.chunks_exact(STATE) {
             let six = |i: usize| Vector6::from_column_slice(&v[6 * i..6 * i + 6]);
             self.states.push(State {

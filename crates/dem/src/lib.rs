@@ -30,7 +30,10 @@ mod material;
 mod overlap;
 #[cfg(feature = "placing")]
 pub mod placing;
+#[cfg(feature = "placing")]
+mod population;
 mod rigid_bodies;
+mod rigid_dynamics;
 mod shapes;
 mod vtp;
 
@@ -46,7 +49,10 @@ pub use material::Material;
 #[cfg(feature = "mesh")]
 pub use overlap::FacetIndex;
 pub use overlap::{BoxKind, CellOverlap, Normal, Overlap, OverlapSolver, Refinement, Route, SubBox, overlap};
+#[cfg(feature = "placing")]
+pub use population::{Entrant, Inflow, Origin, Population};
 pub use rigid_bodies::{Contact, Partner, RigidBodies, Sleep, Tether};
+pub use rigid_dynamics::RigidDynamics;
 #[cfg(feature = "mesh")]
 pub use shapes::{AdmissionReport, MeshError, Shell, Thinnest, TriangleMesh, TriangleSoup};
 pub use shapes::{

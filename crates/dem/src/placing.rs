@@ -34,6 +34,7 @@ mod source;
 
 pub use body_table::{BodyRow, BodyTableError, read_bodies, write_bodies};
 pub use crystal_lattice::{CrystalLattice, LatticeKind};
+pub(crate) use error::not_negative;
 pub use error::{Jammed, PlacingError};
 pub use orientations::Orientations;
 pub use random_addition::RandomAddition;

@@ -348,6 +348,10 @@ impl<L: ContactLaw> RigidBodies<L> {
     pub fn periods(&self) -> Periods {
         self.periods
     }
+    /// The walls.
+    pub fn walls(&self) -> impl Iterator<Item = &HalfSpace> {
+        self.walls.iter().map(|w| &w.plane)
+    }
     /// The shape of body `b`.
     pub fn shape(&self, b: BodyId) -> &dyn Shape {
         &*self.constants[b.0].shape

@@ -1,5 +1,5 @@
 //! Bodies as their neighbours see them.
-use crate::{Aabb, Checkpoint, Pose, Solid, Twist, Vector, Wrench};
+use crate::{Aabb, Checkpoint, Pose, Renumbering, Solid, Twist, Vector, Wrench};
 use nalgebra::Matrix3;
 
 /// A body's number, counted from 0.
@@ -106,4 +106,13 @@ pub trait Dynamics: Bodies + Checkpoint {
     fn set_twist(&mut self, b: BodyId, twist: Twist);
     /// The longest stable step of the contact model \[s\]; infinite without contacts.
     fn stable_dt(&self) -> f64;
+    /// Before a step that begins at `time` \[s\]: bodies may go, as the answer tells, and others may be added behind those that are left.
+    /// Nobody does unless told. It is called once per step at least, and at the same time changes nothing more.
+    ///
+    /// # Errors
+    /// When who is due cannot come or go.
+    fn renew(&mut self, time: f64) -> Result<Option<Renumbering>, Self::Error> {
+        let _ = time;
+        Ok(None)
+    }
 }

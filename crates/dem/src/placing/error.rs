@@ -155,7 +155,7 @@ pub(super) fn positive(what: &'static str, value: f64) -> Result<f64, PlacingErr
     }
 }
 /// A finite number that is not negative, or what to say.
-pub(super) fn not_negative(what: &'static str, value: f64) -> Result<f64, PlacingError> {
+pub(crate) fn not_negative(what: &'static str, value: f64) -> Result<f64, PlacingError> {
     if value.is_finite() && value >= 0.0 {
         Ok(value)
     } else {

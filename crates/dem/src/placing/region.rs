@@ -18,12 +18,14 @@ use interfaces::{Aabb, Point, Pose, Solid, Vector};
 /// assert!((drum.volume() - 6.283e-3).abs() < 1e-6);
 /// # Ok::<(), dem::placing::PlacingError>(())
 /// ```
+#[derive(Clone)]
 pub struct Region<'a> {
     bounds: Aabb,
     periodic: [bool; 3],
     container: Option<(Container<'a>, Pose)>,
 }
 
+#[derive(Clone)]
 enum Container<'a> {
     Sphere(Sphere),
     Cylinder(Cylinder),

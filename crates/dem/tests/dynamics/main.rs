@@ -6,6 +6,8 @@ mod film;
 mod friction;
 mod many;
 mod near;
+#[cfg(feature = "placing")]
+mod population;
 mod potential;
 mod removal;
 mod rotation;

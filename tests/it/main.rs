@@ -19,6 +19,7 @@ mod stretched;
 mod suspension;
 mod wall_rows;
 mod walls;
+mod window;
 
 /// Runs `f` where the examples run: inside a pool of so many threads.
 fn with_threads<R: Send>(threads: usize, f: impl FnOnce() -> R + Send) -> R {

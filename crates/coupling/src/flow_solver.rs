@@ -29,6 +29,11 @@ pub trait FlowSolver<const D: usize>: Checkpoint {
     fn weights(&self) -> [f64; 3] {
         [1.0, -1.0, 0.0]
     }
+    /// Moves the box by `cells` cells along `axis` on its fluid ([`Projection::move_window`]).
+    ///
+    /// # Errors
+    /// [`FlowError`] when it cannot move; it has not then.
+    fn move_window(&mut self, axis: usize, cells: i64) -> Result<(), FlowError>;
     /// The grid.
     fn grid(&self) -> &CartesianGrid<D>;
     /// The sides of the box.
@@ -71,6 +76,9 @@ macro_rules! forward {
         }
         fn finish(&mut self, dt: f64) -> Result<(), FlowError> {
             $flow::finish(self, dt)
+        }
+        fn move_window(&mut self, axis: usize, cells: i64) -> Result<(), FlowError> {
+            $flow::move_window(self, axis, cells)
         }
         fn grid(&self) -> &CartesianGrid<D> {
             $flow::grid(self)

@@ -11,15 +11,16 @@ use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Vector};
 /// way between the two (see [`Particles`]). Impulses: net weight, body force, contacts with walls,
 /// what holds bodies that are not free, and what the box's own walls do to the fluid. Energy: E = ½ρ∫_Ω u² + Σ½(1 − ρ/ρ_s)(mU² + ΩIΩ)
 /// against the work of net weight, body force and contacts less the viscous dissipation ρν∫|∇u|²
-/// (trapezoidal in time). What bodies bring that are put into the flow, and take along that are taken out, is no residual.
+/// (trapezoidal in time). What bodies bring that are put into the flow, and take along that are taken out, is no residual. (The fluid that a [`MovingWindow`](crate::MovingWindow) leaves behind is.)
 ///
 /// The books open where a run begins. Those of an interrupted run go on, bit for bit, if they are saved beside the simulation and restored
 /// before the next.
 #[derive(Clone, Debug, Default)]
 pub struct Ledger {
     last: Option<Books>,
-    /// What every body, by its serial number, had of it.
+    /// What every body, by its serial number, had of it; and before.
     stakes: Vec<(u64, Stake)>,
+    last_stakes: Vec<(u64, Stake)>,
     report: LedgerReport,
     /// They go on from a saved state.
     resumed: bool,
@@ -75,19 +76,20 @@ impl Ledger {
         &self.report
     }
 
-    fn stakes<F: Forcing, B: Dynamics, S: Strategy>(particles: &Particles<F, B, S>) -> Vec<(u64, Stake)> {
+    fn note_stakes<F: Forcing, B: Dynamics, S: Strategy>(&mut self, particles: &Particles<F, B, S>) {
+        std::mem::swap(&mut self.stakes, &mut self.last_stakes);
         let ids = (0..particles.bodies.n_bodies()).map(BodyId);
-        ids.filter_map(|b| Some((particles.serial(b)?, particles.stake(b)))).collect()
+        self.stakes.clear();
+        self.stakes.extend(ids.filter_map(|b| Some((particles.serial(b)?, particles.stake(b)))));
     }
 
     /// What those brought that came since the last books, less what those had that went.
     fn turnover<F: Forcing, B: Dynamics, S: Strategy>(&mut self, particles: &Particles<F, B, S>) -> Stake {
-        let now = Self::stakes(particles);
-        let before = std::mem::take(&mut self.stakes);
+        self.note_stakes(particles);
         let mut brought = Stake::default();
         // Both lists ascend.
-        let mut old = before.iter().peekable();
-        for (b, (serial, _)) in now.iter().enumerate() {
+        let mut old = self.last_stakes.iter().peekable();
+        for (b, (serial, _)) in self.stakes.iter().enumerate() {
             while let Some((_, gone)) = old.next_if(|(s, _)| s < serial) {
                 brought.momentum -= gone.momentum;
                 brought.energy -= gone.energy;
@@ -102,7 +104,6 @@ impl Ledger {
             brought.momentum -= gone.momentum;
             brought.energy -= gone.energy;
         }
-        self.stakes = now;
         brought
     }
 
@@ -141,7 +142,7 @@ impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy> Observer<Simulation<D
         let (books, report) = Self::balance(simulation);
         self.report = LedgerReport { energy: [books.energy; 2], divergence: 0.0, ..report };
         self.last = Some(books);
-        self.stakes = Self::stakes(&simulation.particles);
+        self.note_stakes(&simulation.particles);
     }
 
     fn step(
@@ -274,7 +275,7 @@ impl Checkpoint for Ledger {
         let row =
             |&[s, x, y, z, energy]: &[f64; 5]| (s as u64, Stake { momentum: Vector::new(x, y, z), energy });
         let stakes = rows.iter().map(row).collect();
-        *self = Self { last, stakes, report, resumed: last.is_some() };
+        *self = Self { last, stakes, last_stakes: Vec::new(), report, resumed: last.is_some() };
         Ok(())
     }
 }

@@ -151,6 +151,18 @@ impl Axis {
         Ok(Self { uniform: self.uniform, ..moved })
     }
 
+    /// The same equal cells `by` cells further up, so that faces which both axes have are the same to the bit, wherever this one
+    /// has been before.
+    pub(crate) fn slid(&self, by: i64) -> Result<Self, FlowError> {
+        let (n, from, to) = (self.cells(), self.lower(), self.upper());
+        let place = |i: usize| match i as i64 + by {
+            k if k == n as i64 => to,
+            k => from + (to - from) * (k as f64 / n as f64),
+        };
+        let slid = Self::from_faces((0..=n).map(place).collect::<Vec<_>>())?;
+        Ok(Self { uniform: self.uniform, ..slid })
+    }
+
     /// Number of cells n.
     pub fn cells(&self) -> usize {
         self.faces.len() - 1

@@ -96,7 +96,7 @@ pub enum FlowError {
     /// A field of another grid.
     #[error(
         "a field on a grid of {found:?} cells was given where one on a grid of {expected:?} cells is needed; \
-         make both with the same grid"
+         make both with the same grid (that of a box which has moved is another)"
     )]
     OtherGrid {
         /// Cells along the axes of the grid that is needed.
@@ -137,6 +137,14 @@ pub enum FlowError {
         continuity: f64,
         /// What was asked for.
         tolerance: f64,
+    },
+    /// The box cannot be moved.
+    #[error("the box cannot be moved along axis {axis}: {what}")]
+    Window {
+        /// Axis, 0 for x.
+        axis: usize,
+        /// Why, and what to do instead.
+        what: &'static str,
     },
     /// A linear solver could not work.
     #[error(transparent)]

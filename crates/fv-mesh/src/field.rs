@@ -18,6 +18,10 @@ impl<const D: usize> Field<D> {
     pub fn grid(&self) -> &CartesianGrid<D> {
         &self.grid
     }
+    /// The same values on a grid of the same size.
+    pub(crate) fn set_grid(&mut self, grid: &CartesianGrid<D>) {
+        self.grid = grid.clone();
+    }
     /// Takes `f(x)` at the cell centres x \[m\]; ghosts stay.
     pub fn set(&mut self, mut f: impl FnMut([f64; D]) -> f64) {
         let n = self.grid.cells();

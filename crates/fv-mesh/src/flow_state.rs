@@ -9,6 +9,9 @@ use interfaces::RestartError;
 
 /// A fluid in a box: its sides, velocity and pressure, and the clock.
 pub(crate) struct FlowState<const D: usize> {
+    /// Where the box was at first, and by how many cells it has moved since.
+    home: CartesianGrid<D>,
+    pub(crate) window: [i64; D],
     pub(crate) grid: CartesianGrid<D>,
     pub(crate) metrics: Metrics<D>,
     pub(crate) boundaries: Boundaries<D>,
@@ -51,6 +54,8 @@ impl<const D: usize> FlowState<D> {
             step: 0,
             last_dt: 0.0,
             rates: [0.0; D],
+            home: grid.clone(),
+            window: [0; D],
             grid,
             metrics,
             fluid,
@@ -59,6 +64,20 @@ impl<const D: usize> FlowState<D> {
         state.fill_pressure();
         state.measure_rates();
         Ok(state)
+    }
+
+    /// Puts the box `window` cells from where it was at first; values stay as they are stored.
+    pub(crate) fn set_window(&mut self, window: [i64; D]) -> Result<(), FlowError> {
+        if window == self.window {
+            return Ok(());
+        }
+        self.grid = self.home.slid(window)?;
+        self.window = window;
+        self.metrics.slide(&self.grid);
+        self.boundaries.set_grid(&self.grid);
+        self.velocity.set_grid(&self.grid, &self.boundaries.sides);
+        self.pressure.set_grid(&self.grid);
+        Ok(())
     }
 
     /// Sets every velocity component to `u(x)[c]` at its nodes \[m/s\], outlets included; walls and inlets keep theirs.
@@ -140,6 +159,9 @@ impl<const D: usize> FlowState<D> {
             sink(&format!("velocity{c}"), component.data());
         }
         sink("pressure", self.pressure.data());
+        if self.window != [0; D] {
+            sink("window", &self.window.map(|cells| cells as f64));
+        }
         sink("clock", &[self.time, self.step as f64, self.last_dt]);
         sink("rates", &self.rates);
         let mut sides = Vec::new();
@@ -152,6 +174,12 @@ impl<const D: usize> FlowState<D> {
         &mut self,
         source: &dyn Fn(&str) -> Option<&'a [f64]>,
     ) -> Result<(), RestartError> {
+        let mut window = [0; D];
+        if source("window").is_some() {
+            let saved = RestartError::take(source, "window", D)?;
+            window = std::array::from_fn(|a| saved[a] as i64);
+        }
+        self.set_window(window).map_err(|_| RestartError::Differs("window".into()))?;
         for (c, component) in self.velocity.components.iter_mut().enumerate() {
             restore_list(source, &format!("velocity{c}"), component.data_mut())?;
         }
@@ -256,6 +284,10 @@ macro_rules! show_clock {
         /// Steps made.
         pub fn steps(&self) -> u64 {
             self.state.step
+        }
+        /// By how many cells along each axis the box has [moved](Self::move_window).
+        pub fn window(&self) -> [i64; D] {
+            self.state.window
         }
         /// Sets the clock exactly (to the end of an interval that was cut into equal steps).
         pub fn set_time(&mut self, time: f64) {

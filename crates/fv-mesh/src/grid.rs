@@ -69,6 +69,14 @@ impl<const D: usize> CartesianGrid<D> {
         }
         Ok(self)
     }
+    /// The same box moved by `window[a]` cells along every uniform axis a.
+    pub(crate) fn slid(&self, window: [i64; D]) -> Result<Self, FlowError> {
+        let mut slid = self.clone();
+        for a in (0..D).filter(|&a| window[a] != 0) {
+            slid.axes[a] = self.axes[a].slid(window[a])?;
+        }
+        Ok(slid)
+    }
     /// Axis `a`.
     pub fn axis(&self, a: usize) -> &Axis {
         &self.axes[a]

@@ -55,6 +55,7 @@ mod tests;
 mod transport;
 mod velocity;
 mod walls;
+mod window;
 
 pub use algebra::GridMismatch;
 pub use axis::{Axis, Cluster};

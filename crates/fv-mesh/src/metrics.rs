@@ -149,6 +149,14 @@ impl AxisMetrics {
         metrics
     }
 
+    /// Moves the nodes to those of an axis with the same widths.
+    fn slide(&mut self, axis: &Axis, periodic: bool) {
+        let moved = Self::new(axis, periodic);
+        for (own, new) in [(&mut self.centres, moved.centres), (&mut self.faces, moved.faces)] {
+            (own.x, own.interface) = (new.x, new.interface);
+        }
+    }
+
     /// The distances between nodes of this family.
     pub(crate) fn nodes(&self, nodes: Nodes) -> &NodeMetrics {
         match nodes {
@@ -168,6 +176,13 @@ pub(crate) struct Metrics<const D: usize> {
 impl<const D: usize> Metrics<D> {
     pub(crate) fn new(grid: &CartesianGrid<D>, periodic: [bool; D]) -> Self {
         Self { axes: std::array::from_fn(|a| AxisMetrics::new(grid.axis(a), periodic[a])), periodic }
+    }
+
+    /// Moves the nodes to those of a grid with the same widths.
+    pub(crate) fn slide(&mut self, grid: &CartesianGrid<D>) {
+        for (a, axis) in self.axes.iter_mut().enumerate() {
+            axis.slide(grid.axis(a), self.periodic[a]);
+        }
     }
 
     /// Area of the face below cell `above` along axis `a`, over the distance of the centres beside it.

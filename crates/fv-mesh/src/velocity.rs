@@ -17,6 +17,13 @@ impl<const D: usize> Velocity<D> {
             lattices: std::array::from_fn(|c| grid.lattice(Some(c), sides)),
         }
     }
+    /// The same values on a grid of the same size.
+    pub(crate) fn set_grid(&mut self, grid: &CartesianGrid<D>, sides: &Sides<D>) {
+        for (c, component) in self.components.iter_mut().enumerate() {
+            component.set_grid(grid);
+            self.lattices[c] = grid.lattice(Some(c), sides);
+        }
+    }
     /// The field of component `c` \[m/s\].
     pub fn field(&self, c: usize) -> &Field<D> {
         &self.components[c]

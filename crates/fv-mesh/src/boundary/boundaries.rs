@@ -1,6 +1,6 @@
 //! The boundary conditions as the flow algorithms use them: values on every face of the bounded sides.
 use super::side_state::place;
-use super::{FaceKind, Lines, SideState, Sides};
+use super::{FaceKind, Lines, Side, SideState, Sides};
 use crate::metrics::Metrics;
 use crate::{CartesianGrid, FlowError};
 
@@ -100,6 +100,36 @@ impl<const D: usize> Boundaries<D> {
             }
         }
         Ok(())
+    }
+
+    /// The same on a grid of the same size.
+    pub(crate) fn set_grid(&mut self, grid: &CartesianGrid<D>) {
+        self.grid = grid.clone();
+        for (a, pair) in self.states.iter_mut().enumerate() {
+            for (state, at) in
+                pair.iter_mut().flat_map(|p| p.iter_mut()).zip([grid.axis(a).lower(), grid.axis(a).upper()])
+            {
+                state.at = at;
+            }
+        }
+    }
+
+    /// Takes the velocity through the outlets on the sides of axis `a` from its component along that axis.
+    pub(crate) fn take_through(&mut self, a: usize, u: &[f64]) {
+        let lines = &self.lines[a];
+        for (upper, state) in self.states[a].iter_mut().flat_map(|p| p.iter_mut()).enumerate() {
+            for (l, o) in lines.starts().enumerate() {
+                if !state.kind[l].is_fixed() {
+                    state.normal[l] = u[o + upper * lines.cells * lines.step];
+                }
+            }
+        }
+    }
+
+    /// Does anything on the sides beside axis `a` hold on parts of them only?
+    pub(crate) fn patched_beside(&self, a: usize) -> bool {
+        let beside = self.sides.0.iter().enumerate().filter(|(b, _)| *b != a);
+        beside.flat_map(|(_, pair)| pair).any(|side| matches!(side, Side::Patches(_)))
     }
 
     /// The lines along axis `a`.

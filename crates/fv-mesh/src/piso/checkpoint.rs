@@ -12,6 +12,7 @@ impl<const D: usize> Checkpoint for Piso<D> {
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         self.state.restore(source)?;
+        self.set_grid();
         for (c, old) in self.old.iter_mut().enumerate() {
             restore_list(source, &format!("old{c}"), old.data_mut())?;
         }

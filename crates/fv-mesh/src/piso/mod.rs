@@ -3,6 +3,7 @@ mod checkpoint;
 mod params;
 #[cfg(test)]
 mod tests;
+mod window;
 
 pub use params::{PisoParams, TimeScheme};
 

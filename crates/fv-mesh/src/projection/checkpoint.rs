@@ -20,6 +20,7 @@ impl<const D: usize> Checkpoint for Projection<D> {
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         self.state.restore(source)?;
+        self.set_grid();
         for (c, tendency) in self.tendency.iter_mut().enumerate() {
             restore_list(source, &format!("tendency{c}"), tendency.data_mut())?;
         }

@@ -2,7 +2,7 @@
 use super::Projection;
 use crate::flow_state::FlowState;
 use crate::per_dimension::per_dimension;
-use crate::{Field, FlowError, kernels};
+use crate::{CartesianGrid, Field, FlowError, kernels};
 use interfaces::SolveError;
 
 /// What accelerates the fluid in the next predictor step; its fields are made when first needed.
@@ -33,6 +33,12 @@ impl<const D: usize> Sources<D> {
     /// Takes back accelerations that no predictor step used.
     pub(super) fn forget(&mut self) {
         (self.given, self.eddy_most) = (false, 0.0);
+    }
+
+    /// Puts them on another grid of the same size.
+    pub(super) fn set_grid(&mut self, grid: &CartesianGrid<D>) {
+        let fields = self.fields.iter_mut().flat_map(|f| f.iter_mut());
+        fields.chain(self.eddy.as_deref_mut()).for_each(|field| field.set_grid(grid));
     }
 
     /// What was given since the last call.

@@ -14,9 +14,17 @@ fn crates_meet_only_through_interfaces() {
     let packages = metadata["packages"].as_array().expect("packages");
     let name = |p: &Value| p["name"].as_str().expect("name").to_owned();
     let all: BTreeSet<String> = packages.iter().map(name).collect();
-    for crate_ in
-        ["siltflow", "interfaces", "monomorphic", "fv-mesh", "ibm", "dem", "coupling", "example-support"]
-    {
+    for crate_ in [
+        "siltflow",
+        "interfaces",
+        "monomorphic",
+        "fv-mesh",
+        "ibm",
+        "dem",
+        "mor",
+        "coupling",
+        "example-support",
+    ] {
         assert!(all.contains(crate_), "{crate_} is gone");
     }
     for package in packages {

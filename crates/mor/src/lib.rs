@@ -1,0 +1,6 @@
+//! Model order reduction of snapshots, whatever they were made with.
+//!
+//! A matrix of snapshots has one row per unknown and one column per snapshot ([`MatRef`], column by column in memory).
+#![forbid(unsafe_code)]
+
+pub use monomorphic::{Mat, MatRef};

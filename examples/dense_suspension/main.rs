@@ -5,6 +5,8 @@
 //! being moved and turned apart, all of it 3 % larger than they are. Then fluid and bodies are let go from rest. Every body is resolved by the grid and the
 //! markers on its surface; bodies that touch push and rub by Chen's law on the volume that they share.
 //!
+//! With `--lubrication` the films between bodies that are close, which the grid does not resolve, act as well (`Lubricated`).
+//!
 //! Told at the end: where the bodies are, the books of momentum and energy, the porosity of the bed, and what each module cost. The porosity is that
 //! from a quarter to seven tenths of the height below which 19 of 20 centres are, away from floor and surface, over the whole width, and without what is
 //! less than a diameter from a wall; bodies are cut exactly where these regions end.
@@ -22,6 +24,7 @@ use example_support::Outcome;
 use example_support::coupled::{Plan, RunOptions, run};
 use example_support::granular::{Ending, main_of};
 use example_support::suspension::{Diary, Portraits, Suspension};
+use siltflow::dem::{Chen, ContactLaw};
 use siltflow::ibm::SmoothForcing;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
@@ -57,6 +60,9 @@ struct Cli {
     /// Young's modulus in Pa. Steps of the contacts get shorter with its root; a soft one makes bodies sink into one another.
     #[arg(long, default_value_t = 3e5, allow_negative_numbers = true)]
     youngs_modulus: f64,
+    /// Model what the grid does not resolve of the films between bodies that are close.
+    #[arg(long)]
+    lubrication: bool,
     /// No walls at the sides: the box repeats.
     #[arg(long)]
     periodic: bool,
@@ -87,23 +93,23 @@ impl Cli {
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    main_of(cli.run.threads, |stop| settle(&cli, stop))
+    main_of(cli.run.threads, |stop| match cli.lubrication {
+        true => settle(&cli, cli.scene().lubricated()?, stop),
+        false => settle(&cli, Chen::default(), stop),
+    })
 }
 
-fn settle(cli: &Cli, stop: &AtomicBool) -> Outcome<Ending> {
+fn settle<L: ContactLaw>(cli: &Cli, law: L, stop: &AtomicBool) -> Outcome<Ending> {
     let scene = cli.scene();
     let mut forcing = SmoothForcing::new(scene.fluid().density);
     if let Some(kernel) = cli.run.kernel {
         forcing = forcing.with_kernel(kernel);
     }
-    let mut fall = scene.build(forcing)?;
+    let setup = format!("{scene:?} {law:?}");
+    let mut fall = scene.build(forcing, law)?;
     let out = cli.run.out.clone().unwrap_or_else(|| "out/dense_suspension".into());
-    let plan = Plan {
-        end: cli.run.end.unwrap_or(scene.end()),
-        out: &out,
-        setup: &format!("{scene:?}"),
-        view: scene.view(&fall),
-    };
+    let plan =
+        Plan { end: cli.run.end.unwrap_or(scene.end()), out: &out, setup: &setup, view: scene.view(&fall) };
     let portraits = if cli.run.no_images { None } else { Some(Portraits::new(&out, &fall, scene.periodic)?) };
     let diary = Diary::new(scene.diameter, scene.periodic, portraits);
     let record = run(&mut fall, &cli.run, &plan, diary, stop)?;

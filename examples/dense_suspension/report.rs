@@ -6,13 +6,14 @@ use example_support::picture::sketch::{Drawing, Paint, draw};
 use example_support::suspension::{Diary, Suspension};
 use example_support::table::{Table, grouped, number, write_json};
 use serde_json::json;
+use siltflow::dem::ContactLaw;
 use siltflow::interfaces::{Bodies, Kinematics};
 
-pub(crate) fn tell(
+pub(crate) fn tell<L: ContactLaw>(
     scene: &Suspension,
-    fall: &Fall<3>,
+    fall: &Fall<3, L>,
     record: &Record<Diary>,
-    plan: &Plan<'_, 3>,
+    plan: &Plan<'_, 3, L>,
     no_images: bool,
 ) -> Outcome<()> {
     let (diary, bodies, grid) = (&record.motion, &fall.particles.bodies, fall.flow.grid());
@@ -45,6 +46,14 @@ pub(crate) fn tell(
     t.row("  a sphere alone would have", number(reynolds(scene.alone())), "");
     t.row("fastest at the end", number(1e3 * last("fastest")), "mm/s");
     t.row("contacts per body at the end", number(last("coordination")), "");
+    if L::FILMS {
+        // Of those that touch or are so close that the model acts between them.
+        let close: Vec<_> = diary.column("contacts").into_iter().zip(diary.column("films")).collect();
+        let share = |(touch, film): (f64, f64)| 100.0 * film / (touch + film).max(1.0);
+        let mean = close.iter().map(|c| share(*c)).sum::<f64>() / close.len().max(1) as f64;
+        t.row("of the pairs close or in touch, kept apart by a film, mean", number(mean), "%");
+        t.row("  at the end", number(close.last().map_or(f64::NAN, |c| share(*c))), "%");
+    }
     t.row("overlap by radius at the end, mean", number(100.0 * last("overlap")), "%");
     t.row("  largest of all", number(100.0 * most("largest_overlap")), "%");
     t.row("volume of overlaps by volume of bodies at the end", number(100.0 * last("shared")), "%");
@@ -92,7 +101,7 @@ pub(crate) fn tell(
         "bodies": bodies.n_bodies(), "cells": [nx, ny, nz], "cells_per_diameter": scene.cells_per_diameter,
         "fraction_at_the_start": started, "time": fall.flow.time(), "steps": record.summary.steps, "dt": record.summary.dt,
         "outside": most("outside"), "finite": diary.lost().is_none(), "fastest": most("fastest"),
-        "fastest_at_the_end": last("fastest"), "coordination": last("coordination"), "largest_overlap": most("largest_overlap"), "shared": last("shared"),
+        "fastest_at_the_end": last("fastest"), "coordination": last("coordination"), "contacts": last("contacts"), "films": last("films"), "largest_overlap": most("largest_overlap"), "shared": last("shared"),
         "bed_height": last("bed_height"), "porosity": 1.0 - last("bed_fraction"),
         "porosity_of_the_core": 1.0 - last("core_fraction"), "momentum_residual_step": l.momentum_step,
         "momentum_residual_total": l.momentum_total, "kinetic_energy": l.energy, "work": l.work,

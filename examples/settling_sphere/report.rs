@@ -66,6 +66,9 @@ pub(crate) fn tell<L: ContactLaw>(
     t.row("fastest sideways / peak", number(sideways / peak.max(f64::MIN_POSITIVE)), "");
     t.row("smallest gap to the floor", number(closest / scene.spacing()), "cells");
     t.row("time in contact", number(record.motion.contact_seconds), "s");
+    if L::FILMS {
+        t.row("  kept off the floor by a film below two cells", number(record.motion.film_seconds), "s");
+    }
     println!("{t}\n  files are in {}", plan.out.display());
     let of = |d: &Distance| json!({"rms": d.rms / scale, "largest": d.largest / scale, "at": d.at, "points": d.points});
     let result = json!({
@@ -74,6 +77,7 @@ pub(crate) fn tell<L: ContactLaw>(
         "peak_speed": peak, "peak_time": peak_time, "measured_peak_speed": measured_peak,
         "curve_over_peak": of(&resolved), "curve_over_peak_below_two_cells": of(&unresolved),
         "smallest_gap": closest, "contact_seconds": record.motion.contact_seconds,
+        "film_seconds": record.motion.film_seconds,
     });
     write_json(&plan.out.join("result.json"), &result)?;
     if !no_images { figure(scene.case, record, plan) } else { Ok(()) }

@@ -1,9 +1,9 @@
 //! Polyhedra that settle in a fluid: a small, coarse run of what the example `dense_suspension` does.
 use crate::with_threads;
-use example_support::coupled::{Diary as _, Fall};
+use example_support::coupled::{Diary as Keeps, Fall};
 use example_support::suspension::{Diary, Suspension};
 use siltflow::coupling::{self, Schedule};
-use siltflow::dem::{HalfSpace, overlap};
+use siltflow::dem::{Chen, HalfSpace, overlap};
 use siltflow::ibm::SmoothForcing;
 use siltflow::interfaces::{Bodies, Kinematics, Point, Pose, Vector};
 use std::sync::atomic::AtomicBool;
@@ -15,7 +15,7 @@ fn scene() -> Suspension {
 }
 
 fn build(scene: &Suspension) -> Fall<3> {
-    scene.build(SmoothForcing::new(scene.fluid().density)).unwrap()
+    scene.build(SmoothForcing::new(scene.fluid().density), Chen::default()).unwrap()
 }
 
 fn go(fall: &mut Fall<3>, diary: &mut Diary, end: f64, intervals: usize) {
@@ -89,12 +89,12 @@ fn the_books_go_on_after_an_interruption() {
         let [state, books, rows] = ["state.bin", "books.bin", "motion.csv"].map(|f| folder.join(f));
         coupling::save(&state, &first).unwrap();
         coupling::save(&books, &of_first).unwrap();
-        of_first.write(&rows).unwrap();
+        Keeps::<3>::write(&of_first, &rows).unwrap();
 
         let (mut second, mut of_second) = (build(&scene), new());
         coupling::load(&state, &mut second).unwrap();
         coupling::load(&books, &mut of_second).unwrap();
-        of_second.read(&rows, second.flow.time()).unwrap();
+        Keeps::<3>::read(&mut of_second, &rows, second.flow.time()).unwrap();
         assert_eq!(of_second.ledger(), of_first.ledger());
         go(&mut second, &mut of_second, 0.02, 2);
         assert_eq!(of_second.ledger(), of_whole.ledger());

@@ -19,7 +19,7 @@ mod sphere;
 mod spiral;
 #[cfg(test)]
 mod tests;
-mod triangle;
+pub(crate) mod triangle;
 #[cfg(feature = "mesh")]
 mod triangle_mesh;
 mod union;

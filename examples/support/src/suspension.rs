@@ -11,9 +11,9 @@ use crate::granular::{GRAVITY, Grain, Kind, squeezed};
 use crate::picture::Domain;
 use coupling::{Particles, Simulation, WeightBalance};
 use dem::placing::SizeDistribution;
-use dem::{HalfSpace, Material, RigidBodies};
+use dem::{Chen, ContactLaw, HalfSpace, Lubricated, Material, RigidBodies};
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Sampler, Side};
-use ibm::SmoothForcing;
+use ibm::{SmoothFilm, SmoothForcing};
 use interfaces::{Aabb, Bodies, Freedom, Kinematics, Periods, Point, Twist, Vector};
 use std::f64::consts::PI;
 
@@ -171,11 +171,20 @@ impl Suspension {
         Kind::Polyhedron.grains(&sizes)
     }
 
-    /// Fluid and bodies at rest, these at random all over the box and nowhere in touch.
+    /// Chen's law of contact, and what the grid does not resolve of the films between bodies that are close.
+    ///
+    /// # Errors
+    /// For a viscosity or a spacing that makes no sense.
+    pub fn lubricated(&self) -> Outcome<Lubricated<Chen>> {
+        let viscosity = self.viscosity * FLUID_DENSITY;
+        Ok(Lubricated::new(Chen::default(), viscosity, SmoothFilm::new(self.spacing())?)?)
+    }
+
+    /// Fluid and bodies at rest, these at random all over the box and nowhere in touch; `law` is that of their contacts.
     ///
     /// # Errors
     /// For numbers that make no sense, and those of placing, grid, flow and bodies.
-    pub fn build(&self, forcing: SmoothForcing) -> Outcome<Fall<3>> {
+    pub fn build<L: ContactLaw>(&self, forcing: SmoothForcing, law: L) -> Outcome<Fall<3, L>> {
         self.check()?;
         let grains = self.grains(1.0)?;
         let volume = grains.iter().map(|g| g.shape.inertia(1.0).volume).sum();
@@ -192,7 +201,7 @@ impl Suspension {
         let flow = Projection::new(CartesianGrid::new(cells, lengths)?, sides, self.fluid())?
             .with_diffusion(Diffusion::Explicit);
         let period = |axis: usize| self.periodic.then_some(lengths[axis]);
-        let mut bodies = RigidBodies::new(Periods::new([period(0), period(1), None]));
+        let mut bodies = RigidBodies::with_law(Periods::new([period(0), period(1), None]), law);
         let gravity = Vector::new(0.0, 0.0, -GRAVITY);
         let room = Aabb { min: Point::origin(), max: lengths.into() };
         for axis in if self.periodic { 2..3 } else { 0..3 } {
@@ -209,14 +218,14 @@ impl Suspension {
     }
 
     /// The upright plane through the middle of the box, x to the right.
-    pub fn view(&self, fall: &Fall<3>) -> View<3> {
+    pub fn view<L: ContactLaw>(&self, fall: &Fall<3, L>) -> View<3, L> {
         let [width, _, height] = fall.flow.grid().lengths();
         let domain = Domain { width, height, periodic: [self.periodic, false] };
         View { domain, max_speed: 2.0 * self.hindered(), slice }
     }
 }
 
-fn slice(fall: &Fall<3>) -> Slice {
+fn slice<L: ContactLaw>(fall: &Fall<3, L>) -> Slice {
     let (flow, bodies) = (&fall.flow, &fall.particles.bodies);
     let grid = flow.grid();
     let ([nx, _, nz], fine) = (grid.cells().map(|n| FINER * n), grid.spacing()[0] / FINER as f64);

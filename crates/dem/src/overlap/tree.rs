@@ -17,6 +17,7 @@ mod cut;
 mod deepest;
 #[cfg(feature = "mesh")]
 mod facet_index;
+mod gjk;
 pub(crate) mod grow;
 mod lens;
 mod patches;

@@ -1,7 +1,7 @@
 //! The convex polyhedron.
 use super::Facets;
 use super::hull::hull;
-use super::triangle::Triangle;
+use super::triangle::{Part, Triangle};
 use crate::{DemError, Form, Shape};
 use interfaces::{Aabb, Inertia, Point, Polyhedron, Solid, Vector};
 use nalgebra::Matrix3;
@@ -39,6 +39,8 @@ pub(crate) struct HullEdge {
 
 /// Vertices may stand out of a face's plane by this part of the body's size.
 const FLATNESS: f64 = 1e-9;
+/// Rounding, as a share of the body's size, where a plane parts the body from a point.
+const PARTED: f64 = 1e-14;
 
 impl ConvexPolyhedron {
     /// The body between these `faces`, each given by its `vertices` \[m\] one after the other, counter-clockwise seen from
@@ -166,6 +168,26 @@ impl ConvexPolyhedron {
     pub fn origin(&self) -> Point {
         self.origin
     }
+    /// The least way to `x` from face `f`.
+    fn from_face(&self, f: usize, x: Vector) -> Vector {
+        let mut least = (f64::INFINITY, Vector::zeros());
+        for t in self.fan(f) {
+            let [a, b, c] = t.map(|v| self.points[v as usize].coords);
+            let (from, part) = Triangle::new(a, b, c).nearest(x);
+            let square = from.norm_squared();
+            if square < least.0 {
+                least = (square, from);
+            }
+            if part == Part::Inside {
+                break;
+            }
+        }
+        least.1
+    }
+    /// The triangles of face `f`, which all have its first vertex.
+    fn fan(&self, f: usize) -> &[[u32; 3]] {
+        &self.triangles[self.starts[f] - 2 * f..self.starts[f + 1] - 2 * (f + 1)]
+    }
     /// The faces cut into triangles.
     pub(crate) fn facets(&self) -> &Facets {
         &self.facets
@@ -220,18 +242,34 @@ impl Shape for ConvexPolyhedron {
 }
 
 impl Solid for ConvexPolyhedron {
-    /// Within, the nearest plane; without, the nearest triangle.
+    /// Within, the nearest plane; without, the nearest triangle of the faces that are seen from there.
     fn signed_distance(&self, x: Point, band: f64) -> f64 {
         let out = |p: &Plane| p.normal.dot(&x.coords) - p.offset;
-        let deepest = self.planes.iter().map(out).fold(f64::NEG_INFINITY, f64::max);
+        let more = |best: (usize, f64), now: (usize, f64)| if now.1 > best.1 { now } else { best };
+        let (foremost, deepest) = self.planes.iter().map(out).enumerate().fold((0, f64::NEG_INFINITY), more);
         if deepest <= 0.0 || deepest >= band {
             return deepest;
         }
-        let square = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|v| self.points[v as usize].coords);
-            Triangle::new(a, b, c).nearest(x.coords).0.norm_squared()
-        };
-        self.triangles.iter().map(square).fold(f64::INFINITY, f64::min).sqrt()
+        let mut least = f64::INFINITY;
+        // No point of a face is nearer than its plane.
+        let seen = |&(f, p): &(usize, &Plane)| f != foremost && out(p) > 0.0;
+        let others = self.planes.iter().enumerate().filter(seen).map(|(f, p)| (f, out(p)));
+        for (f, out) in std::iter::once((foremost, deepest)).chain(others) {
+            if out * out >= least {
+                continue;
+            }
+            let from = self.from_face(f, x.coords);
+            let square = from.norm_squared();
+            if square < least {
+                least = square;
+                // No point of the body is nearer if a plane across the way parts them.
+                let ahead = |y: &Point| from.dot(&(y - x)) + square;
+                if self.points.iter().all(|y| ahead(y) <= PARTED * square.sqrt() * self.facets.radius) {
+                    break;
+                }
+            }
+        }
+        least.sqrt()
     }
     fn aabb(&self) -> Aabb {
         let [low, high] = self.facets.bounds;
@@ -239,5 +277,32 @@ impl Solid for ConvexPolyhedron {
     }
     fn polyhedron(&self) -> Option<Polyhedron<'_>> {
         Some(Polyhedron { vertices: &self.points, faces: &self.triangles })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Outside it is the distance from the nearest of all triangles, inside that from the nearest plane.
+        #[test]
+        fn distance_is_that_of_all_triangles(
+            points in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 5..30),
+            x in prop::array::uniform3(-1.5..1.5f64),
+        ) {
+            let Ok(body) = ConvexPolyhedron::from_points(&points) else { return Ok(()) };
+            let x = Point::from(x);
+            let found = body.signed_distance(x, f64::INFINITY);
+            let triangle = |t: &[u32; 3]| {
+                let [a, b, c] = t.map(|v| body.points[v as usize].coords);
+                Triangle::new(a, b, c).nearest(x.coords).0.norm()
+            };
+            let nearest = body.triangles.iter().map(triangle).fold(f64::INFINITY, f64::min);
+            prop_assert!((found.abs() - nearest).abs() < 1e-13, "{} {}", found, nearest);
+            let behind_all = body.planes.iter().all(|p| p.normal.dot(&x.coords) < p.offset);
+            prop_assert_eq!(found < 0.0, behind_all);
+        }
     }
 }

@@ -27,6 +27,8 @@ pub struct Motion {
     pub bodies: Vec<Vec<State>>,
     /// Seconds in which bodies touched one another or a wall.
     pub contact_seconds: f64,
+    /// Seconds in which a film that the grid does not resolve kept bodies apart, or one from a wall.
+    pub film_seconds: f64,
 }
 
 /// What a run keeps of its motion, step by step, in memory and in `motion.csv`; what it cannot read there is in its saved state.
@@ -81,10 +83,13 @@ impl<const D: usize, L: ContactLaw> Diary<D, L> for Motion {
     }
 }
 
-/// All of it is in the file.
+/// What is not in `motion.csv`.
 impl Checkpoint for Motion {
-    fn save(&self, _: &mut dyn FnMut(&str, &[f64])) {}
-    fn restore<'a>(&mut self, _: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+    fn save(&self, to: &mut dyn FnMut(&str, &[f64])) {
+        to("film_seconds", &[self.film_seconds]);
+    }
+    fn restore<'a>(&mut self, from: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        self.film_seconds = RestartError::take(from, "film_seconds", 1)?[0];
         Ok(())
     }
 }
@@ -119,6 +124,9 @@ impl<const D: usize, L: ContactLaw> Observer<Fall<D, L>> for Motion {
     }
     fn step(&mut self, fall: &mut Fall<D, L>, info: &StepInfo) -> Result<(), CouplingError> {
         self.push(fall, info.time);
+        if fall.particles.bodies.n_films() > 0 {
+            self.film_seconds += info.dt;
+        }
         Ok(())
     }
 }

@@ -5,7 +5,7 @@ use crate::coupled::{Diary as Kept, Fall};
 use crate::granular::{Totals, totals};
 use crate::picture::solids::{Model, Portrait, Tint, View};
 use coupling::{CouplingError, Ledger, LedgerReport, Observer, StepInfo};
-use dem::{Cuboid, Shape};
+use dem::{ContactLaw, Cuboid, Shape};
 use interfaces::{Aabb, Bodies, BodyId, Checkpoint, Kinematics, Point, Pose, RestartError, Vector};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -16,12 +16,13 @@ const EVERY: u64 = 10;
 /// Slabs of a profile.
 const SLABS: usize = 40;
 
-const COLUMNS: [&str; 22] = [
+const COLUMNS: [&str; 23] = [
     "time",
     "fastest",
     "centroid",
     "outside",
     "contacts",
+    "films",
     "coordination",
     "overlap",
     "largest_overlap",
@@ -84,7 +85,7 @@ impl Diary {
         self.lost
     }
 
-    fn push(&mut self, fall: &Fall<3>, time: f64, courant: f64) -> Outcome<()> {
+    fn push<L: ContactLaw>(&mut self, fall: &Fall<3, L>, time: f64, courant: f64) -> Outcome<()> {
         let bodies = &fall.particles.bodies;
         let lengths = fall.flow.grid().lengths();
         let t: Totals = totals(bodies, 0, &Aabb { min: Point::origin(), max: lengths.into() });
@@ -102,6 +103,7 @@ impl Diary {
             centroid,
             t.outside as f64,
             t.contacts as f64,
+            bodies.n_films() as f64,
             t.coordination,
             t.overlap[0],
             t.overlap[1],
@@ -129,18 +131,23 @@ fn told(what: &str) -> impl FnOnce(crate::Outcome<()>) -> Result<(), CouplingErr
     move |outcome| outcome.map_err(|e| CouplingError::Output { what, source: io::Error::other(e) })
 }
 
-impl Observer<Fall<3>> for Diary {
-    fn begin(&mut self, fall: &mut Fall<3>) {
+impl<L: ContactLaw> Observer<Fall<3, L>> for Diary {
+    fn begin(&mut self, fall: &mut Fall<3, L>) {
         self.ledger.begin(fall);
     }
-    fn step(&mut self, fall: &mut Fall<3>, info: &StepInfo) -> Result<(), CouplingError> {
+    fn step(&mut self, fall: &mut Fall<3, L>, info: &StepInfo) -> Result<(), CouplingError> {
         self.ledger.step(fall, info)?;
         if info.step.is_multiple_of(EVERY) {
             told("measuring the bed")(self.push(fall, info.time, info.courant))?;
         }
         Ok(())
     }
-    fn snapshot(&mut self, fall: &mut Fall<3>, index: usize, info: &StepInfo) -> Result<(), CouplingError> {
+    fn snapshot(
+        &mut self,
+        fall: &mut Fall<3, L>,
+        index: usize,
+        info: &StepInfo,
+    ) -> Result<(), CouplingError> {
         let [width, _, height] = fall.flow.grid().lengths();
         let bodies = &fall.particles.bodies;
         let now = profile(bodies, width * width, height, SLABS).map_err(|e| CouplingError::Output {
@@ -172,7 +179,7 @@ impl Checkpoint for Diary {
     }
 }
 
-impl Kept<3> for Diary {
+impl<L: ContactLaw> Kept<3, L> for Diary {
     fn read(&mut self, path: &Path, time: f64) -> io::Result<()> {
         self.rows.clear();
         for line in std::fs::read_to_string(path)?.lines().skip(1) {
@@ -207,7 +214,7 @@ impl Portraits {
     ///
     /// # Errors
     /// What the disk answers.
-    pub fn new(out: &Path, fall: &Fall<3>, periodic: bool) -> io::Result<Self> {
+    pub fn new<L: ContactLaw>(out: &Path, fall: &Fall<3, L>, periodic: bool) -> io::Result<Self> {
         let folder = out.join("solids");
         std::fs::create_dir_all(&folder)?;
         let bodies = &fall.particles.bodies;
@@ -215,7 +222,7 @@ impl Portraits {
         Ok(Self { folder, heights, periodic })
     }
 
-    fn draw(&self, fall: &Fall<3>, index: usize, time: f64) -> io::Result<()> {
+    fn draw<L: ContactLaw>(&self, fall: &Fall<3, L>, index: usize, time: f64) -> io::Result<()> {
         let bodies = &fall.particles.bodies;
         let [w, _, high] = fall.flow.grid().lengths();
         let t = 0.03 * w;

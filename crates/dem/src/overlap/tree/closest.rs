@@ -1,7 +1,8 @@
 //! Where two bodies that are apart come closest.
 use super::deepest::{Least, Search};
+use super::gjk::{Convex, closest_places};
 use super::seen::{Seen, shared};
-use crate::Shape;
+use crate::{Form, Shape};
 use interfaces::{Point, Pose, Vector};
 use nalgebra::Matrix2;
 
@@ -20,11 +21,72 @@ pub(crate) struct Closest {
 
 /// Share of the gap to which it is found.
 const ENOUGH: f64 = 1e-3;
+/// Places where the gap is larger by no more than this share are closest, too.
+const FLAT: f64 = 1e-6;
+/// Of the way to the middle.
+const HALVINGS: usize = 5;
+
+/// Half-way between both, and what the gap is there.
+struct Place {
+    at: Vector,
+    gap: f64,
+    normal: Vector,
+}
+
+impl Search<'_> {
+    /// Where the larger one of both distances is least.
+    fn place(&self) -> Option<Place> {
+        let Least { at, distances, .. } = self.least(Vector::zeros(), 0.25 * self.size(), ENOUGH);
+        let gap = 2.0 * distances[0].max(distances[1]);
+        let slopes = [0, 1].map(|i| self.slope(i, at, distances[i], 1e-3 * gap));
+        Some(Place { at, gap, normal: (slopes[0] - slopes[1]).try_normalize(0.0)? })
+    }
+    /// Of faces along one another many places are the closest: that on the way to the middle of what the boxes share where they end.
+    fn towards_the_middle(&self, at: Vector, gap: f64, normal: Vector) -> (Vector, [f64; 2]) {
+        let way = normal * normal.dot(&at) - at;
+        let closest = |share: f64| {
+            let d = self.distances(at + share * way);
+            (d[0].max(d[1]) <= 0.5 * (1.0 + FLAT) * gap).then_some((at + share * way, d))
+        };
+        if let Some(middle) = closest(1.0) {
+            return middle;
+        }
+        let mut ends = [1.0 / 32.0, 1.0];
+        let Some(mut best) = closest(ends[0]) else { return (at, self.distances(at)) };
+        for _ in 0..HALVINGS {
+            let share = 0.5 * (ends[0] + ends[1]);
+            match closest(share) {
+                Some(found) => (best, ends[0]) = (found, share),
+                None => ends[1] = share,
+            }
+        }
+        best
+    }
+}
+
+/// `None` unless the bodies answer for their farthest points; `Some(None)` if nothing is within reach.
+fn between_convex(bodies: [(&dyn Shape, &Pose); 2], centre: Vector, reach: f64) -> Option<Option<Place>> {
+    let [a, b] = bodies;
+    let first = Convex::new(a.0, a.1, centre)?;
+    let places = match b.0.form() {
+        Form::HalfSpace(wall) => {
+            let wall = wall.posed(b.1);
+            let x = first.support(-wall.normal());
+            let gap = wall.signed_distance(Point::from(centre + x));
+            Some([x, x - gap * wall.normal()]).filter(|_| gap > 0.0)
+        }
+        _ => closest_places(&first, &Convex::new(b.0, b.1, centre)?, reach),
+    };
+    Some(places.and_then(|[x, y]| {
+        let across = y - x;
+        Some(Place { at: 0.5 * (x + y), gap: across.norm(), normal: across.try_normalize(0.0)? })
+    }))
+}
 
 /// The closest places of two bodies that are no farther apart than `reach`; `None` if they are, or overlap. Of bodies that are not convex one place where
 /// the gap is smaller than all around.
 ///
-/// The place half-way is where the larger one of both distances is least. Curvatures are differences of the distances over the length √(δ·size)/2
+/// Of convex bodies the place half-way is found by their farthest points ([`gjk`]), of others as where the larger one of both distances is least. Curvatures are differences of the distances over the length √(δ·size)/2
 /// along which a film as thick as the gap gets wider.
 pub(crate) fn closest(
     a: &dyn Shape,
@@ -38,14 +100,15 @@ pub(crate) fn closest(
     let (centre, half) = (nalgebra::center(&both.min, &both.max).coords, 0.5 * both.extent());
     let bodies = [Seen::new(a, pose_a, centre), Seen::new(b, pose_b, centre)];
     let search = Search { bodies, half };
-    let Least { at, distances, .. } = search.least(Vector::zeros(), 0.25 * search.size(), ENOUGH);
-    let gap = 2.0 * distances[0].max(distances[1]);
+    let Place { at, gap, normal } = match between_convex([(a, pose_a), (b, pose_b)], centre, reach) {
+        Some(found) => found?,
+        None => search.place()?,
+    };
     if !(gap > 0.0 && gap <= reach) {
         return None;
     }
+    let (at, distances) = search.towards_the_middle(at, gap, normal);
     let size = a.bounding_radius().min(b.bounding_radius());
-    let slopes = [0, 1].map(|i| search.slope(i, at, distances[i], 1e-3 * gap));
-    let normal = (slopes[0] - slopes[1]).try_normalize(0.0)?;
     let u = normal.cross(&Vector::ith(normal.iamin(), 1.0)).normalize();
     let v = normal.cross(&u);
     let step = 0.5 * (gap * size).sqrt();

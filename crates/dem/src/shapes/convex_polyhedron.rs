@@ -169,7 +169,7 @@ impl ConvexPolyhedron {
         self.origin
     }
     /// The least way to `x` from face `f`.
-    fn from_face(&self, f: usize, x: Vector) -> Vector {
+    fn way_from_face(&self, f: usize, x: Vector) -> Vector {
         let mut least = (f64::INFINITY, Vector::zeros());
         for t in self.fan(f) {
             let [a, b, c] = t.map(|v| self.points[v as usize].coords);
@@ -258,7 +258,7 @@ impl Solid for ConvexPolyhedron {
             if out * out >= least {
                 continue;
             }
-            let from = self.from_face(f, x.coords);
+            let from = self.way_from_face(f, x.coords);
             let square = from.norm_squared();
             if square < least {
                 least = square;

@@ -39,10 +39,10 @@ struct Column {
 /// Is the surface smooth here, as far as the square of the `gradient` of the distance tells, its differences taken
 /// over neighbours h away? Across an edge it is the squared cosine of half the edge's angle; beside one, where a
 /// neighbour along the surface is past it, above 1. On a sphere it is between 1 − ⅔(h/R)² and 1, so that
-/// much is allowed for the curvature `bend`, if it is not that of an edge itself (1/R no more than 1/5h).
+/// much is allowed for the curvature `bend`, if it is not that of an edge itself (R at least 2.9 h).
 #[inline]
 fn is_smooth(square: f64, bend: f64, h: f64) -> bool {
-    let least = 1.0 - EDGE - 2.0 / 3.0 * (bend * h).powi(2).min(0.04);
+    let least = 1.0 - EDGE - 2.0 / 3.0 * (bend * h).powi(2).min(0.12);
     (least..1.0025).contains(&square)
 }
 

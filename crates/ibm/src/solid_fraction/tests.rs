@@ -1,8 +1,10 @@
 use super::*;
-use crate::testing::{Balls, Brick, lattice};
-use interfaces::{Kinematics, Nodes, Rotation};
+use crate::testing::{Ball, Balls, Brick, lattice};
+use interfaces::{Aabb, Kinematics, Nodes, Point, Rotation, Solid};
 use proptest::prelude::*;
 use std::f64::consts::PI;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// Σ λ V of all bodies.
 fn total(lattice: &Lattice, bodies: &Balls) -> f64 {
@@ -181,4 +183,41 @@ fn a_lost_body_is_named() {
     let bodies = Balls::new(2, 0.5, vec![[1.0, f64::NAN, 0.0]]);
     let error = SolidFraction::new().update(&lattice(2, [0.1; 3], 3.0), &bodies).unwrap_err();
     assert!(matches!(error, IbmError::Lost { body: BodyId(0), .. }));
+}
+
+/// A ball that counts how many distances it is asked for.
+struct Counted {
+    ball: Ball,
+    asked: Arc<AtomicUsize>,
+}
+
+impl Solid for Counted {
+    fn signed_distance(&self, x: Point, band: f64) -> f64 {
+        self.asked.fetch_add(1, Relaxed);
+        self.ball.signed_distance(x, band)
+    }
+    fn aabb(&self) -> Aabb {
+        self.ball.aabb()
+    }
+}
+
+/// A sphere of six cells per diameter is smooth yet: hardly more than one distance per cell of its box, and its volume is right.
+#[test]
+fn coarse_balls_need_no_smaller_cells() {
+    for n in [6, 8, 12] {
+        let h = 1.0 / f64::from(n);
+        for i in 0..60 {
+            let at = [0.37, 0.71, 0.53].map(|s: f64| 1.5 + h * (s * f64::from(i * i + i + 1)).fract());
+            let asked = Arc::new(AtomicUsize::new(0));
+            let solid = Counted { ball: Ball { dim: 3, radius: 0.5 }, asked: asked.clone() };
+            let bodies = Balls::of(solid, PI / 6.0, vec![Pose::at(at)]);
+            let mut fraction = SolidFraction::new();
+            fraction.update(&lattice(3, [h; 3], 3.0), &bodies).unwrap();
+            let volume: f64 = fraction.nodes(BodyId(0)).iter().map(|n| n.fraction * n.volume).sum();
+            assert!((volume / (PI / 6.0) - 1.0).abs() < 4e-4, "{n}: {volume}");
+            let box_ = (n as usize + 5).pow(3);
+            let asked = asked.load(Relaxed);
+            assert!(2 * asked <= 3 * box_, "{n}: {asked} of {box_}");
+        }
+    }
 }

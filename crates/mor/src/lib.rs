@@ -3,4 +3,6 @@
 //! A matrix of snapshots has one row per unknown and one column per snapshot ([`MatRef`], column by column in memory).
 #![forbid(unsafe_code)]
 
+pub mod interpolation;
+
 pub use monomorphic::{Mat, MatRef};

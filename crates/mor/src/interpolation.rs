@@ -1,0 +1,29 @@
+//! From samples (xᵢ ∈ ℝᵈ, yᵢ ∈ ℝᵏ), i = 1…m, to a function y(x): the temporal coefficients of modes at any time and parameter.
+//!
+//! [`Samples`] are checked once; a [`Method`] makes an [`Interpolator`] of them, which predicts, differentiates and is saved
+//! ([`Record`]) and [`load`]ed bit for bit.
+//!
+//! ```
+//! use mor::Mat;
+//! use mor::interpolation::{Degree, Interpolator, Method, Samples, SplineParams};
+//! let times: Vec<f64> = (0..60).map(|i| f64::from(i) / 59.0).collect();
+//! let values = Mat::from_fn(2, 60, |row, i| if row == 0 { times[i].sin() } else { times[i].cos() });
+//! let spline = SplineParams::new(Degree::Quintic).fit(&Samples::of_one_input(&times, values.as_ref())?)?;
+//! let mut y = [0.0; 2];
+//! spline.predict(&[0.3], &mut y)?;
+//! assert!((y[0] - 0.3_f64.sin()).abs() < 1e-12);
+//! # Ok::<(), mor::interpolation::InterpolationError>(())
+//! ```
+mod error;
+mod interpolator;
+mod record;
+mod samples;
+mod scaling;
+mod spline;
+
+pub use error::InterpolationError;
+pub use interpolator::{Interpolator, Method, load};
+pub use record::{Record, RecordError};
+pub use samples::{Grid, Samples};
+pub use scaling::Scaling;
+pub use spline::{Degree, Spline, SplineParams};

@@ -1,0 +1,64 @@
+//! B-splines along one input.
+
+/// The B-splines of degree p ≤ 5 on knots t₀ ≤ t₁ ≤ …, the first and the last p + 1 of which are equal.
+#[derive(Clone, Debug)]
+pub(super) struct Axis {
+    pub(super) degree: usize,
+    pub(super) knots: Vec<f64>,
+}
+
+impl Axis {
+    /// Knots at the points, save the (p − 1)/2 next to each end.
+    pub(super) fn not_a_knot(points: &[f64], degree: usize) -> Self {
+        let [first, last] = [points[0], points[points.len() - 1]];
+        let inner = degree.div_ceil(2);
+        let mut knots = vec![first; degree + 1];
+        knots.extend(&points[inner..points.len() - inner]);
+        knots.extend(vec![last; degree + 1]);
+        Self { degree, knots }
+    }
+    /// How many B-splines there are.
+    pub(super) fn len(&self) -> usize {
+        self.knots.len() - self.degree - 1
+    }
+    pub(super) fn range(&self) -> [f64; 2] {
+        [self.knots[0], self.knots[self.knots.len() - 1]]
+    }
+    /// The s with t_s ≤ x < t_{s+1}, or the nearest where the knots are not equal: B_{s−p} … B_s are not zero there.
+    pub(super) fn span(&self, x: f64) -> usize {
+        let (p, n) = (self.degree, self.len());
+        p + self.knots[p + 1..n].partition_point(|t| *t <= x)
+    }
+    /// B_{s−p} … B_s at x, by their recurrence.
+    pub(super) fn values(&self, span: usize, x: f64) -> [f64; 6] {
+        self.values_of_degree(self.degree, span, x)
+    }
+    fn values_of_degree(&self, degree: usize, span: usize, x: f64) -> [f64; 6] {
+        let mut b = [0.0; 6];
+        b[0] = 1.0;
+        for p in 1..=degree {
+            let mut carried = 0.0;
+            for j in 0..p {
+                let [low, high] = [self.knots[span + 1 + j - p], self.knots[span + 1 + j]];
+                let share = b[j] / (high - low);
+                b[j] = carried + (high - x) * share;
+                carried = (x - low) * share;
+            }
+            b[p] = carried;
+        }
+        b
+    }
+    /// Their derivatives: B′_{i,p} = p (B_{i,p−1}/(t_{i+p} − t_i) − B_{i+1,p−1}/(t_{i+p+1} − t_{i+1})).
+    pub(super) fn slopes(&self, span: usize, x: f64) -> [f64; 6] {
+        let p = self.degree;
+        let lower = self.values_of_degree(p - 1, span, x);
+        let mut b = [0.0; 6];
+        for j in 0..p {
+            // Of B_{s−p+1+j, p−1}.
+            let share = p as f64 * lower[j] / (self.knots[span + 1 + j] - self.knots[span + 1 + j - p]);
+            b[j] -= share;
+            b[j + 1] += share;
+        }
+        b
+    }
+}

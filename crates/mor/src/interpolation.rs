@@ -16,6 +16,7 @@
 //! ```
 mod error;
 mod interpolator;
+mod rbf;
 mod record;
 mod samples;
 mod scaling;
@@ -23,6 +24,7 @@ mod spline;
 
 pub use error::InterpolationError;
 pub use interpolator::{Interpolator, Method, load};
+pub use rbf::{Kernel, Rbf, RbfParams, Shape};
 pub use record::{Record, RecordError};
 pub use samples::{Grid, Samples};
 pub use scaling::Scaling;

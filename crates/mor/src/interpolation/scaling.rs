@@ -1,4 +1,5 @@
 //! Numbers of order one.
+use super::{Record, RecordError};
 use crate::MatRef;
 
 /// z_i = (v_i − offset_i) · factor_i for every row i.
@@ -51,6 +52,17 @@ impl Scaling {
     #[must_use]
     pub fn factor(&self, i: usize) -> f64 {
         self.factors[i]
+    }
+
+    pub(super) fn record(&self) -> Record {
+        Record::new("scaling")
+            .with("offsets", self.offsets.iter().copied())
+            .with("factors", self.factors.iter().copied())
+    }
+    pub(super) fn from_record(record: &Record, rows: usize) -> Result<Self, RecordError> {
+        record.expect("scaling")?;
+        let take = |name| record.numbers_of(name, rows).map(<[f64]>::to_vec);
+        Ok(Self { offsets: take("offsets")?, factors: take("factors")? })
     }
 }
 

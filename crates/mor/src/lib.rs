@@ -4,3 +4,4 @@
 #![forbid(unsafe_code)]
 
 pub use monomorphic::{Mat, MatRef};
+pub mod shifted;

@@ -6,3 +6,4 @@
 pub mod interpolation;
 
 pub use monomorphic::{Mat, MatRef};
+pub mod shifted;

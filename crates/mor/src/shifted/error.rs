@@ -1,0 +1,102 @@
+//! What can go wrong.
+
+/// Why snapshots could not be decomposed or fields not be shifted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ShiftedError {
+    /// An axis of the grid is not usable.
+    #[error(
+        "axis {axis} has {cells} cells of {spacing}; give at least one cell and a positive, finite spacing"
+    )]
+    Axis {
+        /// Counted from 0.
+        axis: usize,
+        /// On it.
+        cells: usize,
+        /// Width of a cell.
+        spacing: f64,
+    },
+    /// The rows of the snapshots are no whole number of fields.
+    #[error(
+        "{rows} rows are not a whole number of fields of {cells} cells; stack the components of a vector one below the other"
+    )]
+    Rows {
+        /// Of the snapshots.
+        rows: usize,
+        /// Of the grid.
+        cells: usize,
+    },
+    /// There are not as many snapshots as shifts.
+    #[error(
+        "there are {snapshots} snapshots but shifts of {shifts}; give each frame one motion per snapshot"
+    )]
+    Snapshots {
+        /// Columns of the data.
+        snapshots: usize,
+        /// Motions of each frame.
+        shifts: usize,
+    },
+    /// Nothing to decompose.
+    #[error(
+        "there is nothing to decompose: {snapshots} snapshots in {frames} frames; give at least one of each"
+    )]
+    Empty {
+        /// Columns of the data.
+        snapshots: usize,
+        /// Frames of reference.
+        frames: usize,
+    },
+    /// A value is NaN or infinite.
+    #[error("row {row} of snapshot {snapshot} is {value}; remove or repair this snapshot")]
+    NotFinite {
+        /// Column of the data.
+        snapshot: usize,
+        /// Row of the data.
+        row: usize,
+        /// What is there.
+        value: f64,
+    },
+    /// A frame's motion is NaN or infinite.
+    #[error("the motion of frame {frame} at snapshot {snapshot} is not finite")]
+    Motion {
+        /// Of reference.
+        frame: usize,
+        /// Column of the data.
+        snapshot: usize,
+    },
+    /// The phase of a wave vector shifts around a period only.
+    #[error(
+        "frame {frame} moves by {distance} along axis {axis} at snapshot {snapshot}, which is not periodic: shift by Lagrange polynomials or splines"
+    )]
+    NotPeriodic {
+        /// Of reference.
+        frame: usize,
+        /// Column of the data.
+        snapshot: usize,
+        /// Counted from 0.
+        axis: usize,
+        /// Of the frame.
+        distance: f64,
+    },
+    /// A frame turns where only translations are possible.
+    #[error(
+        "frame {frame} turns by {angle} rad at snapshot {snapshot}; only translations are diagonal in Fourier space"
+    )]
+    Turns {
+        /// Of reference.
+        frame: usize,
+        /// Column of the data.
+        snapshot: usize,
+        /// Of the frame.
+        angle: f64,
+    },
+    /// A frame leaves the plane or the line of the grid.
+    #[error("frame {frame} moves along axis {axis} at snapshot {snapshot}, of which the grid has one cell")]
+    OffGrid {
+        /// Of reference.
+        frame: usize,
+        /// Column of the data.
+        snapshot: usize,
+        /// Counted from 0.
+        axis: usize,
+    },
+}

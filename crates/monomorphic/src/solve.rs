@@ -95,6 +95,12 @@ impl Qr {
         qr::factor::qr_in_place(a.as_mut(), coefficients.as_mut(), Par::Seq, stack, Default::default());
         Self { factors: a, coefficients }
     }
+    /// R, square.
+    #[must_use]
+    pub fn upper(&self) -> Mat<f64> {
+        let n = self.factors.ncols();
+        Mat::from_fn(n, n, |i, j| if i <= j { self.factors[(i, j)] } else { 0.0 })
+    }
     /// The diagonal of R: zeros to round-off where a column depends on those before.
     pub fn diagonal(&self) -> impl Iterator<Item = f64> + '_ {
         (0..self.factors.ncols()).map(|i| self.factors[(i, i)])

@@ -3,7 +3,8 @@
 //! A matrix of snapshots has one row per unknown and one column per snapshot ([`MatRef`], column by column in memory).
 #![forbid(unsafe_code)]
 
+pub mod galerkin;
 pub mod interpolation;
+pub mod shifted;
 
 pub use monomorphic::{Mat, MatRef};
-pub mod shifted;

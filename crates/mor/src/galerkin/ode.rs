@@ -33,7 +33,9 @@ pub enum OdeError {
         before: f64,
     },
     /// A tolerance that is none.
-    #[error("the tolerances are {relative} (relative) and {absolute}; both must be finite, not negative and not both 0")]
+    #[error(
+        "the tolerances are {relative} (relative) and {absolute}; both must be finite, not negative and not both 0"
+    )]
     Tolerance {
         /// Relative.
         relative: f64,
@@ -41,7 +43,9 @@ pub enum OdeError {
         absolute: f64,
     },
     /// The solution grows beyond all numbers.
-    #[error("the solution is not finite soon after t = {time}, at steps of {step:e}; the model is unstable there: take more modes, or a model with dissipation")]
+    #[error(
+        "the solution is not finite soon after t = {time}, at steps of {step:e}; the model is unstable there: take more modes, or a model with dissipation"
+    )]
     NotFinite {
         /// Last time at which all was well.
         time: f64,
@@ -49,7 +53,9 @@ pub enum OdeError {
         step: f64,
     },
     /// Steps get too short or too many.
-    #[error("{steps} steps were made up to t = {time}, the last of {step:e}; the equation is stiff or has a jump there, or the tolerances are too small")]
+    #[error(
+        "{steps} steps were made up to t = {time}, the last of {step:e}; the equation is stiff or has a jump there, or the tolerances are too small"
+    )]
     Steps {
         /// Where.
         time: f64,
@@ -267,9 +273,12 @@ mod tests {
     #[test]
     fn polynomials_are_exact() {
         for (degree, least) in [(4, 1e-13), (5, 1e-6)] {
-            let ode = Given(1, |t: f64, _: &[f64], out: &mut [f64]| out[0] = f64::from(degree) * t.powi(degree - 1));
+            let ode = Given(1, |t: f64, _: &[f64], out: &mut [f64]| {
+                out[0] = f64::from(degree) * t.powi(degree - 1)
+            });
             let y = DormandPrince::default().solve(&ode, &[0.0], &times(50, 2.0)).unwrap();
-            let off = (0..=50).map(|j| (y[(0, j)] - (j as f64 / 25.0).powi(degree)).abs()).fold(0.0, f64::max);
+            let off =
+                (0..=50).map(|j| (y[(0, j)] - (j as f64 / 25.0).powi(degree)).abs()).fold(0.0, f64::max);
             assert!(off < least, "{degree}: {off}");
             assert!((y[(0, 50)] - 2.0_f64.powi(degree)).abs() < 1e-12);
         }
@@ -280,13 +289,18 @@ mod tests {
         let solver = DormandPrince::default();
         let burst = Given(1, |_: f64, y: &[f64], out: &mut [f64]| out[0] = y[0] * y[0]);
         match solver.solve(&burst, &[1.0], &times(10, 2.0)) {
-            Err(OdeError::NotFinite { time, .. } | OdeError::Steps { time, .. }) => assert!((time - 1.0).abs() < 1e-3, "{time}"),
+            Err(OdeError::NotFinite { time, .. } | OdeError::Steps { time, .. }) => {
+                assert!((time - 1.0).abs() < 1e-3, "{time}")
+            }
             other => panic!("{other:?}"),
         }
         let few = DormandPrince { most_steps: 3, ..solver };
         let fine = Given(1, |_: f64, y: &[f64], out: &mut [f64]| out[0] = -y[0]);
         assert!(matches!(few.solve(&fine, &[1.0], &times(10, 2.0)), Err(OdeError::Steps { steps: 4, .. })));
-        assert!(matches!(solver.solve(&fine, &[1.0], &[0.0, 1.0, 0.5]), Err(OdeError::Times { index: 2, .. })));
+        assert!(matches!(
+            solver.solve(&fine, &[1.0], &[0.0, 1.0, 0.5]),
+            Err(OdeError::Times { index: 2, .. })
+        ));
         assert!(matches!(solver.solve(&fine, &[1.0], &[f64::NAN]), Err(OdeError::Times { .. })));
         assert!(matches!(solver.solve(&fine, &[], &[0.0, 1.0]), Err(OdeError::Shape { .. })));
         let senseless = DormandPrince { relative: -1.0, ..solver };

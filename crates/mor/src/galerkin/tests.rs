@@ -18,7 +18,7 @@ fn orthonormal(mut a: Mat<f64>, weights: &[f64]) -> Mat<f64> {
             };
             for i in 0..j {
                 let share = product(&a, i);
-                (0..a.nrows()).for_each(|k| a[(k, j)] = a[(k, j)] - share * a[(k, i)]);
+                (0..a.nrows()).for_each(|k| a[(k, j)] -= share * a[(k, i)]);
             }
             let norm = product(&a, j).sqrt();
             (0..a.nrows()).for_each(|k| a[(k, j)] /= norm);

@@ -14,6 +14,7 @@ mod preset;
 mod removal;
 mod restart;
 mod skipping;
+mod snapshots;
 mod strategies;
 mod stretched;
 mod suspension;

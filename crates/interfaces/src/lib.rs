@@ -1,7 +1,7 @@
 //! The words that the siltflow crates share, and nothing else: where things are ([`Pose`],
 //! [`Aabb`], [`Periods`]), how they move ([`Twist`]) and are pushed ([`Wrench`]), what a body
 //! owes its neighbours ([`Solid`], [`Kinematics`], [`Bodies`], [`Dynamics`]), how a flow shows
-//! its velocity ([`Lattice`], [`Nodes`], [`VelocityField`]) and its cells ([`MeshGeometry`]), what a restart needs ([`Checkpoint`]), what a turbulence model asks of a flow
+//! its velocity ([`Lattice`], [`Nodes`], [`VelocityField`]) and its cells ([`MeshGeometry`]), what a restart needs ([`Checkpoint`]), who takes snapshots ([`SnapshotSink`]), what a turbulence model asks of a flow
 //! ([`Transport`], [`Closure`]) and is told of walls ([`WallRow`]), and the container of the files that ParaView reads ([`vtk`]).
 //!
 //! The numerical crates depend on this one and on none of each other, so each can be taken
@@ -26,6 +26,7 @@ mod mesh;
 mod nodes;
 mod renumbering;
 mod restart;
+mod snapshots;
 mod solid;
 mod transport;
 pub mod vtk;
@@ -40,6 +41,7 @@ pub use mesh::{Cell, MeshGeometry};
 pub use nodes::Nodes;
 pub use renumbering::Renumbering;
 pub use restart::{Checkpoint, RestartError};
+pub use snapshots::SnapshotSink;
 pub use solid::{Polyhedron, Solid, SurfaceElement};
 pub use transport::{Closure, Equation, SolveError, SolveInfo, Transport};
 pub use wall_row::{WallPoint, WallRow};

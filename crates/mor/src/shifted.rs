@@ -1,10 +1,11 @@
 //! Shifted proper orthogonal decomposition: fields that several frames of reference carry along.
 //!
-//! Q(x, t_j) ≈ Σ_k T^{Δ_k(t_j)} [ Σ_i σ_i^k a_i^k(t_j) φ_i^k(x) ] (Reiss, Schulze, Sesterhenn & Mehrmann 2018; equation (9) of Kubíčková et al. 2023)
+//! Q(x, t_j) ≈ Σ_k T^{Δ_k(t_j)} [ Σ_i σ_i^k a_i^k(t_j) φ_i^k(x) ] (Reiss, Schulze, Sesterhenn & Mehrmann 2018; equation (9) of Isoz et al. 2023)
 //!
 //! T^s q (x) = q(x − s): what frame k carries is at rest in it, and moved by Δ_k(t_j) in snapshot j.
 mod axis;
 mod error;
+mod frames;
 mod grid;
 mod interpolator;
 mod motion;
@@ -14,6 +15,7 @@ mod stencil;
 mod tests;
 
 pub use error::ShiftedError;
+pub use frames::{Decomposition, Frame, FrameOperators, Progress, StopReason};
 pub use grid::Grid;
 pub use interpolator::Interpolator;
 pub use motion::{Motion, Motions, Shifts};

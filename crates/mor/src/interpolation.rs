@@ -21,6 +21,7 @@ mod record;
 mod samples;
 mod scaling;
 mod spline;
+mod varying;
 
 pub use error::InterpolationError;
 pub use interpolator::{Interpolator, Method, load};
@@ -29,3 +30,4 @@ pub use record::{Record, RecordError};
 pub use samples::{Grid, Samples};
 pub use scaling::Scaling;
 pub use spline::{Degree, Spline, SplineParams};
+pub use varying::{Varying, VaryingParams};

@@ -5,6 +5,7 @@
 
 pub mod galerkin;
 pub mod interpolation;
+pub mod models;
 pub mod shifted;
 
 pub use monomorphic::{Mat, MatRef};

@@ -1,0 +1,13 @@
+//! Models that predict a whole field at any time and parameter from a few numbers: modes, and functions that interpolate their coefficients (figure 8 of Isoz et al. 2023).
+//!
+//! [`Spodiann`]: modes that frames of reference carry along, with functions for their coefficients and for the frames' paths.
+mod assessment;
+mod coefficients;
+mod error;
+mod modes;
+mod paths;
+mod spodiann;
+
+pub use assessment::Assessment;
+pub use error::ModelError;
+pub use spodiann::{Spodiann, SpodiannParams};

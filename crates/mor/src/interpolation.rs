@@ -16,6 +16,7 @@
 //! ```
 mod error;
 mod interpolator;
+mod network;
 mod rbf;
 mod record;
 mod samples;
@@ -24,6 +25,7 @@ mod spline;
 
 pub use error::InterpolationError;
 pub use interpolator::{Interpolator, Method, load};
+pub use network::{Activation, Adam, Epoch, Fourier, Network, NetworkParams, Report, Stop};
 pub use rbf::{Kernel, Rbf, RbfParams, Shape};
 pub use record::{Record, RecordError};
 pub use samples::{Grid, Samples};

@@ -16,6 +16,7 @@
 //! ```
 mod error;
 mod interpolator;
+mod network;
 mod rbf;
 mod record;
 mod samples;
@@ -25,6 +26,7 @@ mod varying;
 
 pub use error::InterpolationError;
 pub use interpolator::{Interpolator, Method, load};
+pub use network::{Activation, Adam, Epoch, Fourier, Network, NetworkParams, Report, Stop};
 pub use rbf::{Kernel, Rbf, RbfParams, Shape};
 pub use record::{Record, RecordError};
 pub use samples::{Grid, Samples};

@@ -1,5 +1,5 @@
 //! What every method owes, and every function made by one.
-use super::{InterpolationError, Rbf, Record, RecordError, Samples, Spline, Varying};
+use super::{InterpolationError, Network, Rbf, Record, RecordError, Samples, Spline, Varying};
 use crate::{Mat, MatRef};
 
 /// A way to make a function of samples, with all its parameters.
@@ -63,6 +63,7 @@ pub fn load(record: &Record) -> Result<Box<dyn Interpolator>, RecordError> {
         Spline::KIND => Ok(Box::new(Spline::from_record(record)?)),
         Rbf::KIND => Ok(Box::new(Rbf::from_record(record)?)),
         Varying::KIND => Ok(Box::new(Varying::from_record(record)?)),
+        Network::KIND => Ok(Box::new(Network::from_record(record)?)),
         kind => Err(RecordError::Kind { found: kind.into(), expected: "an interpolator".into() }),
     }
 }

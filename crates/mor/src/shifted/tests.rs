@@ -1,3 +1,6 @@
+mod algorithms;
+mod operators;
+
 use super::Interpolation::{self, *};
 use super::{Grid, Interpolator, ShiftedError};
 use interfaces::Vector;

@@ -156,6 +156,26 @@ impl Frame {
         Self { modes, singular_values, coefficients }
     }
 
+    /// Singular values less `threshold` of those that are greater: the minimum of ½‖X − field‖² + threshold ‖X‖_*.
+    pub(super) fn thresholded(field: MatRef<'_, f64>, threshold: f64) -> Self {
+        let Some(vectors) = gram_vectors(field) else {
+            return Self::nothing(field.nrows(), field.ncols());
+        };
+        let wide = field.nrows() < field.ncols();
+        let short = if wide { field.transpose() } else { field };
+        let images = product(short, vectors.as_ref());
+        let norms: Vec<f64> = images.col_iter().map(|c| c.norm_l2()).collect();
+        let mut kept: Vec<usize> = (0..norms.len()).filter(|&i| norms[i] > threshold).collect();
+        kept.sort_by(|&i, &j| norms[j].total_cmp(&norms[i]));
+        let r = kept.len();
+        let u = Mat::from_fn(images.nrows(), r, |i, j| images[(i, kept[j])] / norms[kept[j]]);
+        let v = Mat::from_fn(vectors.nrows(), r, |i, j| vectors[(i, kept[j])]);
+        let singular_values = kept.iter().map(|&i| norms[i] - threshold).collect();
+        let (modes, coefficients) =
+            if wide { (v, u.transpose().to_owned()) } else { (u, v.transpose().to_owned()) };
+        Self { modes, singular_values, coefficients }
+    }
+
     /// `to` += factor Φ Σ A.
     pub(super) fn add_to(&self, to: MatMut<'_, f64>, factor: f64) {
         let mut scaled = self.scaled_coefficients();

@@ -127,4 +127,14 @@ pub enum ShiftedError {
         /// Columns of the data.
         snapshots: usize,
     },
+    /// A forward step is so long that the iteration diverges, or none, or a weight is.
+    #[error("{name} is {value}; it must be positive, finite and below {limit}")]
+    Parameter {
+        /// Which one.
+        name: &'static str,
+        /// Given.
+        value: f64,
+        /// It has to be below.
+        limit: f64,
+    },
 }

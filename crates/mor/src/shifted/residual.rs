@@ -115,7 +115,7 @@ impl<'a> Problem<'a> {
 pub(super) struct Limits {
     /// Of the relative error.
     pub(super) tolerance: f64,
-    /// A step that makes the error smaller by less than this part is none.
+    /// A step that makes what is to be minimised smaller by less than this part is none.
     pub(super) stagnation: f64,
     pub(super) max_steps: usize,
 }
@@ -125,15 +125,23 @@ pub(super) struct Course<'a> {
     limits: Limits,
     observer: Observer<'a>,
     pub(super) history: Vec<Progress>,
+    /// What is to be minimised, after every step.
+    merits: Vec<f64>,
 }
 
 impl<'a> Course<'a> {
     pub(super) fn new(limits: Limits, observer: Observer<'a>) -> Self {
-        Self { limits, observer, history: vec![] }
+        Self { limits, observer, history: vec![], merits: vec![] }
     }
 
-    /// After a step.
+    /// After a step that makes the error smaller.
     pub(super) fn note(&mut self, error: f64, frames: &[Frame]) -> Option<StopReason> {
+        self.note_merit(error, error, frames)
+    }
+
+    /// After a step that makes something else smaller.
+    pub(super) fn note_merit(&mut self, error: f64, merit: f64, frames: &[Frame]) -> Option<StopReason> {
+        self.merits.push(merit);
         let rank = frames.iter().map(Frame::rank).sum();
         let progress = Progress { step: self.history.len() + 1, error, rank };
         self.history.push(progress);
@@ -142,10 +150,10 @@ impl<'a> Course<'a> {
         }
         let Limits { tolerance, stagnation, max_steps } = self.limits;
         // Over three steps, so that one bad step is not the end.
-        let before = self.history.len().checked_sub(4).map(|i| self.history[i].error);
+        let before = self.merits.len().checked_sub(4).map(|i| self.merits[i]);
         if error <= tolerance {
             Some(StopReason::Tolerance)
-        } else if before.is_some_and(|before| before - error <= 3.0 * stagnation * before) {
+        } else if before.is_some_and(|before| before - merit <= 3.0 * stagnation * before) {
             Some(StopReason::Stagnation)
         } else if self.history.len() >= max_steps {
             Some(StopReason::Steps)

@@ -1,5 +1,6 @@
 mod algorithms;
 mod operators;
+mod proximal;
 
 use super::Interpolation::{self, *};
 use super::{Grid, Interpolator, ShiftedError};

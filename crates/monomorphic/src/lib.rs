@@ -10,7 +10,7 @@ mod solve;
 mod sparse;
 
 pub use dense::{add_product, inverse, self_adjoint_eigenvectors};
-pub use faer::{Mat, MatMut, MatRef};
+pub use faer::{ColRef, Mat, MatMut, MatRef};
 pub use least_squares::LeastSquares;
 pub use solve::{DenseLu, Qr, solve_positive};
 pub use sparse::{Cholesky, FactorError, Lu, Pattern};

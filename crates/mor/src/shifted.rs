@@ -4,19 +4,33 @@
 //!
 //! T^s q (x) = q(x − s): what frame k carries is at rest in it, and moved by Δ_k(t_j) in snapshot j.
 mod axis;
+mod dense;
+mod descent;
 mod error;
 mod frames;
+mod gather;
 mod grid;
 mod interpolator;
 mod motion;
+mod multi_frame;
+mod operators;
+mod proximal;
+mod residual;
 mod spline;
 mod stencil;
+mod tangent;
 #[cfg(test)]
 mod tests;
+mod turn;
 
+pub use descent::JointDescent;
 pub use error::ShiftedError;
 pub use frames::{Decomposition, Frame, FrameOperators, Progress, StopReason};
 pub use grid::Grid;
 pub use interpolator::Interpolator;
 pub use motion::{Motion, Motions, Shifts};
+pub use multi_frame::MultiFrame;
+pub use operators::GridFrames;
+pub use proximal::Proximal;
+pub use residual::Observer;
 pub use stencil::Interpolation;

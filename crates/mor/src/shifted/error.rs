@@ -99,4 +99,42 @@ pub enum ShiftedError {
         /// Counted from 0.
         axis: usize,
     },
+    /// The snapshots have another number of rows than the operators or the frames to start from.
+    #[error("the snapshots have {rows} rows where {expected} are expected; use operators made for them")]
+    Unknowns {
+        /// Of the data.
+        rows: usize,
+        /// By the operators.
+        expected: usize,
+    },
+    /// Not one rank, or not one start, for each frame.
+    #[error("{ranks} ranks or fields are given for {frames} frames; give one for each")]
+    Ranks {
+        /// Given.
+        ranks: usize,
+        /// Of reference.
+        frames: usize,
+    },
+    /// An entry is beyond the snapshots.
+    #[error("there is no row {row} of snapshot {snapshot}: there are {rows} rows and {snapshots} snapshots")]
+    Entry {
+        /// Asked for.
+        row: usize,
+        /// Asked for.
+        snapshot: usize,
+        /// Of the data.
+        rows: usize,
+        /// Columns of the data.
+        snapshots: usize,
+    },
+    /// A forward step is so long that the iteration diverges, or none, or a weight is.
+    #[error("{name} is {value}; it must be positive, finite and below {limit}")]
+    Parameter {
+        /// Which one.
+        name: &'static str,
+        /// Given.
+        value: f64,
+        /// It has to be below.
+        limit: f64,
+    },
 }

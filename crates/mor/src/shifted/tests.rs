@@ -1,3 +1,7 @@
+mod algorithms;
+mod operators;
+mod proximal;
+
 use super::Interpolation::{self, *};
 use super::{Grid, Interpolator, ShiftedError};
 use interfaces::Vector;

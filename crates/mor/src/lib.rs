@@ -6,6 +6,7 @@
 pub mod galerkin;
 pub mod interpolation;
 pub mod models;
+pub mod pod;
 pub mod shifted;
 
 pub use monomorphic::{Mat, MatRef};

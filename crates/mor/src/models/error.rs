@@ -1,5 +1,6 @@
 //! What can go wrong.
 use crate::interpolation::{InterpolationError, RecordError};
+use crate::pod::PodError;
 use crate::shifted::ShiftedError;
 
 /// Why a model could not be made, asked, saved or loaded.
@@ -18,6 +19,9 @@ pub enum ModelError {
     /// The function of the coefficients or of the paths.
     #[error(transparent)]
     Interpolation(#[from] InterpolationError),
+    /// The modes.
+    #[error(transparent)]
+    Pod(#[from] PodError),
     /// The frames of reference.
     #[error(transparent)]
     Shifted(#[from] ShiftedError),

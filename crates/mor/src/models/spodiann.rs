@@ -5,7 +5,10 @@ use super::modes::write_modes;
 use super::paths::Paths;
 use super::{Assessment, ModelError};
 use crate::interpolation::{Method, Record, RecordError, Samples};
-use crate::shifted::{Decomposition, Grid, Interpolation, Interpolator, Motion, ShiftedError, Shifts};
+use crate::shifted::{
+    Decomposition, FrameOperators, Grid, GridFrames, Interpolation, Interpolator, Motion, Motions,
+    ShiftedError, Shifts,
+};
 use crate::{Mat, MatRef};
 use interfaces::Point;
 use monomorphic::Qr;
@@ -134,12 +137,12 @@ impl Spodiann {
     /// The field at time and parameters x into `out`.
     ///
     /// # Errors
-    /// [`ModelError::Shape`], [`ModelError::Interpolation`], [`ShiftedError::Turns`].
+    /// [`ModelError::Shape`], [`ModelError::Interpolation`]; [`ModelError::Shifted`] if a frame leaves the grid's plane.
     pub fn predict(&self, x: &[f64], out: &mut [f64]) -> Result<(), ModelError> {
         ModelError::same("rows", self.rows, out.len())?;
         out.fill(0.0);
         let mut field = vec![0.0; self.rows];
-        for (k, (frame, motion)) in self.frames.iter().zip(self.motions(x)?).enumerate() {
+        for (frame, motion) in self.frames.iter().zip(self.motions(x)?) {
             let Some(function) = &frame.coefficients else { continue };
             let mut c = vec![0.0; function.outputs()];
             function.predict(&frame.inputs(x, &motion, self.interpolator.grid()), &mut c)?;
@@ -147,7 +150,7 @@ impl Spodiann {
             for (i, c) in c.iter().enumerate() {
                 field.iter_mut().zip(frame.modes.col_as_slice(i)).for_each(|(f, mode)| *f += c * mode);
             }
-            let moved = self.carry(k, &motion, &field)?;
+            let moved = self.carry(&motion, &field)?;
             out.iter_mut().zip(moved).for_each(|(out, f)| *out += f);
         }
         Ok(())
@@ -199,7 +202,7 @@ impl Spodiann {
         let mut columns = Vec::new();
         for (k, frame) in self.frames.iter().enumerate() {
             for i in 0..frame.modes.ncols() {
-                columns.push(self.carry(k, &motion(k), frame.modes.col_as_slice(i))?);
+                columns.push(self.carry(&motion(k), frame.modes.col_as_slice(i))?);
             }
         }
         let r = columns.len();
@@ -217,11 +220,15 @@ impl Spodiann {
         Ok(nearest)
     }
 
-    fn carry(&self, frame: usize, motion: &Motion, field: &[f64]) -> Result<Vec<f64>, ModelError> {
-        if !motion.is_translation() {
-            return Err(ShiftedError::Turns { frame, snapshot: 0, angle: motion.rotation.angle() }.into());
+    fn carry(&self, motion: &Motion, field: &[f64]) -> Result<Vec<f64>, ModelError> {
+        if motion.is_translation() {
+            return Ok(self.interpolator.shift(motion.displacement, field));
         }
-        Ok(self.interpolator.shift(motion.displacement, field))
+        let one = Motions::by(1, 1, |_, _| *motion);
+        let frame = GridFrames::new(*self.interpolator.grid(), self.interpolation, &one, self.rows)?;
+        let mut column = Mat::from_fn(self.rows, 1, |row, _| field[row]);
+        frame.to_lab(0, column.as_mut());
+        Ok(column.col_as_slice(0).to_vec())
     }
 
     /// All of it, for a file.

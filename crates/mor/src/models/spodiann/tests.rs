@@ -132,3 +132,49 @@ fn what_does_not_fit_is_told() {
         Err(ModelError::Interpolation(InterpolationError::Point { .. }))
     ));
 }
+
+/// A body that turns and moves: its path's rotation is interpolated, too, beyond half a turn.
+#[test]
+fn frames_that_turn() {
+    let times = times(41);
+    let turning = |times: &[f64]| {
+        let motion = |t: f64| Motion {
+            displacement: Vector::new(3.0 * t, -2.0 * t, 0.0),
+            rotation: interfaces::Rotation::from_scaled_axis(Vector::new(0.0, 0.0, 5.0 * t * t)),
+            centre: Point::new(24.0, 15.0, 0.0),
+        };
+        let all: Vec<Motion> = times.iter().map(|t| motion(*t)).collect();
+        Motions::by(1, all.len(), move |_, j| all[j])
+    };
+    // A long spot.
+    let spot = |x: f64, y: f64| (-((x - 24.0) / 3.8).powi(2) - ((y - 15.0) / 2.5).powi(2)).exp();
+    let rows = CELLS[0] * CELLS[1];
+    let mode = Mat::from_fn(rows, 1, |row, _| spot(grid().centre(row).x, grid().centre(row).y));
+    let size = mode.norm_l2();
+    let root = (times.len() as f64).sqrt();
+    let frame = Frame {
+        modes: Mat::from_fn(rows, 1, |row, _| mode[(row, 0)] / size),
+        singular_values: vec![size * root],
+        coefficients: Mat::from_fn(1, times.len(), |_, _| 1.0 / root),
+    };
+    let decomposition = Decomposition {
+        frames: vec![frame],
+        noise: None,
+        history: Vec::new(),
+        stopped: StopReason::Tolerance,
+    };
+    let how = (grid(), Interpolation::Spectral);
+    let params = SpodiannParams::default();
+    let model = Spodiann::new(row(&times).as_ref(), &decomposition, how, &turning(&times), params).unwrap();
+    let t = 0.913;
+    let inverse = turning(&[t]).motion(0, 0).inverse();
+    let mut out = vec![0.0; rows];
+    model.predict(&[t], &mut out).unwrap();
+    let mut worst = 0.0_f64;
+    for (i, found) in out.iter().enumerate() {
+        let (x, c) = (grid().centre(i), inverse.centre);
+        let back = c + inverse.displacement + inverse.rotation * (x - c);
+        worst = worst.max((found - spot(back.x, back.y)).abs());
+    }
+    assert!(worst < 1e-4, "{worst:e}");
+}

@@ -34,35 +34,25 @@ fn main() {
     let s5 = salt(0.05);
     let s12 = salt(0.125);
     for (name, q) in [("clean", &clean), ("gauss", &gaussian), ("salt5", &s5), ("salt12", &s12)] {
-        let sum: f64 = q.norm_l1();
-        for (noise, factor) in
-            [(false, 1.0), (false, 0.1), (false, 0.01), (true, 1.0), (true, 0.1), (true, 0.01)]
-        {
-            let start = ProcessTime::now();
-            let mut alm = Proximal::augmented_lagrangian()
-                .tolerance(1e-5)
-                .max_steps(200)
-                .multiplier(factor * (m * n) as f64 / (4.0 * sum));
-            if noise {
-                alm = alm.with_noise();
-            }
-            let d = alm.solve(&op, q.as_ref(), None, &mut |_| ControlFlow::Continue(())).unwrap();
-            println!(
-                "{name} noise {noise} {factor}: {} steps, {:?}, ranks {:?} error {:.2e} {:.2} s",
-                d.history.len(),
-                d.stopped,
-                d.ranks(),
-                d.relative_error(&op, clean.as_ref()),
-                start.elapsed().as_secs_f64()
-            );
-            for f in &d.frames {
-                println!("   {:.3?}", &f.singular_values[..f.rank().min(12)]);
-            }
-            if let Some(e) = &d.noise {
+        for noise in [Noise::Dense, Noise::Sparse] {
+            for ranks in [Ranks::Given(vec![1, 1]), Ranks::Found] {
+                let start = ProcessTime::now();
+                let pod = ShiftedPod::new(grid, Interpolation::Spectral).noise(noise).ranks(ranks.clone());
+                let d = pod.solve(&shifts, q.as_ref(), None, &mut |_| ControlFlow::Continue(())).unwrap();
                 println!(
-                    "   nonzero {}",
-                    (0..n).map(|j| (0..m).filter(|&i| e[(i, j)] != 0.0).count()).sum::<usize>()
+                    "{name} {noise:?} {ranks:?}: {} steps, {:?}, ranks {:?} error {:.2e} {:.2} s",
+                    d.history.len(),
+                    d.stopped,
+                    d.ranks(),
+                    d.relative_error(&op, clean.as_ref()),
+                    start.elapsed().as_secs_f64()
                 );
+                if let Some(e) = &d.noise {
+                    println!(
+                        "   nonzero {}",
+                        (0..n).map(|j| (0..m).filter(|&i| e[(i, j)] != 0.0).count()).sum::<usize>()
+                    );
+                }
             }
         }
     }

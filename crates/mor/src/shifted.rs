@@ -15,13 +15,16 @@ mod motion;
 mod multi_frame;
 mod operators;
 mod proximal;
+mod rank_search;
 mod residual;
+mod shifted_pod;
 mod spline;
 mod stencil;
 mod tangent;
 #[cfg(test)]
 mod tests;
 mod turn;
+mod waves;
 
 pub use descent::JointDescent;
 pub use error::ShiftedError;
@@ -33,4 +36,5 @@ pub use multi_frame::MultiFrame;
 pub use operators::GridFrames;
 pub use proximal::Proximal;
 pub use residual::Observer;
+pub use shifted_pod::{Noise, Ranks, ShiftedPod};
 pub use stencil::Interpolation;

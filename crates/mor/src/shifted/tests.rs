@@ -1,6 +1,7 @@
 mod algorithms;
 mod operators;
 mod proximal;
+mod shifted_pod;
 
 use super::Interpolation::{self, *};
 use super::{Grid, Interpolator, ShiftedError};

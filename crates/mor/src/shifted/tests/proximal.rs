@@ -5,7 +5,7 @@ use crate::shifted::{Interpolation, JointDescent, Proximal, ShiftedError, StopRe
 use monomorphic::Mat;
 
 /// Zeros and ones in a part of the entries.
-fn salt_and_pepper(clean: &Mat<f64>, part: f64, seed: u64) -> Mat<f64> {
+pub(super) fn salt_and_pepper(clean: &Mat<f64>, part: f64, seed: u64) -> Mat<f64> {
     let numbers = random(clean.nrows() * clean.ncols(), seed);
     Mat::from_fn(clean.nrows(), clean.ncols(), |i, j| {
         let u = 0.5 + 0.5 * numbers[i + clean.nrows() * j];

@@ -1,0 +1,371 @@
+//! The usual way to decompose snapshots.
+use super::dense::thin;
+use super::rank_search::{RankSearch, deviation};
+use super::residual::{Observer, Problem};
+use super::waves::Waves;
+use super::{
+    Decomposition, Frame, FrameOperators, Grid, GridFrames, Interpolation, JointDescent, Motion, Progress,
+    Proximal, ShiftedError, Shifts, StopReason,
+};
+use monomorphic::{Mat, MatRef};
+use std::ops::ControlFlow;
+
+/// How many modes each frame has.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Ranks {
+    /// So many.
+    Given(Vec<usize>),
+    /// As few as reach the tolerance, or as many as stand out of the noise.
+    Found,
+}
+
+/// What the snapshots hold besides what the frames carry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Noise {
+    /// Nothing, or noise of all entries alike, which least squares average out.
+    Dense,
+    /// Some entries are wrong, by any amount.
+    Sparse,
+}
+
+/// Shifted proper orthogonal decomposition, by the algorithms that suit the snapshots.
+///
+/// 1. Wrong entries, if there may be any, and the modes to start from are told by the augmented Lagrangian of [`Proximal`].
+/// 2. Ranks that are not given are found by adding modes that stand out of the noise, and leaving out those that are not needed; first
+///    on some of the snapshots if there are many.
+/// 3. [`JointDescent`] fits all modes to the entries that are not wrong: nothing is left of the bias of the nuclear norm.
+///
+/// Frames that only move, with [`Interpolation::Spectral`], are decomposed in the space of wave vectors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShiftedPod {
+    grid: Grid,
+    interpolation: Interpolation,
+    ranks: Ranks,
+    noise: Noise,
+    rank_tolerance: f64,
+    tolerance: f64,
+    max_rank: usize,
+    max_steps: usize,
+}
+
+/// The operators of some of the snapshots.
+type OperatorsOf<'a> = dyn Fn(&[usize]) -> Result<Box<dyn FrameOperators>, ShiftedError> + 'a;
+
+/// More snapshots than this are thinned out to find the ranks.
+const MANY: usize = 150;
+const SOME: usize = 75;
+
+impl ShiftedPod {
+    /// Ranks found for a relative error of 1e-4, up to 20 in a frame; no wrong entries; fitted to a relative error of 1e-10, in 100 steps at most.
+    #[must_use]
+    pub fn new(grid: Grid, interpolation: Interpolation) -> Self {
+        Self {
+            grid,
+            interpolation,
+            ranks: Ranks::Found,
+            noise: Noise::Dense,
+            rank_tolerance: 1e-4,
+            tolerance: 1e-10,
+            max_rank: 20,
+            max_steps: 100,
+        }
+    }
+
+    /// With so many modes.
+    #[must_use]
+    pub fn ranks(mut self, ranks: Ranks) -> Self {
+        self.ranks = ranks;
+        self
+    }
+
+    /// With such noise.
+    #[must_use]
+    pub fn noise(mut self, noise: Noise) -> Self {
+        self.noise = noise;
+        self
+    }
+
+    /// Ranks that are found reach this relative error, if noise lets them.
+    #[must_use]
+    pub fn rank_tolerance(mut self, error: f64) -> Self {
+        self.rank_tolerance = error;
+        self
+    }
+
+    /// The fit stops at this relative error.
+    #[must_use]
+    pub fn tolerance(mut self, error: f64) -> Self {
+        self.tolerance = error;
+        self
+    }
+
+    /// Ranks that are found are no larger than this.
+    #[must_use]
+    pub fn max_rank(mut self, rank: usize) -> Self {
+        self.max_rank = rank;
+        self
+    }
+
+    /// Steps of any one iteration, at most.
+    #[must_use]
+    pub fn max_steps(mut self, steps: usize) -> Self {
+        self.max_steps = steps;
+        self
+    }
+
+    /// Decomposes snapshots of these frames, from nothing or from frames that are known already. `observer` sees the steps of all
+    /// iterations, numbered through.
+    ///
+    /// # Errors
+    /// Those of [`GridFrames::new`] and [`JointDescent::solve`].
+    pub fn solve(
+        &self,
+        shifts: &dyn Shifts,
+        snapshots: MatRef<'_, f64>,
+        start: Option<&[Frame]>,
+        observer: Observer<'_>,
+    ) -> Result<Decomposition, ShiftedError> {
+        let operators = GridFrames::new(self.grid, self.interpolation, shifts, snapshots.nrows())?;
+        let problem = Problem::new(&operators, snapshots)?;
+        let start = start.map(|s| problem.start(Some(s))).transpose()?;
+        let mut watch = Watch { observer, history: vec![] };
+        if self.noise == Noise::Sparse {
+            return self.robust(&operators, snapshots, start, &mut watch);
+        }
+        let waves = Waves::new(&self.grid, shifts, snapshots.nrows());
+        let Some(waves) = waves.filter(|_| self.interpolation == Interpolation::Spectral) else {
+            let thinned = |snapshots: &[usize]| -> Result<Box<dyn FrameOperators>, ShiftedError> {
+                let some = Thinned { shifts, snapshots };
+                Ok(Box::new(GridFrames::new(self.grid, self.interpolation, &some, operators.n_rows())?))
+            };
+            return self.dense(&operators, snapshots, start, &thinned, &mut watch);
+        };
+        let thinned = |snapshots: &[usize]| -> Result<Box<dyn FrameOperators>, ShiftedError> {
+            Ok(Box::new(waves.thinned(snapshots)))
+        };
+        let carried = |frames: Vec<Frame>, map: &dyn Fn(MatRef<'_, f64>) -> Mat<f64>| -> Vec<Frame> {
+            frames.into_iter().map(|frame| Frame { modes: map(frame.modes.as_ref()), ..frame }).collect()
+        };
+        let start = start.map(|frames| carried(frames, &|modes| waves.waves(modes)));
+        let transformed = waves.waves(snapshots);
+        let mut d = self.dense(&waves, transformed.as_ref(), start, &thinned, &mut watch)?;
+        d.frames = carried(d.frames, &|modes| waves.fields(modes));
+        Ok(d)
+    }
+
+    /// Decomposes snapshots that any operators carry along, all of them at once.
+    ///
+    /// # Errors
+    /// Those of [`JointDescent::solve`].
+    pub fn solve_with(
+        &self,
+        operators: &dyn FrameOperators,
+        snapshots: MatRef<'_, f64>,
+        start: Option<&[Frame]>,
+        observer: Observer<'_>,
+    ) -> Result<Decomposition, ShiftedError> {
+        let problem = Problem::new(operators, snapshots)?;
+        let start = start.map(|s| problem.start(Some(s))).transpose()?;
+        let mut watch = Watch { observer, history: vec![] };
+        match self.noise {
+            Noise::Sparse => self.robust(operators, snapshots, start, &mut watch),
+            Noise::Dense => {
+                let start = start.unwrap_or(problem.start(None)?);
+                let (frames, stopped) = self.fit(operators, snapshots, &[], start, &mut watch)?;
+                Ok(Decomposition { frames, noise: None, history: watch.history, stopped })
+            }
+        }
+    }
+
+    /// No entry is wrong. Ranks are looked for on some of the snapshots if there are many.
+    fn dense(
+        &self,
+        operators: &dyn FrameOperators,
+        snapshots: MatRef<'_, f64>,
+        start: Option<Vec<Frame>>,
+        thinned: &OperatorsOf<'_>,
+        watch: &mut Watch<'_>,
+    ) -> Result<Decomposition, ShiftedError> {
+        let (m, n) = snapshots.shape();
+        let mut frames = start.unwrap_or_else(|| vec![Frame::nothing(m, n); operators.n_frames()]);
+        let fresh = frames.iter().all(|f| f.rank() == 0);
+        if self.ranks == Ranks::Found && fresh && n > MANY {
+            let some: Vec<usize> = (0..SOME).map(|i| i * (n - 1) / (SOME - 1)).collect();
+            let few = Mat::from_fn(m, SOME, |i, j| snapshots[(i, some[j])]);
+            let start = vec![Frame::nothing(m, SOME); frames.len()];
+            let search = self
+                .rank_search(&*thinned(&some)?, few.as_ref(), &[])
+                .search(start, &mut |p| watch.see(p))?;
+            frames = search.0.iter().map(|f| f.between(&some, n)).collect();
+            if search.1 == StopReason::Asked {
+                return Ok(Decomposition { frames, noise: None, history: watch.take(), stopped: search.1 });
+            }
+        }
+        let (frames, stopped) = self.fit(operators, snapshots, &[], frames, watch)?;
+        Ok(Decomposition { frames, noise: None, history: watch.take(), stopped })
+    }
+
+    /// Some entries are wrong.
+    fn robust(
+        &self,
+        operators: &dyn FrameOperators,
+        snapshots: MatRef<'_, f64>,
+        start: Option<Vec<Frame>>,
+        watch: &mut Watch<'_>,
+    ) -> Result<Decomposition, ShiftedError> {
+        let mut proximal = Proximal::augmented_lagrangian().with_noise().tolerance(1e-4);
+        proximal = proximal.max_steps(2 * self.max_steps);
+        let convex = proximal.solve(operators, snapshots, start.as_deref(), &mut |p| watch.see(p))?;
+        if convex.stopped == StopReason::Asked {
+            return Ok(Decomposition { history: watch.take(), ..convex });
+        }
+        let sparse = convex.noise.unwrap_or_else(|| Mat::zeros(snapshots.nrows(), snapshots.ncols()));
+        let mut wrong = entries(&sparse, (6.0 * deviation_of_all(&sparse)).max(1e-6 * sparse.norm_max()));
+        // Small singular values are noise or will be found again.
+        let largest = convex.frames.iter().flat_map(|f| &f.singular_values).fold(0.0, |a: f64, &s| a.max(s));
+        let leading = |(k, frame): (usize, &Frame)| match &self.ranks {
+            Ranks::Given(ranks) => frame.cut(ranks.get(k).map_or(0, |&r| r.min(frame.rank()))),
+            Ranks::Found => {
+                frame.cut(frame.singular_values.iter().filter(|&&s| s > LEADING * largest).count())
+            }
+        };
+        let mut frames: Vec<Frame> = convex.frames.iter().enumerate().map(leading).collect();
+        let mut stopped;
+        let mut round = 0;
+        loop {
+            (frames, stopped) = self.fit(operators, snapshots, &wrong, frames, watch)?;
+            let residual = Problem::new(operators, snapshots)?.residual(&frames);
+            let last = round == 2 || stopped == StopReason::Asked;
+            let seen = if last { wrong.clone() } else { outliers(&residual, &wrong) };
+            if last || seen == wrong {
+                let mut noise = Mat::zeros(residual.nrows(), residual.ncols());
+                wrong.iter().for_each(|&at| noise[at] = residual[at]);
+                return Ok(Decomposition { frames, noise: Some(noise), history: watch.take(), stopped });
+            }
+            wrong = seen;
+            round += 1;
+        }
+    }
+
+    /// The modes that are asked for, fitted to all entries but the wrong ones.
+    fn fit(
+        &self,
+        operators: &dyn FrameOperators,
+        snapshots: MatRef<'_, f64>,
+        wrong: &[(usize, usize)],
+        start: Vec<Frame>,
+        watch: &mut Watch<'_>,
+    ) -> Result<(Vec<Frame>, StopReason), ShiftedError> {
+        let (frames, ranks) = match &self.ranks {
+            Ranks::Given(ranks) => (start, ranks.clone()),
+            Ranks::Found => {
+                let search = self.rank_search(operators, snapshots, wrong);
+                let (frames, stopped) = search.search(start, &mut |p| watch.see(p))?;
+                if stopped == StopReason::Asked {
+                    return Ok((frames, stopped));
+                }
+                let ranks = frames.iter().map(Frame::rank).collect();
+                (frames, ranks)
+            }
+        };
+        let descent =
+            JointDescent::new(ranks).tolerance(self.tolerance).max_steps(self.max_steps).ignoring(wrong);
+        let d = descent.solve(operators, snapshots, Some(&frames), &mut |p| watch.see(p))?;
+        Ok((d.frames, d.stopped))
+    }
+
+    fn rank_search<'a>(
+        &self,
+        operators: &'a dyn FrameOperators,
+        snapshots: MatRef<'a, f64>,
+        ignored: &'a [(usize, usize)],
+    ) -> RankSearch<'a> {
+        let Self { rank_tolerance: tolerance, max_rank, max_steps, .. } = *self;
+        RankSearch { operators, snapshots, ignored, tolerance, max_rank, max_steps }
+    }
+}
+
+/// Modes of the augmented Lagrangian below this part of the largest one are not started from.
+const LEADING: f64 = 0.02;
+
+/// Rows and columns of entries larger than this.
+fn entries(field: &Mat<f64>, size: f64) -> Vec<(usize, usize)> {
+    let column =
+        |j: usize| (0..field.nrows()).filter(move |&i| field[(i, j)].abs() > size).map(move |i| (i, j));
+    (0..field.ncols()).flat_map(column).collect()
+}
+
+/// 1.4826 median |x|.
+fn deviation_of_all(field: &Mat<f64>) -> f64 {
+    let zeros = entries(field, 0.0).len() * 2 < field.nrows() * field.ncols();
+    if zeros { 0.0 } else { deviation(field) }
+}
+
+/// The entries that do not fit, once those that are wrong have been left out: none that fits as well as the others do, and of the
+/// others those that are off as the wrong ones are.
+fn outliers(residual: &Mat<f64>, wrong: &[(usize, usize)]) -> Vec<(usize, usize)> {
+    let mut right = residual.clone();
+    wrong.iter().for_each(|&at| right[at] = 0.0);
+    let level = (6.0 * deviation(&right)).max(1e-8 * residual.norm_max());
+    let mut sizes: Vec<f64> = wrong.iter().map(|&at| residual[at].abs()).collect();
+    let middle = sizes.len() / 2;
+    let usual = if sizes.is_empty() {
+        f64::INFINITY
+    } else {
+        *sizes.select_nth_unstable_by(middle, f64::total_cmp).1
+    };
+    let was: std::collections::HashSet<_> = wrong.iter().collect();
+    let seen = entries(residual, level);
+    seen.into_iter().filter(|at| was.contains(at) || residual[*at].abs() > 0.5 * usual).collect()
+}
+
+/// Some of the snapshots.
+struct Thinned<'a> {
+    shifts: &'a dyn Shifts,
+    snapshots: &'a [usize],
+}
+
+impl Shifts for Thinned<'_> {
+    fn n_frames(&self) -> usize {
+        self.shifts.n_frames()
+    }
+    fn n_snapshots(&self) -> usize {
+        self.snapshots.len()
+    }
+    fn motion(&self, frame: usize, snapshot: usize) -> Motion {
+        self.shifts.motion(frame, self.snapshots[snapshot])
+    }
+}
+
+/// Numbers the steps of several iterations through.
+struct Watch<'a> {
+    observer: Observer<'a>,
+    history: Vec<Progress>,
+}
+
+impl Watch<'_> {
+    fn see(&mut self, progress: &Progress) -> ControlFlow<()> {
+        let progress = Progress { step: self.history.len() + 1, ..*progress };
+        self.history.push(progress);
+        (self.observer)(&progress)
+    }
+
+    fn take(&mut self) -> Vec<Progress> {
+        std::mem::take(&mut self.history)
+    }
+}
+
+impl Frame {
+    /// From some of `n` snapshots to all of them, σ a linear in between.
+    fn between(&self, some: &[usize], n: usize) -> Self {
+        let scaled = self.scaled_coefficients();
+        let coefficient = |j: usize, i: usize| {
+            let after = some.partition_point(|&at| at < j).clamp(1, some.len() - 1);
+            let [a, b] = [some[after - 1], some[after]];
+            let part = (j - a) as f64 / (b - a) as f64;
+            (1.0 - part) * scaled[(i, after - 1)] + part * scaled[(i, after)]
+        };
+        let (v, singular_values, u) = thin(Mat::from_fn(n, self.rank(), coefficient), self.rank());
+        Self { modes: &self.modes * u, singular_values, coefficients: v.transpose().to_owned() }
+    }
+}

@@ -58,7 +58,8 @@ impl Gallery<'_> {
         let width = (AREA / self.aspect).sqrt().round();
         let height = (width * self.aspect).round();
         let columns = self.rows.iter().map(|row| row.tiles.len()).max().unwrap_or(0) as f64;
-        let wide = 2.0 * MARGIN + columns * (width + GAP) + BAR_ROOM;
+        let bar = if self.rows.iter().any(|row| row.range.is_some()) { BAR_ROOM } else { -GAP };
+        let wide = 2.0 * MARGIN + columns * (width + GAP) + bar;
         let high = 2.0 * MARGIN + self.rows.len() as f64 * (height + TITLE + GAP);
         let mut canvas = Canvas::new(wide as usize, high as usize);
         for (r, row) in self.rows.iter().enumerate() {

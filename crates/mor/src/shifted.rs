@@ -5,6 +5,7 @@
 //! T^s q (x) = q(x − s): what frame k carries is at rest in it, and moved by Δ_k(t_j) in snapshot j.
 mod axis;
 mod error;
+pub mod fourier;
 mod frames;
 mod grid;
 mod interpolator;

@@ -99,4 +99,22 @@ pub enum ShiftedError {
         /// Counted from 0.
         axis: usize,
     },
+    /// There are not as many ranks as frames.
+    #[error("{ranks} ranks were given for {frames} frames; give one per frame, 0 if it is to carry nothing")]
+    Ranks {
+        /// Given.
+        ranks: usize,
+        /// Of reference.
+        frames: usize,
+    },
+    /// A matrix that belongs to the snapshots has another shape.
+    #[error("{what}: {found:?} rows and columns (or frames and snapshots), where {expected:?} are needed")]
+    Shape {
+        /// Which.
+        what: &'static str,
+        /// What it must have.
+        expected: [usize; 2],
+        /// What it has.
+        found: [usize; 2],
+    },
 }

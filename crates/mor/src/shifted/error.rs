@@ -137,4 +137,14 @@ pub enum ShiftedError {
         /// It has to be below.
         limit: f64,
     },
+    /// A matrix that belongs to the snapshots has another shape.
+    #[error("{what}: {found:?} rows and columns (or frames and snapshots), where {expected:?} are needed")]
+    Shape {
+        /// Which.
+        what: &'static str,
+        /// What it must have.
+        expected: [usize; 2],
+        /// What it has.
+        found: [usize; 2],
+    },
 }

@@ -19,7 +19,7 @@ use std::path::Path;
 /// How a [`Spodiann`] interpolates; `None`: the way that predicts samples best which are held out.
 #[derive(Clone, Copy, Default)]
 pub struct SpodiannParams<'a> {
-    /// The coefficients, as functions of time and parameters alone.
+    /// The coefficients, as functions of time and parameters, and of phases where those help.
     pub coefficients: Option<&'a dyn Method>,
     /// The frames' paths.
     pub paths: Option<&'a dyn Method>,
@@ -319,7 +319,7 @@ impl Carried {
         let values = frame.scaled_coefficients();
         let plain = Coefficients::fit(&Samples::new(points, values.as_ref())?, method, false);
         let mut carried = Self { modes: frame.modes.clone(), coefficients: None, phases: Vec::new() };
-        if method.is_none() && points.nrows() == 1 {
+        if points.nrows() == 1 {
             let first = motion(0).displacement;
             let crosses = |a: usize| {
                 let far = |j: usize| (motion(j).displacement[a] - first[a]).abs() > 0.5 * grid.spacing()[a];

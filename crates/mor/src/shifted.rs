@@ -7,6 +7,7 @@ mod axis;
 mod dense;
 mod descent;
 mod error;
+pub mod fourier;
 mod frames;
 mod gather;
 mod grid;

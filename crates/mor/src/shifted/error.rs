@@ -107,8 +107,8 @@ pub enum ShiftedError {
         /// By the operators.
         expected: usize,
     },
-    /// Not one rank, or not one start, for each frame.
-    #[error("{ranks} ranks or fields are given for {frames} frames; give one for each")]
+    /// There are not as many ranks, or fields to start from, as frames.
+    #[error("{ranks} ranks were given for {frames} frames; give one per frame, 0 if it is to carry nothing")]
     Ranks {
         /// Given.
         ranks: usize,
@@ -136,5 +136,15 @@ pub enum ShiftedError {
         value: f64,
         /// It has to be below.
         limit: f64,
+    },
+    /// A matrix that belongs to the snapshots has another shape.
+    #[error("{what}: {found:?} rows and columns (or frames and snapshots), where {expected:?} are needed")]
+    Shape {
+        /// Which.
+        what: &'static str,
+        /// What it must have.
+        expected: [usize; 2],
+        /// What it has.
+        found: [usize; 2],
     },
 }

@@ -1,0 +1,113 @@
+//! Errors, steps, CPU seconds and peak memory of shifted decompositions at full size: `cargo bench -p mor --bench shifted -- two_discs`.
+use cpu_time::ProcessTime;
+use interfaces::Vector;
+use mor::Mat;
+use mor::shifted::fourier::Als;
+use mor::shifted::{Grid, Motion, Motions};
+
+/// Snapshots, where they are, and how their frames move.
+struct Case {
+    grid: Grid,
+    motions: Motions,
+    snapshots: Mat<f64>,
+}
+
+/// Peaks that run along x, one to the right and one to the left (and one of twice the speed).
+fn crossing_waves(frames: usize) -> Case {
+    let (nx, nt) = (400, 200);
+    let speeds = [1.0, -1.0, 2.0];
+    let starts = [0.1, 0.9, 0.5];
+    let time = |j: usize| j as f64 * 0.5 / nt as f64;
+    let value = |i: usize, j: usize| {
+        let x = i as f64 / nx as f64;
+        let wave = |k: usize| {
+            let from = (x - speeds[k] * time(j)).rem_euclid(1.0) - starts[k];
+            (-(from / 0.015_f64).powi(2)).exp()
+        };
+        (0..frames).map(wave).sum()
+    };
+    Case {
+        grid: Grid::new([nx], [1.0 / nx as f64]).unwrap(),
+        motions: Motions::by(frames, nt, |k, j| {
+            Motion::translation(Vector::new(speeds[k] * time(j), 0.0, 0.0))
+        }),
+        snapshots: Mat::from_fn(nx, nt, value),
+    }
+}
+
+/// Two discs with a tanh edge one cell wide that fall side by side at different, growing speeds; `drift` cells sideways as well.
+fn two_discs(cells: [usize; 2], n: usize, d: f64, drift: f64) -> Case {
+    let [nx, ny] = cells.map(|n| n as f64);
+    let way = [320.0, 180.0].map(|w| w * nx / 300.0);
+    let start = [Vector::new(0.1 * nx, ny / 3.0, 0.0), Vector::new(0.1 * nx, 2.0 * ny / 3.0, 0.0)];
+    let moved = |k: usize, j: usize| {
+        let t = j as f64 / (n - 1) as f64;
+        let accelerated = [0.6, 0.3][k] * t + [0.4, 0.7][k] * t * t;
+        Vector::new(way[k] * accelerated, drift * (t * (1.0 + t)) * [0.5, -0.5][k], 0.0)
+    };
+    let grid = Grid::new(cells, [1.0; 2]).unwrap();
+    let field = |i: usize, j: usize| {
+        let disc = |k: usize| {
+            let mut r = grid.centre(i).coords - start[k] - moved(k, j);
+            r.x -= nx * (r.x / nx).round();
+            r.y -= ny * (r.y / ny).round();
+            0.5 - 0.5 * (r.norm() - d / 2.0).tanh()
+        };
+        disc(0) + disc(1)
+    };
+    Case {
+        motions: Motions::by(2, n, |k, j| Motion::translation(moved(k, j))),
+        snapshots: Mat::from_fn(cells[0] * cells[1], n, field),
+        grid,
+    }
+}
+
+fn peak_memory() -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));
+    line.and_then(|l| l.trim().trim_end_matches(" kB").parse::<f64>().ok()).unwrap_or(f64::NAN) / 1e6
+}
+
+fn main() {
+    let chosen: Vec<_> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
+    let chosen = |name: &str| chosen.is_empty() || chosen.iter().any(|c| name.contains(c.as_str()));
+    let cases: [(&str, &dyn Fn() -> Case, &[&[usize]]); 5] = [
+        ("crossing_waves", &|| crossing_waves(2), &[&[1, 1]]),
+        ("three_waves", &|| crossing_waves(3), &[&[1, 1, 1]]),
+        ("two_discs_small", &|| two_discs([100, 50], 201, 9.0, 0.0), &[&[1, 1], &[3, 3]]),
+        ("two_discs_drifting", &|| two_discs([100, 50], 201, 9.0, 20.0), &[&[1, 1], &[3, 3]]),
+        ("two_discs_full", &|| two_discs([300, 150], 601, 15.0, 0.0), &[&[1, 1], &[3, 3]]),
+    ];
+    println!("case                ranks         error      steps  stopped      CPU s  peak GB");
+    for (name, case, all) in cases.iter().filter(|c| chosen(c.0)) {
+        let Case { grid, motions, snapshots } = case();
+        for ranks in *all {
+            let start = ProcessTime::now();
+            let verbose = std::env::var_os("VERBOSE").is_some();
+            let out = Als::new(*ranks)
+                .solve(&grid, &motions, snapshots.as_ref(), None, None, &mut |p| {
+                    if verbose {
+                        println!(
+                            "{:5} {:2} {:.6e} {:.3}",
+                            p.step,
+                            p.rank,
+                            p.error,
+                            start.elapsed().as_secs_f64()
+                        );
+                    }
+                    true
+                })
+                .unwrap();
+            let seconds = start.elapsed().as_secs_f64();
+            let last = out.history.last().unwrap();
+            let ranks = format!("{ranks:?}");
+            let stopped = format!("{:?}", out.stopped);
+            println!(
+                "{name:19} {ranks:12} {:10.3e} {:5}  {stopped:11} {seconds:6.3}  {:6.3}",
+                last.error,
+                last.step,
+                peak_memory()
+            );
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! Shifted proper orthogonal decomposition of translations on periodic axes, by least squares in Fourier space.
+//!
+//! There T^s multiplies the coefficient of wave vector κ by e^(−iκ·s): each wave vector is a problem of its own.
+mod als;
+mod compression;
+mod descent;
+mod finish;
+mod objective;
+mod phases;
+mod spectrum;
+
+#[cfg(test)]
+mod tests;
+
+pub use als::Als;

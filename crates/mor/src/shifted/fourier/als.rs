@@ -1,0 +1,169 @@
+//! Alternating least squares, accelerated.
+use super::descent::Descent;
+use super::finish::frame;
+use super::objective::{Amplitudes, dominant, modes};
+use super::spectrum::Spectrum;
+use crate::shifted::{Decomposition, Frame, Grid, Progress, ShiftedError, Shifts, StopReason};
+use crate::{Mat, MatRef};
+
+/// The best approximation Q ≈ Σ_k T^k Φ_k A_k with given ranks, for translations on periodic axes.
+///
+/// min over A of Σ_κ min over Φ(κ) of ‖Q(κ, t_j) − Σ_(k,i) e^(−iκ·s_k(t_j)) a_i^k(t_j) φ_i^k(κ)‖²
+///
+/// With given amplitudes a each wave vector κ has its own small least-squares problem for the modes φ, so that the modes are
+/// eliminated (variable projection, Golub & Pereyra 1973). With given modes each snapshot has one for the amplitudes: that step
+/// preconditions a limited-memory BFGS method over the amplitudes. Shifts are [`Spectral`](crate::shifted::Interpolation::Spectral).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Als {
+    /// Modes of each frame; 0 if it carries nothing.
+    pub ranks: Vec<usize>,
+    /// Relative error that is good enough.
+    pub tolerance: f64,
+    /// Most steps; each costs one pass or a few over the data.
+    pub max_steps: usize,
+    /// It stops when the last ten steps lowered the error by less than this part of it.
+    pub stagnation: f64,
+}
+
+impl Als {
+    /// With these ranks, until the error is 1e-9 or ten steps lower it by less than a thousandth, but at most 500 steps.
+    #[must_use]
+    pub fn new(ranks: impl Into<Vec<usize>>) -> Self {
+        Self { ranks: ranks.into(), tolerance: 1e-9, max_steps: 500, stagnation: 1e-3 }
+    }
+
+    /// Decomposes Q − E. It begins with the coefficients of `start`, and with the residual's largest ones in each frame where that
+    /// has fewer modes; `progress` hears of each step and answers whether to go on.
+    ///
+    /// Rows of the snapshots: a whole number of fields of the grid. A frame gets fewer modes than asked for if the others are zero to
+    /// round-off.
+    ///
+    /// # Errors
+    /// If shapes do not fit together, a value is not finite, or a frame does anything but move along periodic axes.
+    pub fn solve(
+        &self,
+        grid: &Grid,
+        shifts: &dyn Shifts,
+        snapshots: MatRef<'_, f64>,
+        start: Option<&Decomposition>,
+        noise: Option<MatRef<'_, f64>>,
+        progress: &mut dyn FnMut(&Progress) -> bool,
+    ) -> Result<Decomposition, ShiftedError> {
+        let frames = shifts.n_frames();
+        if self.ranks.len() != frames {
+            return Err(ShiftedError::Ranks { ranks: self.ranks.len(), frames });
+        }
+        let spectrum = Spectrum::new(grid, shifts, snapshots, noise, 0.1 * self.tolerance.max(1e-13))?;
+        let n = snapshots.ncols();
+        let ranks: Vec<_> = self.ranks.iter().map(|&r| r.min(n).min(spectrum.n_rows())).collect();
+        let mut amplitudes = begin(start, &ranks, n)?;
+        let mut history = Vec::new();
+        let stopped = if spectrum.energy == 0.0 {
+            StopReason::Tolerance
+        } else {
+            loop {
+                amplitudes = grow(&spectrum, amplitudes, &ranks);
+                let last = amplitudes.ranks == ranks;
+                let mut descent = Descent::new(&spectrum, amplitudes);
+                let reason = self.descend(&spectrum, &mut descent, last, &mut history, progress);
+                amplitudes = descent.amplitudes;
+                match reason {
+                    StopReason::Stagnation if !last => {}
+                    reason => break reason,
+                }
+            }
+        };
+        let frames = if spectrum.energy == 0.0 {
+            let nothing = || Frame {
+                modes: Mat::zeros(spectrum.n_rows(), 0),
+                singular_values: Vec::new(),
+                coefficients: Mat::zeros(0, n),
+            };
+            ranks.iter().map(|_| nothing()).collect()
+        } else {
+            result(&spectrum, &amplitudes)
+        };
+        Ok(Decomposition { frames, noise: noise.map(|e| e.to_owned()), history, stopped })
+    }
+
+    /// Goes down until it is good enough or does not get better.
+    fn descend(
+        &self,
+        spectrum: &Spectrum,
+        descent: &mut Descent<'_>,
+        last: bool,
+        history: &mut Vec<Progress>,
+        progress: &mut dyn FnMut(&Progress) -> bool,
+    ) -> StopReason {
+        let rank = descent.amplitudes.ranks.iter().sum();
+        let mut errors = Vec::new();
+        loop {
+            let error = ((descent.evaluation.residual + spectrum.dropped) / spectrum.energy).sqrt();
+            errors.push(error);
+            let now = Progress { step: history.len(), error, rank };
+            history.push(now);
+            let stagnation = if last { self.stagnation } else { self.stagnation.max(1e-2) };
+            if !progress(&now) {
+                return StopReason::Asked;
+            } else if error <= self.tolerance {
+                return StopReason::Tolerance;
+            } else if errors.len() > 10 && error > (1.0 - stagnation) * errors[errors.len() - 11] {
+                return StopReason::Stagnation;
+            } else if history.len() > self.max_steps {
+                return StopReason::Steps;
+            } else if !descent.step() {
+                return StopReason::Stagnation;
+            }
+        }
+    }
+}
+
+/// The first coefficients of a start.
+fn begin(start: Option<&Decomposition>, ranks: &[usize], n: usize) -> Result<Amplitudes, ShiftedError> {
+    let Some(start) = start else {
+        return Ok(Amplitudes { ranks: vec![0; ranks.len()], values: Mat::zeros(n, 0) });
+    };
+    let expected = [ranks.len(), n];
+    let columns = start.frames.iter().map(|f| f.coefficients.ncols()).find(|&c| c != n).unwrap_or(n);
+    if start.frames.len() != ranks.len() || columns != n {
+        let found = [start.frames.len(), columns];
+        return Err(ShiftedError::Shape { what: "coefficients of the start", expected, found });
+    }
+    let taken = start.frames.iter().zip(ranks).map(|(f, &r)| f.rank().min(r)).collect::<Vec<_>>();
+    let places: Vec<_> = taken.iter().enumerate().flat_map(|(k, &r)| (0..r).map(move |i| (k, i))).collect();
+    let values =
+        Mat::from_fn(n, places.len(), |j, c| start.frames[places[c].0].coefficients[(places[c].1, j)]);
+    let mut amplitudes = Amplitudes { ranks: taken, values };
+    amplitudes.orthonormalise();
+    Ok(amplitudes)
+}
+
+/// One more mode in each frame that is to have more: the residual's largest in it.
+fn grow(spectrum: &Spectrum, old: Amplitudes, ranks: &[usize]) -> Amplitudes {
+    let more: Vec<_> = old.ranks.iter().zip(ranks).map(|(&a, &b)| usize::from(a < b)).collect();
+    let new = dominant(spectrum, &old, &more);
+    let sum: Vec<_> = old.ranks.iter().zip(&more).map(|(a, b)| a + b).collect();
+    let (mut i, mut m) = (0, 0);
+    let mut columns = Vec::new();
+    for (&a, &b) in old.ranks.iter().zip(&more) {
+        columns.extend((i..i + a).map(|c| old.values.col_as_slice(c)));
+        columns.extend((m..m + b).map(|c| new.col_as_slice(c)));
+        (i, m) = (i + a, m + b);
+    }
+    let values = Mat::from_fn(old.values.nrows(), columns.len(), |j, c| columns[c][j]);
+    Amplitudes { ranks: sum, values }
+}
+
+fn result(spectrum: &Spectrum, amplitudes: &Amplitudes) -> Vec<Frame> {
+    let (n, rank) = amplitudes.values.shape();
+    let fields = spectrum.fields(rank, &modes(spectrum, amplitudes));
+    let mut first = 0;
+    let column = |m: &Mat<f64>, c: usize| m.col_as_slice(c).to_vec();
+    let mut frames = Vec::new();
+    for &r in &amplitudes.ranks {
+        let of = |m: &Mat<f64>| (first..first + r).map(|c| column(m, c)).collect();
+        frames.push(frame(of(&fields), of(&amplitudes.values), spectrum.n_rows(), n));
+        first += r;
+    }
+    frames
+}

@@ -3,7 +3,7 @@ use super::dense::columns;
 use super::residual::{Course, Limits, Observer, Problem};
 use super::tangent::{Base, Tangent};
 use super::{Decomposition, Frame, FrameOperators, ShiftedError, StopReason};
-use monomorphic::{Mat, MatRef};
+use monomorphic::{ColRef, Mat, MatRef};
 
 /// Descent on J₂ = ½ ‖Q − Σ_k T^k Q_k‖² over all fields Q_k of given ranks at once (the functional of Reiss 2021).
 ///
@@ -16,6 +16,7 @@ pub struct JointDescent {
     ranks: Vec<usize>,
     limits: Limits,
     ignored: Vec<(usize, usize)>,
+    level: Option<f64>,
 }
 
 impl JointDescent {
@@ -23,8 +24,8 @@ impl JointDescent {
     /// at most.
     #[must_use]
     pub fn new(ranks: impl Into<Vec<usize>>) -> Self {
-        let limits = Limits { tolerance: 1e-10, stagnation: 1e-4, max_steps: 100 };
-        Self { ranks: ranks.into(), limits, ignored: vec![] }
+        let limits = Limits { tolerance: 1e-10, stagnation: 1e-4, max_steps: 100, settled: f64::INFINITY };
+        Self { ranks: ranks.into(), limits, ignored: vec![], level: None }
     }
 
     /// Stops at this relative error.
@@ -55,11 +56,20 @@ impl JointDescent {
         self
     }
 
+    /// Entries that are off by more than `level` count by how much, not by the square of it (Huber 1964): ½ R² becomes level (|R| − ½ level).
+    /// So wrong entries that are not known to be wrong do little harm.
+    #[must_use]
+    pub fn huber(mut self, level: f64) -> Self {
+        self.level = Some(level);
+        self
+    }
+
     /// Decomposes snapshots, from nothing or from frames that are known already.
     ///
     /// # Errors
     /// [`ShiftedError::Empty`], [`ShiftedError::Snapshots`], [`ShiftedError::Unknowns`], [`ShiftedError::Ranks`],
-    /// [`ShiftedError::NotFinite`]; [`ShiftedError::Entry`] if an ignored entry is none.
+    /// [`ShiftedError::NotFinite`]; [`ShiftedError::Entry`] if an ignored entry is none; [`ShiftedError::Parameter`] if Huber's level
+    /// is not positive.
     pub fn solve(
         &self,
         operators: &dyn FrameOperators,
@@ -68,6 +78,9 @@ impl JointDescent {
         observer: Observer<'_>,
     ) -> Result<Decomposition, ShiftedError> {
         let problem = Problem::new(operators, snapshots)?.ignoring(&self.ignored)?;
+        if let Some(value) = self.level.filter(|&level| !(level > 0.0 && level.is_finite())) {
+            return Err(ShiftedError::Parameter { name: "Huber's level", value, limit: f64::INFINITY });
+        }
         let ranks = problem.ranks(&self.ranks)?;
         let mut frames = problem.start(start)?;
         if frames.iter().zip(&ranks).any(|(frame, &rank)| frame.rank() != rank) {
@@ -75,7 +88,7 @@ impl JointDescent {
                 joint_step(&problem, &ranks, &mut frames);
             }
         }
-        let least_squares = LeastSquares { problem };
+        let least_squares = LeastSquares { problem, level: self.level };
         let mut course = Course::new(self.limits, observer);
         let (frames, stopped) = least_squares.descend(frames, &mut course);
         Ok(Decomposition { frames, noise: None, history: course.history, stopped })
@@ -95,12 +108,21 @@ fn joint_step(problem: &Problem<'_>, ranks: &[usize], frames: &mut [Frame]) {
     }
 }
 
+/// Entry by entry.
+fn weigh(weights: Option<&Mat<f64>>, field: &mut Mat<f64>) {
+    let Some(weights) = weights else { return };
+    for (column, weights) in columns(field).into_iter().zip(weights.col_iter()) {
+        column.iter_mut().zip(weights.iter()).for_each(|(x, w)| *x *= w);
+    }
+}
+
 /// Conjugate gradients end at this part of the gradient, or after so many steps.
 const FORCING: f64 = 0.03;
 const MAX_INNER: usize = 40;
 
 struct LeastSquares<'a> {
     problem: Problem<'a>,
+    level: Option<f64>,
 }
 
 /// One direction per frame.
@@ -117,39 +139,65 @@ fn combine(a: &mut Directions, keep: f64, factor: f64, b: &Directions) {
 impl LeastSquares<'_> {
     fn descend(&self, mut frames: Vec<Frame>, course: &mut Course<'_>) -> (Vec<Frame>, StopReason) {
         let mut residual = self.problem.residual(&frames);
+        let mut size = self.size(&residual);
         let mut damping = 1e-3;
         loop {
-            let norm = residual.norm_l2();
+            let weights = self.weights(&residual);
+            weigh(weights.as_ref(), &mut residual);
             let bases: Vec<_> = frames.iter().map(Base::new).collect();
             let gradient = self.project(&bases, &residual);
-            let (step, predicted) = self.minimise(&bases, &gradient, damping);
-            let trial: Vec<_> = bases.iter().zip(&step).map(|(b, s)| b.moved(s)).collect();
-            let trial_residual = self.problem.residual(&trial);
-            let trial_norm = trial_residual.norm_l2();
-            // In units of ½ ‖Q‖²: what is left of an exact decomposition is round-off.
-            let gain = (norm - trial_norm) * (norm + trial_norm) / (2.0 * predicted);
-            if trial_norm >= norm || trial_norm.is_nan() {
-                damping *= 10.0;
-                if damping > 1e8 || predicted <= 1e-32 * self.problem.norm.powi(2) {
-                    course.note(self.problem.relative(norm), &frames);
-                    return (frames, StopReason::Stagnation);
+            let better = loop {
+                let (step, predicted) = self.minimise(&bases, weights.as_ref(), &gradient, damping);
+                let trial: Vec<_> = bases.iter().zip(&step).map(|(b, s)| b.moved(s)).collect();
+                let trial_residual = self.problem.residual(&trial);
+                let trial_size = self.size(&trial_residual);
+                let gain = (size - trial_size) * (size + trial_size) / (2.0 * predicted);
+                if trial_size < size {
+                    if gain > 0.75 {
+                        damping = (damping / 5.0).max(1e-12);
+                    } else if gain < 0.25 {
+                        damping *= 4.0;
+                    }
+                    break Some((trial, trial_residual, trial_size));
                 }
-                continue;
+                damping *= 10.0;
+                // What is left of an exact decomposition is round-off.
+                if damping > 1e8 || predicted <= 1e-32 * self.problem.norm.powi(2) {
+                    break None;
+                }
+            };
+            let stagnant = better.is_none();
+            if let Some(better) = better {
+                (frames, residual, size) = better;
+            } else {
+                residual = self.problem.residual(&frames);
             }
-            if gain > 0.75 {
-                damping = (damping / 5.0).max(1e-12);
-            } else if gain < 0.25 {
-                damping *= 4.0;
-            }
-            (frames, residual) = (trial, trial_residual);
-            if let Some(stopped) = course.note(self.problem.relative(trial_norm), &frames) {
-                return (frames, stopped);
+            let [error, merit] = [residual.norm_l2(), size].map(|x| self.problem.relative(x));
+            match course.note_merit(error, merit, &frames) {
+                Some(stopped) => return (frames, stopped),
+                None if stagnant => return (frames, StopReason::Stagnation),
+                None => {}
             }
         }
     }
 
-    /// Σ_k T^k ξ_k, where it counts.
-    fn image(&self, bases: &[Base<'_>], directions: &Directions) -> Mat<f64> {
+    /// ‖R‖ or, if large entries are to count less, the root of twice what Huber has in place of ½ ‖R‖².
+    fn size(&self, residual: &Mat<f64>) -> f64 {
+        let Some(level) = self.level else { return residual.norm_l2() };
+        let part = |r: f64| if r <= level { r * r } else { level * (2.0 * r - level) };
+        let column = |c: ColRef<'_, f64>| c.iter().map(|r| part(r.abs())).sum::<f64>();
+        residual.col_iter().map(column).sum::<f64>().sqrt()
+    }
+
+    /// By what entries count less.
+    fn weights(&self, residual: &Mat<f64>) -> Option<Mat<f64>> {
+        let level = self.level?;
+        let weight = |i, j| level / level.max(f64::abs(residual[(i, j)]));
+        Some(Mat::from_fn(residual.nrows(), residual.ncols(), weight))
+    }
+
+    /// Σ_k T^k ξ_k, as it counts.
+    fn image(&self, bases: &[Base<'_>], weights: Option<&Mat<f64>>, directions: &Directions) -> Mat<f64> {
         let (m, n) = self.problem.snapshots.shape();
         let (mut sum, mut field) = (Mat::zeros(m, n), Mat::zeros(m, n));
         for (k, (base, direction)) in bases.iter().zip(directions).enumerate() {
@@ -159,6 +207,7 @@ impl LeastSquares<'_> {
             sum += &field;
         }
         self.problem.forget(&mut sum);
+        weigh(weights, &mut sum);
         sum
     }
 
@@ -173,7 +222,13 @@ impl LeastSquares<'_> {
     }
 
     /// The directions that minimise ½ ‖residual − Σ T ξ‖² + ½ damping ‖ξ‖² nearly, and how much less that is than before.
-    fn minimise(&self, bases: &[Base<'_>], gradient: &Directions, damping: f64) -> (Directions, f64) {
+    fn minimise(
+        &self,
+        bases: &[Base<'_>],
+        weights: Option<&Mat<f64>>,
+        gradient: &Directions,
+        damping: f64,
+    ) -> (Directions, f64) {
         let mut left = gradient.clone();
         let mut search = gradient.clone();
         let mut step = gradient.clone();
@@ -184,7 +239,7 @@ impl LeastSquares<'_> {
             if square <= FORCING * FORCING * first {
                 break;
             }
-            let image = self.image(bases, &search);
+            let image = self.image(bases, weights, &search);
             let mut curved = self.project(bases, &image);
             combine(&mut curved, 1.0, damping, &search);
             let curvature = dot(&search, &curved);

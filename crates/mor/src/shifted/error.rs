@@ -107,8 +107,8 @@ pub enum ShiftedError {
         /// By the operators.
         expected: usize,
     },
-    /// Not one rank, or not one start, for each frame.
-    #[error("{ranks} ranks or fields are given for {frames} frames; give one for each")]
+    /// There are not as many ranks, or fields to start from, as frames.
+    #[error("{ranks} ranks were given for {frames} frames; give one per frame, 0 if it is to carry nothing")]
     Ranks {
         /// Given.
         ranks: usize,

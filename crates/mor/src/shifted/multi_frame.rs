@@ -21,7 +21,10 @@ impl MultiFrame {
     /// at most.
     #[must_use]
     pub fn new(ranks: impl Into<Vec<usize>>) -> Self {
-        Self { ranks: ranks.into(), limits: Limits { tolerance: 1e-10, stagnation: 1e-4, max_steps: 200 } }
+        Self {
+            ranks: ranks.into(),
+            limits: Limits { tolerance: 1e-10, stagnation: 1e-4, max_steps: 200, settled: f64::INFINITY },
+        }
     }
 
     /// Stops at this relative error.

@@ -34,14 +34,18 @@ enum Method {
 
 impl Proximal {
     fn new(method: Method) -> Self {
-        let limits = Limits { tolerance: 1e-6, stagnation: f64::NEG_INFINITY, max_steps: 500 };
+        let limits =
+            Limits { tolerance: 1e-6, stagnation: f64::NEG_INFINITY, max_steps: 500, settled: f64::INFINITY };
         Self { method, noise: false, low_rank: None, sparse: None, limits }
     }
 
-    /// Multipliers and block by block; λ_s = 1, μ = M N / (4 ‖Q‖₁) fixed. To a relative error of 1e-6 or 500 steps.
+    /// Multipliers and block by block; λ_s = 1, μ = M N / (4 ‖Q‖₁) fixed. To a relative error of 1e-6, when a step changes the
+    /// functional by less than 1e-3 of it, or 500 steps.
     #[must_use]
     pub fn augmented_lagrangian() -> Self {
-        Self::new(Method::AugmentedLagrangian(None))
+        let mut new = Self::new(Method::AugmentedLagrangian(None));
+        new.limits.settled = 1e-3;
+        new
     }
 
     /// All blocks forward with the same residual, γ = 1.98/(K + 1); γ < 2/(K + 1) converges with K frames and noise. Stops where the

@@ -16,8 +16,10 @@ pub(super) struct RankSearch<'a> {
     pub(super) ignored: &'a [(usize, usize)],
     /// The relative error that is good enough.
     pub(super) tolerance: f64,
-    /// Of any frame.
-    pub(super) max_rank: usize,
+    /// No frame gets more modes than this.
+    pub(super) ranks: &'a [usize],
+    /// As many as that are wanted, whether they stand out of the noise or not, and needed.
+    pub(super) all: bool,
     /// Of a fit.
     pub(super) max_steps: usize,
 }
@@ -39,7 +41,6 @@ impl RankSearch<'_> {
             }
         }
         let problem = self.problem()?;
-        let max_rank = self.max_rank.min(self.snapshots.nrows()).min(self.snapshots.ncols());
         let mut stopped = StopReason::Stagnation;
         let (mut error, mut edge);
         loop {
@@ -50,11 +51,14 @@ impl RankSearch<'_> {
                 stopped = StopReason::Tolerance;
                 break;
             }
-            let Some(grown) = self.grown(&frames, &residual, edge, max_rank) else { break };
+            let Some(grown) = self.grown(&frames, &residual, edge) else { break };
             match self.fit(&grown, self.tolerance, observer)? {
                 (_, StopReason::Asked) => return Ok((frames, StopReason::Asked)),
                 (fitted, _) => frames = fitted,
             }
+        }
+        if self.all {
+            return Ok((frames, stopped));
         }
         // A mode less.
         let noise = problem.relative(CLEARLY * edge);
@@ -85,13 +89,13 @@ impl RankSearch<'_> {
     }
 
     /// The frames with the largest mode of the residual, or None if it does not stand out.
-    fn grown(&self, frames: &[Frame], residual: &Mat<f64>, edge: f64, max_rank: usize) -> Option<Vec<Frame>> {
+    fn grown(&self, frames: &[Frame], residual: &Mat<f64>, edge: f64) -> Option<Vec<Frame>> {
         let leading = |k: usize| {
             let mut field = residual.clone();
             self.operators.to_lab_transposed(k, field.as_mut());
             Frame::leading(field.as_ref(), 1)
         };
-        let open = (0..frames.len()).filter(|&k| frames[k].rank() < max_rank);
+        let open = (0..frames.len()).filter(|&k| frames[k].rank() < self.ranks[k]);
         let modes = open.map(|k| (k, leading(k))).filter(|(_, mode)| mode.rank() > 0);
         let (k, mode) =
             modes.max_by(|(_, a), (_, b)| a.singular_values[0].total_cmp(&b.singular_values[0]))?;
@@ -99,7 +103,7 @@ impl RankSearch<'_> {
         let (m, n) = residual.shape();
         let rest = (residual.squared_norm_l2() - mode.singular_values[0].powi(2)).max(0.0).sqrt();
         let edge = edge.min(rest * (1.0 / (m as f64).sqrt() + 1.0 / (n as f64).sqrt()));
-        (mode.singular_values[0] > CLEARLY * edge).then(|| {
+        (self.all || mode.singular_values[0] > CLEARLY * edge).then(|| {
             let mut grown = frames.to_vec();
             grown[k] = grown[k].plus(&mode);
             grown
@@ -123,22 +127,18 @@ impl RankSearch<'_> {
     }
 }
 
-/// 1.4826 median |x| of entries that are not zero: the deviation of normal noise.
-pub(super) fn deviation(field: &Mat<f64>) -> f64 {
-    let mut sizes: Vec<f64> = field
-        .col_iter()
-        .flat_map(|c| c.iter().map(|x| x.abs()).filter(|&x| x > 0.0).collect::<Vec<_>>())
-        .collect();
-    if sizes.is_empty() {
-        return 0.0;
-    }
+/// 1.4826 median |x|: the deviation of normal noise.
+pub(super) fn deviation(mut sizes: Vec<f64>) -> f64 {
     let middle = sizes.len() / 2;
-    1.4826 * *sizes.select_nth_unstable_by(middle, f64::total_cmp).1
+    if sizes.is_empty() { 0.0 } else { 1.4826 * *sizes.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
+/// What the largest singular value of noise like that is. Entries that are zero do not count: they are not known.
 fn noise_edge(residual: &Mat<f64>) -> f64 {
     let (m, n) = residual.shape();
-    deviation(residual) * ((m as f64).sqrt() + (n as f64).sqrt())
+    let sizes =
+        residual.col_iter().flat_map(|c| c.iter().map(|x| x.abs()).filter(|&x| x > 0.0).collect::<Vec<_>>());
+    deviation(sizes.collect()) * ((m as f64).sqrt() + (n as f64).sqrt())
 }
 
 impl Frame {

@@ -118,6 +118,8 @@ pub(super) struct Limits {
     /// A step that makes what is to be minimised smaller by less than this part is none.
     pub(super) stagnation: f64,
     pub(super) max_steps: usize,
+    /// The tolerance does not count while a step changes what is to be minimised by more than this part.
+    pub(super) settled: f64,
 }
 
 /// The way of an iteration, and whether it is at its end.
@@ -148,10 +150,13 @@ impl<'a> Course<'a> {
         if (self.observer)(&progress).is_break() {
             return Some(StopReason::Asked);
         }
-        let Limits { tolerance, stagnation, max_steps } = self.limits;
+        let Limits { tolerance, stagnation, max_steps, settled } = self.limits;
         // Over three steps, so that one bad step is not the end.
         let before = self.merits.len().checked_sub(4).map(|i| self.merits[i]);
-        if error <= tolerance {
+        let moving = before.map_or(settled.is_finite() && merit > 0.0, |before| {
+            (before - merit).abs() > 3.0 * settled * before
+        });
+        if error <= tolerance && !moving {
             Some(StopReason::Tolerance)
         } else if before.is_some_and(|before| before - merit <= 3.0 * stagnation * before) {
             Some(StopReason::Stagnation)

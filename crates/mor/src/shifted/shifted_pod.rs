@@ -30,7 +30,8 @@ pub enum Noise {
 
 /// Shifted proper orthogonal decomposition, by the algorithms that suit the snapshots.
 ///
-/// 1. Wrong entries, if there may be any, and the modes to start from are told by the augmented Lagrangian of [`Proximal`].
+/// 1. If entries may be wrong, the augmented Lagrangian of [`Proximal`] tells the modes to start from. They are fitted so that wrong entries
+///    do little harm, by [`JointDescent::huber`], and those that are off by more than six deviations of the others are wrong.
 /// 2. Ranks that are not given are found by adding modes that stand out of the noise, and leaving out those that are not needed; first
 ///    on some of the snapshots if there are many.
 /// 3. [`JointDescent`] fits all modes to the entries that are not wrong: nothing is left of the bias of the nuclear norm.
@@ -189,13 +190,18 @@ impl ShiftedPod {
         let (m, n) = snapshots.shape();
         let mut frames = start.unwrap_or_else(|| vec![Frame::nothing(m, n); operators.n_frames()]);
         let fresh = frames.iter().all(|f| f.rank() == 0);
-        if self.ranks == Ranks::Found && fresh && n > MANY {
+        if fresh && n > MANY {
             let some: Vec<usize> = (0..SOME).map(|i| i * (n - 1) / (SOME - 1)).collect();
             let few = Mat::from_fn(m, SOME, |i, j| snapshots[(i, some[j])]);
+            let ranks = match &self.ranks {
+                Ranks::Given(ranks) => ranks.clone(),
+                Ranks::Found => vec![self.max_rank; frames.len()],
+            };
+            let some_operators = thinned(&some)?;
+            let ranks = Problem::new(&*some_operators, few.as_ref())?.ranks(&ranks)?;
             let start = vec![Frame::nothing(m, SOME); frames.len()];
-            let search = self
-                .rank_search(&*thinned(&some)?, few.as_ref(), &[])
-                .search(start, &mut |p| watch.see(p))?;
+            let search = self.rank_search(&*some_operators, few.as_ref(), &[], &ranks);
+            let search = search.search(start, &mut |p| watch.see(p))?;
             frames = search.0.iter().map(|f| f.between(&some, n)).collect();
             if search.1 == StopReason::Asked {
                 return Ok(Decomposition { frames, noise: None, history: watch.take(), stopped: search.1 });
@@ -213,14 +219,12 @@ impl ShiftedPod {
         start: Option<Vec<Frame>>,
         watch: &mut Watch<'_>,
     ) -> Result<Decomposition, ShiftedError> {
-        let mut proximal = Proximal::augmented_lagrangian().with_noise().tolerance(1e-4);
+        let mut proximal = Proximal::augmented_lagrangian().with_noise().tolerance(1e-3);
         proximal = proximal.max_steps(2 * self.max_steps);
         let convex = proximal.solve(operators, snapshots, start.as_deref(), &mut |p| watch.see(p))?;
         if convex.stopped == StopReason::Asked {
             return Ok(Decomposition { history: watch.take(), ..convex });
         }
-        let sparse = convex.noise.unwrap_or_else(|| Mat::zeros(snapshots.nrows(), snapshots.ncols()));
-        let mut wrong = entries(&sparse, (6.0 * deviation_of_all(&sparse)).max(1e-6 * sparse.norm_max()));
         // Small singular values are noise or will be found again.
         let largest = convex.frames.iter().flat_map(|f| &f.singular_values).fold(0.0, |a: f64, &s| a.max(s));
         let leading = |(k, frame): (usize, &Frame)| match &self.ranks {
@@ -230,21 +234,53 @@ impl ShiftedPod {
             }
         };
         let mut frames: Vec<Frame> = convex.frames.iter().enumerate().map(leading).collect();
-        let mut stopped;
-        let mut round = 0;
-        loop {
+        let problem = Problem::new(operators, snapshots)?;
+        for round in 1.. {
+            let ranks: Vec<_> = frames.iter().map(Frame::rank).collect();
+            frames = self.robust_fit(&problem, frames, watch)?;
+            // Where nothing is explained nothing is wrong.
+            let known = ranks.iter().any(|&rank| rank > 0);
+            let wrong = match known {
+                true => entries(&problem.residual(&frames), 6.0 * deviation_there(&problem, &frames)),
+                false => vec![],
+            };
+            let stopped;
             (frames, stopped) = self.fit(operators, snapshots, &wrong, frames, watch)?;
-            let residual = Problem::new(operators, snapshots)?.residual(&frames);
-            let last = round == 2 || stopped == StopReason::Asked;
-            let seen = if last { wrong.clone() } else { outliers(&residual, &wrong) };
-            if last || seen == wrong {
+            let same = frames.iter().map(Frame::rank).eq(ranks);
+            if same || round == ROUNDS || stopped == StopReason::Asked {
+                let residual = problem.residual(&frames);
                 let mut noise = Mat::zeros(residual.nrows(), residual.ncols());
                 wrong.iter().for_each(|&at| noise[at] = residual[at]);
                 return Ok(Decomposition { frames, noise: Some(noise), history: watch.take(), stopped });
             }
-            wrong = seen;
-            round += 1;
         }
+        unreachable!("the last round returns")
+    }
+
+    /// Modes fitted so that wrong entries do little harm, with Huber's level from the deviation of the others, until that is as small as it gets.
+    fn robust_fit(
+        &self,
+        problem: &Problem<'_>,
+        mut frames: Vec<Frame>,
+        watch: &mut Watch<'_>,
+    ) -> Result<Vec<Frame>, ShiftedError> {
+        let mut level = deviation_there(problem, &frames);
+        for _ in 0..self.max_steps {
+            if level <= 0.0 {
+                break;
+            }
+            let ranks: Vec<_> = frames.iter().map(Frame::rank).collect();
+            let descent = JointDescent::new(ranks).huber(level).stagnation(0.05).max_steps(self.max_steps);
+            let d =
+                descent.solve(problem.operators, problem.snapshots, Some(&frames), &mut |p| watch.see(p))?;
+            frames = d.frames;
+            let before = level;
+            level = deviation_there(problem, &frames);
+            if d.stopped == StopReason::Asked || level > 0.9 * before {
+                break;
+            }
+        }
+        Ok(frames)
     }
 
     /// The modes that are asked for, fitted to all entries but the wrong ones.
@@ -256,18 +292,22 @@ impl ShiftedPod {
         start: Vec<Frame>,
         watch: &mut Watch<'_>,
     ) -> Result<(Vec<Frame>, StopReason), ShiftedError> {
-        let (frames, ranks) = match &self.ranks {
-            Ranks::Given(ranks) => (start, ranks.clone()),
-            Ranks::Found => {
-                let search = self.rank_search(operators, snapshots, wrong);
-                let (frames, stopped) = search.search(start, &mut |p| watch.see(p))?;
-                if stopped == StopReason::Asked {
-                    return Ok((frames, stopped));
-                }
-                let ranks = frames.iter().map(Frame::rank).collect();
-                (frames, ranks)
-            }
+        let problem = Problem::new(operators, snapshots)?;
+        let (ranks, all) = match &self.ranks {
+            Ranks::Given(ranks) => (problem.ranks(ranks)?, true),
+            Ranks::Found => (problem.ranks(&vec![self.max_rank; operators.n_frames()])?, false),
         };
+        let mut frames = start;
+        if !all || frames.iter().zip(&ranks).any(|(frame, &rank)| frame.rank() < rank) {
+            let search = self.rank_search(operators, snapshots, wrong, &ranks);
+            let stopped;
+            (frames, stopped) = search.search(frames, &mut |p| watch.see(p))?;
+            if stopped == StopReason::Asked {
+                return Ok((frames, stopped));
+            }
+        }
+        let ranks: Vec<_> = frames.iter().zip(&ranks).map(|(frame, &rank)| frame.rank().min(rank)).collect();
+        frames = frames.iter().zip(&ranks).map(|(frame, &rank)| frame.cut(rank)).collect();
         let descent =
             JointDescent::new(ranks).tolerance(self.tolerance).max_steps(self.max_steps).ignoring(wrong);
         let d = descent.solve(operators, snapshots, Some(&frames), &mut |p| watch.see(p))?;
@@ -279,44 +319,36 @@ impl ShiftedPod {
         operators: &'a dyn FrameOperators,
         snapshots: MatRef<'a, f64>,
         ignored: &'a [(usize, usize)],
+        ranks: &'a [usize],
     ) -> RankSearch<'a> {
-        let Self { rank_tolerance: tolerance, max_rank, max_steps, .. } = *self;
-        RankSearch { operators, snapshots, ignored, tolerance, max_rank, max_steps }
+        let all = self.ranks != Ranks::Found;
+        let tolerance = if all { self.tolerance } else { self.rank_tolerance };
+        RankSearch { operators, snapshots, ignored, tolerance, ranks, all, max_steps: self.max_steps }
     }
 }
 
 /// Modes of the augmented Lagrangian below this part of the largest one are not started from.
 const LEADING: f64 = 0.02;
 
-/// Rows and columns of entries larger than this.
+/// How often ranks are looked for.
+const ROUNDS: usize = 3;
+
+/// The deviation of what is left, where there is something to carry along, from nothing; no less than round-off.
+fn deviation_there(problem: &Problem<'_>, frames: &[Frame]) -> f64 {
+    let residual = problem.residual(frames);
+    let explained = problem.snapshots - &residual;
+    let something = 0.02 * explained.norm_max();
+    let there = explained.col_iter().zip(residual.col_iter()).flat_map(|(f, r)| {
+        f.iter().zip(r.iter()).filter(|(f, _)| f.abs() > something).map(|(_, r)| r.abs()).collect::<Vec<_>>()
+    });
+    deviation(there.collect()).max(1e-10 * problem.snapshots.norm_max())
+}
+
+/// Row and column of entries larger than that.
 fn entries(field: &Mat<f64>, size: f64) -> Vec<(usize, usize)> {
     let column =
         |j: usize| (0..field.nrows()).filter(move |&i| field[(i, j)].abs() > size).map(move |i| (i, j));
     (0..field.ncols()).flat_map(column).collect()
-}
-
-/// 1.4826 median |x|.
-fn deviation_of_all(field: &Mat<f64>) -> f64 {
-    let zeros = entries(field, 0.0).len() * 2 < field.nrows() * field.ncols();
-    if zeros { 0.0 } else { deviation(field) }
-}
-
-/// The entries that do not fit, once those that are wrong have been left out: none that fits as well as the others do, and of the
-/// others those that are off as the wrong ones are.
-fn outliers(residual: &Mat<f64>, wrong: &[(usize, usize)]) -> Vec<(usize, usize)> {
-    let mut right = residual.clone();
-    wrong.iter().for_each(|&at| right[at] = 0.0);
-    let level = (6.0 * deviation(&right)).max(1e-8 * residual.norm_max());
-    let mut sizes: Vec<f64> = wrong.iter().map(|&at| residual[at].abs()).collect();
-    let middle = sizes.len() / 2;
-    let usual = if sizes.is_empty() {
-        f64::INFINITY
-    } else {
-        *sizes.select_nth_unstable_by(middle, f64::total_cmp).1
-    };
-    let was: std::collections::HashSet<_> = wrong.iter().collect();
-    let seen = entries(residual, level);
-    seen.into_iter().filter(|at| was.contains(at) || residual[*at].abs() > 0.5 * usual).collect()
 }
 
 /// Some of the snapshots.

@@ -58,7 +58,7 @@ fn normal_noise_is_averaged_out() {
 #[test]
 fn wrong_entries_are_found() {
     let (op, clean) = crossing_waves(Interpolation::Spectral);
-    for (part, bound) in [(0.05, 1e-4), (0.125, 3e-4)] {
+    for (part, bound) in [(0.05, 1e-8), (0.125, 1e-8)] {
         let q = salt_and_pepper(&clean, part, 11);
         for ranks in [Ranks::Given(vec![1, 1]), Ranks::Found] {
             let d = pod()

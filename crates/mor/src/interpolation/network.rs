@@ -50,7 +50,8 @@ pub struct NetworkParams {
     pub activation: Activation,
     /// Waves of the inputs.
     pub fourier: Fourier,
-    /// Largest slope of the first layer at the start, in inputs scaled to [−1, 1]: how fast functions change that are learnt easily.
+    /// Slope of the neurons of the first layer at the start, in inputs scaled to [−1, 1]: how fast functions change that are learnt
+    /// easily.
     pub bandwidth: f64,
     /// λ ≥ 0 of the weight decay: λ Σ W² is added to the mean of the squares of errors (of outputs scaled to a mean square of one).
     pub decay: f64,
@@ -61,7 +62,8 @@ pub struct NetworkParams {
     pub patience: usize,
     /// The first descent.
     pub adam: Adam,
-    /// Iterations of L-BFGS at most, the second descent.
+    /// Iterations of L-BFGS at most, the second descent. With the last layer eliminated they are shared out among five regularisations
+    /// of it, each weaker than the one before.
     pub iterations: usize,
     /// Solve for the last layer, which is linear, in every iteration, and descend with the others alone.
     pub eliminate: bool,
@@ -84,11 +86,26 @@ impl NetworkParams {
             validation: 0.0,
             patience: 200,
             adam: Adam::default(),
-            iterations: 2000,
+            iterations: 2500,
             eliminate: true,
             seed: 1,
             starts: 1,
         }
+    }
+    /// Networks of one hidden layer, as wide as the number of samples suggests, and iterations for a few seconds.
+    ///
+    /// With one input it sees the waves it finds. With more there are usually few samples to each: two networks that begin flat, one
+    /// of them with a decay that keeps them smooth between the samples.
+    #[must_use]
+    pub fn suited(samples: &Samples) -> Vec<Self> {
+        let m = samples.len();
+        let iterations = ((2500.0 * (600.0 / m as f64).min(1.0)) as usize).max(100);
+        if samples.inputs() == 1 {
+            let fourier = Fourier::Found { most: 8 };
+            return vec![Self { fourier, iterations, ..Self::new(&[(m / 4).clamp(4, 64)]) }];
+        }
+        let flat = Self { bandwidth: 1.0, iterations, ..Self::new(&[(2 * m / 3).clamp(4, 64)]) };
+        vec![flat.clone(), Self { decay: 1e-6, ..flat }]
     }
     fn check(&self, samples: &Samples) -> Result<(), InterpolationError> {
         let wrong = |what, value: f64, must| Err(InterpolationError::Parameter { what, value, must });
@@ -161,7 +178,8 @@ impl NetworkParams {
             }
             [x, y]
         };
-        let data = Data { train: pick(&rest), held: pick(&held_out), held_out };
+        let data =
+            Data { train: pick(&rest), held: pick(&held_out), held_out, steepness: features.steepness() };
         let (weights, report) = training::train(self, &layers, &data);
         if !report.score().is_finite() {
             return Err(InterpolationError::Diverged { iterations: report.history.len() });
@@ -179,7 +197,9 @@ impl Method for NetworkParams {
             Fourier::Multiples { up_to, .. } => format!(" + {up_to} multiples"),
             Fourier::Found { .. } => " + waves".into(),
         };
-        format!("{} network {}{waves}", self.activation.name(), hidden.join(" × "))
+        let decay = if self.decay > 0.0 { format!(", decay {:.0e}", self.decay) } else { String::new() };
+        let free = if self.eliminate { "" } else { ", all weights free" };
+        format!("{} network {}{waves}{decay}{free}", self.activation.name(), hidden.join(" × "))
     }
     fn fit(&self, samples: &Samples) -> Result<Box<dyn Interpolator>, InterpolationError> {
         Ok(Box::new(self.network(samples)?))

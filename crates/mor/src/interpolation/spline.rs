@@ -68,6 +68,11 @@ impl SplineParams {
         };
         Ok(Self { degrees: (0..samples.inputs()).map(of).collect::<Result<_, _>>()? })
     }
+    /// The same with lower degrees where they are higher than this.
+    #[must_use]
+    pub fn at_most(&self, degree: Degree) -> Self {
+        Self { degrees: self.degrees.iter().map(|own| degree.min(*own)).collect() }
+    }
     /// The spline through the samples.
     ///
     /// # Errors

@@ -55,6 +55,14 @@ impl Features {
         let to = |i: usize| self.scaling.factor(i) / TAU;
         Mat::from_fn(self.inputs(), self.frequencies.ncols(), |i, j| to(i) * self.frequencies[(i, j)])
     }
+    /// Largest slope of every feature with the scaled inputs.
+    pub(super) fn steepness(&self) -> Vec<f64> {
+        let waves = (0..self.frequencies.ncols()).map(|j| {
+            let omega = self.frequencies.col_as_slice(j).iter().map(|w| w * w).sum::<f64>().sqrt();
+            [omega; 2]
+        });
+        self.plain.iter().map(|_| 1.0).chain(waves.flatten()).collect()
+    }
     fn angle(&self, z: &[f64], j: usize) -> f64 {
         z.iter().zip(self.frequencies.col_as_slice(j)).map(|(z, omega)| z * omega).sum()
     }

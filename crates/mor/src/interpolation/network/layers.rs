@@ -69,7 +69,7 @@ impl Layers {
             }
         }
     }
-    /// Adds ∂L/∂W and ∂L/∂b of the first `layers` layers to `gradient`, from [`Pass::output_delta`] and the last forward pass.
+    /// Adds ∂L/∂W and ∂L/∂b of the first `layers` layers to `gradient`, from [`Pass::outputs_and_delta`] and the last forward pass.
     pub(super) fn backward(
         &self,
         weights: &[f64],
@@ -130,9 +130,9 @@ impl Pass {
     pub(super) fn features(&self) -> Option<&Mat<f64>> {
         self.values.len().checked_sub(2).map(|l| &self.values[l])
     }
-    /// ∂L/∂y.
-    pub(super) fn output_delta(&mut self) -> &mut Mat<f64> {
+    /// Of the last layer, and where ∂L/∂y goes.
+    pub(super) fn outputs_and_delta(&mut self) -> (&Mat<f64>, &mut Mat<f64>) {
         let last = self.deltas.len() - 1;
-        &mut self.deltas[last]
+        (&self.values[last], &mut self.deltas[last])
     }
 }

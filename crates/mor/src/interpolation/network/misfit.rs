@@ -4,19 +4,18 @@ use super::lbfgs::Objective;
 use crate::{Mat, MatRef};
 use monomorphic::LeastSquares;
 
-/// Added to the decay of the last layer when it is eliminated: its equations may be singular to round-off.
-const RIDGE: f64 = 1e-24;
-
 /// L(θ) = Σ |y_θ(xᵢ) − yᵢ|²/(m k) + λ Σ |W|², over all samples and all matrices of weights.
 ///
 /// With the last layer eliminated, θ is all but this layer, which is the best one to the others: L(θ) = min L(θ, W, b) is a linear
-/// least-squares problem, and its gradient is that of L at fixed W and b (Golub & Pereyra, SIAM J. Numer. Anal. 10 (1973) 413–432,
-/// with the regularisation included).
+/// least-squares problem, and its gradient is that of L at fixed W and b (variable projection: Golub & Pereyra, SIAM J. Numer. Anal.
+/// 10 (1973) 413–432). The neurons before it become dependent to round-off as they fit: a ridge μ is added to λ of the last layer.
 pub(super) struct Misfit<'a> {
     layers: &'a Layers,
     x: MatRef<'a, f64>,
     y: MatRef<'a, f64>,
     decay: f64,
+    /// μ, without effect if the last layer is not eliminated.
+    pub(super) ridge: f64,
     /// Of the last evaluation, all layers.
     weights: Vec<f64>,
     pass: Pass,
@@ -38,7 +37,7 @@ impl<'a> Misfit<'a> {
             Elimination { equations: LeastSquares::new(m + n, n + 1, k), right: Mat::zeros(m + n, k) }
         });
         let weights = vec![0.0; layers.len()];
-        Self { layers, x, y, decay, weights, pass: layers.pass(m), eliminated }
+        Self { layers, x, y, decay, ridge: 0.0, weights, pass: layers.pass(m), eliminated }
     }
     /// Where the last layer begins.
     fn last(&self) -> usize {
@@ -60,11 +59,14 @@ impl<'a> Misfit<'a> {
     /// Writes ∂L/∂y and gives back the sum of squares divided by m k.
     fn differences(&mut self) -> f64 {
         let scale = 1.0 / (self.y.nrows() * self.y.ncols()) as f64;
+        let (outputs, delta) = self.pass.outputs_and_delta();
         let mut sum = 0.0;
         for j in 0..self.y.ncols() {
-            for i in 0..self.y.nrows() {
-                let off = self.pass.outputs()[(i, j)] - self.y[(i, j)];
-                self.pass.output_delta()[(i, j)] = 2.0 * scale * off;
+            let wanted = (0..self.y.nrows()).map(|i| self.y[(i, j)]);
+            let column = outputs.col_as_slice(j).iter().zip(delta.col_as_slice_mut(j));
+            for ((output, delta), wanted) in column.zip(wanted) {
+                let off = output - wanted;
+                *delta = 2.0 * scale * off;
                 sum += off * off;
             }
         }
@@ -79,7 +81,7 @@ impl<'a> Misfit<'a> {
             return;
         };
         let ((n, m), k) = (features.shape(), self.y.nrows());
-        let ridge = ((self.decay + RIDGE) * (m * k) as f64).sqrt();
+        let ridge = ((self.decay + self.ridge) * (m * k) as f64).sqrt();
         let mut matrix = equations.matrix();
         for j in 0..n {
             for i in 0..m {
@@ -116,12 +118,12 @@ impl Objective for Misfit<'_> {
         let free = if self.eliminated.is_some() { depth - 1 } else { depth };
         self.layers.backward(&self.weights, self.x, free, &mut self.pass, gradient);
         for l in 0..depth {
-            let decay = if l < free { self.decay } else { self.decay + RIDGE };
+            let decay = if l < free { self.decay } else { self.decay + self.ridge };
             if decay > 0.0 {
-                let place = self.layers.places(l)[0].clone();
-                loss += decay * self.weights[place.clone()].iter().map(|w| w * w).sum::<f64>();
+                let [matrix, _] = self.layers.places(l);
+                loss += decay * self.weights[matrix.clone()].iter().map(|w| w * w).sum::<f64>();
                 if l < free {
-                    let pairs = gradient[place.clone()].iter_mut().zip(&self.weights[place]);
+                    let pairs = gradient[matrix.clone()].iter_mut().zip(&self.weights[matrix]);
                     pairs.for_each(|(g, w)| *g += 2.0 * decay * w);
                 }
             }

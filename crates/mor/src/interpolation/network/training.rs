@@ -37,7 +37,7 @@ pub struct Epoch {
 /// How a network was trained.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// One entry per step of Adam, one for where L-BFGS starts, and one per iteration of it.
+    /// One entry per step of Adam, then for each start of L-BFGS (one for each ridge of the last layer) and each iteration of it.
     pub history: Vec<Epoch>,
     /// How many of them are Adam's.
     pub adam_steps: usize,
@@ -67,12 +67,18 @@ fn score(epoch: &Epoch) -> f64 {
     epoch.validation.unwrap_or(epoch.loss)
 }
 
-/// Features (columns) and scaled values of the samples, and which are held out.
+/// Features and scaled values of the samples (columns), and which are held out.
 pub(super) struct Data {
     pub(super) train: [Mat<f64>; 2],
     pub(super) held: [Mat<f64>; 2],
     pub(super) held_out: Vec<usize>,
+    /// Largest slope of every feature.
+    pub(super) steepness: Vec<f64>,
 }
+
+/// Ridges of the eliminated last layer, one after the other: at once with the last, the first steps lead to dependent neurons with
+/// huge weights that cancel, and no step leads out; with the first alone the error stays at its root.
+const RIDGES: [f64; 5] = [1e-12, 1e-14, 1e-16, 1e-18, 1e-20];
 
 /// The best of several starts.
 pub(super) fn train(params: &NetworkParams, layers: &Layers, data: &Data) -> (Vec<f64>, Report) {
@@ -121,7 +127,7 @@ impl Watch<'_> {
 
 fn one(params: &NetworkParams, layers: &Layers, data: &Data, start: usize) -> (Vec<f64>, Report) {
     let [x, y] = data.train.each_ref().map(Mat::as_ref);
-    let initial = initial(params, layers, x, start);
+    let initial = initial(params, layers, x, &data.steepness, start);
     let mut misfit = Misfit::new(layers, [x, y], params.decay, params.eliminate);
     let held = data.held.each_ref().map(Mat::as_ref);
     let report = Report {
@@ -143,20 +149,37 @@ fn one(params: &NetworkParams, layers: &Layers, data: &Data, start: usize) -> (V
         since: 0,
     };
     let mut theta = initial[..misfit.len()].to_vec();
+    let needed: Vec<f64> =
+        RIDGES.into_iter().filter(|ridge| params.eliminate && *ridge > params.decay).collect();
+    let ridges = if needed.is_empty() { vec![0.0] } else { needed };
+    misfit.ridge = ridges[0];
     watch.report.adam_stop =
         params.adam.minimise(&mut misfit, &mut theta, &mut |m, loss| watch.see(m.weights(), loss));
     watch.report.adam_steps = watch.report.history.len();
     theta.copy_from_slice(&watch.weights[..misfit.len()]);
     watch.since = 0;
-    let limits = Limits { iterations: params.iterations, memory: 20, gradient: 1e-14, decrease: 1e-9 };
-    watch.report.lbfgs_stop =
-        lbfgs::minimise(&mut misfit, &mut theta, &limits, &mut |m, loss| watch.see(m.weights(), loss));
+    let iterations = params.iterations.div_ceil(ridges.len());
+    let limits = Limits { iterations, memory: 20, gradient: 1e-14, decrease: 1e-9 };
+    for ridge in ridges {
+        misfit.ridge = ridge;
+        watch.report.lbfgs_stop =
+            lbfgs::minimise(&mut misfit, &mut theta, &limits, &mut |m, loss| watch.see(m.weights(), loss));
+        if matches!(watch.report.lbfgs_stop, Stop::Validation | Stop::NotFinite) {
+            break;
+        }
+    }
     (watch.weights, watch.report)
 }
 
-/// Weights to start from. The first layer has slopes within ± the bandwidth, and its neurons are centred at samples drawn at
-/// random; the others are uniform as Glorot & Bengio (2010) have it for tanh and SiLU, and Sitzmann et al. (2020) for sine.
-fn initial(params: &NetworkParams, layers: &Layers, x: MatRef<'_, f64>, start: usize) -> Vec<f64> {
+/// Weights to start from. The first layer lets every feature contribute slopes within ± the bandwidth, over the root of their number,
+/// and its neurons are centred at samples drawn at random; the others are uniform as Glorot & Bengio (2010) have it for tanh and SiLU, and Sitzmann et al. (2020) for sine.
+fn initial(
+    params: &NetworkParams,
+    layers: &Layers,
+    x: MatRef<'_, f64>,
+    steepness: &[f64],
+    start: usize,
+) -> Vec<f64> {
     let mut random = Pcg64::seed_from_u64(params.seed.wrapping_add(start as u64));
     let mut weights = vec![0.0; layers.len()];
     for l in 0..layers.depth() {
@@ -164,7 +187,7 @@ fn initial(params: &NetworkParams, layers: &Layers, x: MatRef<'_, f64>, start: u
         let [matrix, shifts] = layers.places(l);
         let first = l == 0 && layers.depth() > 1;
         let bound = match params.activation {
-            _ if first => params.bandwidth / (n as f64).sqrt(),
+            _ if first => 1.0,
             Activation::Sine if l + 1 < layers.depth() => (6.0 / n as f64).sqrt(),
             _ => (6.0 / (n + next) as f64).sqrt(),
         };
@@ -172,6 +195,9 @@ fn initial(params: &NetworkParams, layers: &Layers, x: MatRef<'_, f64>, start: u
             *w = random.random_range(-bound..bound);
         }
         if first {
+            for (i, w) in weights[matrix.clone()].iter_mut().enumerate() {
+                *w *= params.bandwidth / (steepness[i / next] * (n as f64).sqrt());
+            }
             for i in 0..next {
                 let centre = random.random_range(0..x.ncols());
                 let sum: f64 = (0..n).map(|j| weights[matrix.start + i + j * next] * x[(j, centre)]).sum();

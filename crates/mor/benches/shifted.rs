@@ -4,6 +4,8 @@ use interfaces::Vector;
 use mor::Mat;
 use mor::shifted::fourier::Als;
 use mor::shifted::{Grid, Motion, Motions};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
 
 /// Snapshots, where they are, and how their frames move.
 struct Case {
@@ -63,6 +65,16 @@ fn two_discs([nx, ny]: [usize; 2], n: usize, d: f64, drift: f64, offset: f64) ->
     }
 }
 
+/// With noise of this standard deviation.
+fn noisy(mut case: Case, deviation: f64) -> Case {
+    let mut rng = Pcg64::seed_from_u64(3);
+    let q = &case.snapshots;
+    // Of twelve uniform numbers the sum has the variance 1.
+    let mut noise = || (0..12).map(|_| rng.random_range(-0.5..0.5)).sum::<f64>();
+    case.snapshots = Mat::from_fn(q.nrows(), q.ncols(), |i, j| q[(i, j)] + deviation * noise());
+    case
+}
+
 /// Its name, itself, and which ranks.
 type Entry<'a> = (&'a str, &'a dyn Fn() -> Case, &'a [&'a [usize]]);
 
@@ -85,6 +97,7 @@ fn main() {
         ("discs", &|| two_discs(FULL, 601, 15.0, 0.0, 0.0), &[&[1, 1], &[3, 3]]),
         ("discs_between_cells", &|| two_discs(FULL, 601, 15.0, 0.0, 0.5), &[&[1, 1], &[3, 3], &[4, 4]]),
         ("discs_drifting", &|| two_discs(FULL, 601, 15.0, 40.0, 0.0), &[&[1, 1], &[3, 3], &[5, 5]]),
+        ("discs_noisy", &|| noisy(two_discs(FULL, 601, 15.0, 0.0, 0.0), 0.05), &[&[1, 1], &[3, 3]]),
     ];
     println!("case                 ranks         error      steps  stopped      CPU s  peak GB");
     for (name, case, all) in cases.iter().filter(|c| chosen(c.0)) {

@@ -13,7 +13,7 @@ const LONG: Patience = (10, 0.0);
 /// With fewer.
 const SHORT: Patience = (3, 0.1);
 /// On all data after a sample.
-const POLISH: Patience = (1, 1e-3);
+const POLISH: Patience = (1, 3e-4);
 
 /// The best approximation Q ≈ Σ_k T^k Φ_k A_k with given ranks, for translations on periodic axes.
 ///
@@ -35,14 +35,15 @@ pub struct Als {
 }
 
 impl Als {
-    /// With these ranks, until the error is 1e-9 or ten steps lower it by less than a thousandth, but at most 500 steps.
+    /// With these ranks, until the error is 1e-9 or ten steps lower it by less than 1e-4 of it, but at most 500 steps.
     #[must_use]
     pub fn new(ranks: impl Into<Vec<usize>>) -> Self {
-        Self { ranks: ranks.into(), tolerance: 1e-9, max_steps: 500, stagnation: 1e-3 }
+        Self { ranks: ranks.into(), tolerance: 1e-9, max_steps: 500, stagnation: 1e-4 }
     }
 
     /// Decomposes Q − E. It begins with the coefficients of `start`, and with the residual's largest ones in each frame where that
-    /// has fewer modes; `progress` hears of each step and answers whether to go on.
+    /// has fewer modes; `progress` hears of each step and answers whether to go on. If there are many wave vectors the first steps
+    /// are on a sample of them, and their errors are estimates (to a few per cent); the last ones are on all.
     ///
     /// Rows of the snapshots: a whole number of fields of the grid. A frame gets fewer modes than asked for if the others are zero to
     /// round-off.
@@ -72,15 +73,17 @@ impl Als {
         } else {
             let all = Problem::all(&spectrum);
             let sample = Problem::sample(&spectrum, ranks.iter().sum());
-            let first = sample.as_ref().unwrap_or(&all);
+            let mut problem = sample.as_ref().unwrap_or(&all);
+            let mut sampled = sample.is_some();
             let mut run = Run { als: self, spectrum: &spectrum, history: &mut history, progress };
             loop {
-                amplitudes = grow(first, amplitudes, &ranks);
+                amplitudes = grow(problem, amplitudes, &ranks);
                 let last = amplitudes.ranks == ranks;
-                let mut descent = Descent::new(first, amplitudes);
+                let mut descent = Descent::new(problem, amplitudes);
                 let mut reason = run.descend(&mut descent, if last { LONG } else { SHORT });
-                if last && sample.is_some() && reason != StopReason::Asked {
-                    descent = descent.with(&all);
+                if sampled && (last || reason == StopReason::Tolerance) && reason != StopReason::Asked {
+                    (problem, sampled) = (&all, false);
+                    descent = descent.with(problem);
                     reason = run.descend(&mut descent, POLISH);
                 }
                 amplitudes = descent.amplitudes;

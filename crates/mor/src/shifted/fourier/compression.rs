@@ -6,6 +6,8 @@ use monomorphic::{MatMut, add_product};
 const BLOCK: usize = 4;
 /// Fewer columns are left as they are.
 const FEW: usize = 4;
+/// More than this part of all rows is not worth it.
+const WORTH: f64 = 0.25;
 
 /// D ≈ `data` · V.
 pub(super) struct Compressed {
@@ -18,7 +20,7 @@ pub(super) struct Compressed {
 }
 
 /// Approximates complex columns of length `n`, to ‖D − D Vᴴ V‖² ≤ `allowed`, and says what that is. The rows with the largest
-/// residuals become V, one after the other.
+/// residuals become V, one after the other; if that would take too many of them the columns stay as they are.
 pub(super) fn compress(n: usize, mut full: Vec<f64>, allowed: f64) -> (Compressed, f64) {
     let energies: Vec<f64> = full.chunks_exact(2 * n).map(|c| c.iter().map(|x| x * x).sum()).collect();
     let total = energies.len();
@@ -36,6 +38,7 @@ pub(super) fn compress(n: usize, mut full: Vec<f64>, allowed: f64) -> (Compresse
     let mut rest = MatMut::from_column_major_slice_mut(&mut full, 2 * n, g);
     let most = n.min(g);
     let (mut data, mut rows) = (Vec::<f64>::new(), Vec::<Vec<f64>>::new());
+    let mut before = f64::INFINITY;
     let left = loop {
         let mut of_row = vec![0.0; 2 * n];
         for j in 0..g {
@@ -47,6 +50,13 @@ pub(super) fn compress(n: usize, mut full: Vec<f64>, allowed: f64) -> (Compresse
         if left <= 0.5 * allowed || rows.len() >= most {
             break left;
         }
+        // At this rate so many blocks are still to come.
+        let blocks = (left / (0.5 * allowed)).ln() / (before / left).ln().max(f64::MIN_POSITIVE);
+        if rows.len() >= 2 * BLOCK && rows.len() as f64 + blocks * BLOCK as f64 > WORTH * most as f64 {
+            add_product(rest, turned(n, 1.0, &data).as_ref(), stacked(&rows, g).as_ref());
+            return (Compressed { data: full, basis: None, columns }, dropped.max(0.0));
+        }
+        before = left;
         norms.sort_by(|a, b| b.0.total_cmp(&a.0));
         let first = rows.len();
         for &(_, i) in norms.iter().take(BLOCK.min(most - first)) {
@@ -61,28 +71,37 @@ pub(super) fn compress(n: usize, mut full: Vec<f64>, allowed: f64) -> (Compresse
         // D Vᴴ: [D_r; D_i] times V_rᵀ and V_iᵀ.
         let real = Mat::from_fn(g, b, |c, r| new[r][c]);
         let imaginary = Mat::from_fn(g, b, |c, r| new[r][g + c]);
-        let (mut out, mut turned) = (Mat::zeros(2 * n, b), Mat::zeros(2 * n, b));
+        let (mut out, mut other) = (Mat::zeros(2 * n, b), Mat::zeros(2 * n, b));
         add_product(out.as_mut(), rest.as_ref(), real.as_ref());
-        add_product(turned.as_mut(), rest.as_ref(), imaginary.as_ref());
+        add_product(other.as_mut(), rest.as_ref(), imaginary.as_ref());
+        let mut of_block = Vec::with_capacity(2 * n * b);
         for r in 0..b {
-            let (t_r, t_i) = turned.col_as_slice(r).split_at(n);
-            let (o_r, o_i) = out.col_as_slice_mut(r).split_at_mut(n);
-            o_r.iter_mut().zip(t_i).for_each(|(o, t)| *o += t);
-            o_i.iter_mut().zip(t_r).for_each(|(o, t)| *o -= t);
+            let (o_r, o_i) = out.col_as_slice(r).split_at(n);
+            let (t_r, t_i) = other.col_as_slice(r).split_at(n);
+            of_block.extend(o_r.iter().zip(t_i).map(|(o, t)| o + t));
+            of_block.extend(o_i.iter().zip(t_r).map(|(o, t)| o - t));
         }
-        // D − (D Vᴴ) V, the imaginary parts with the coefficients times i.
-        let negative = Mat::from_fn(2 * n, 2 * b, |i, r| match (r < b, i < n) {
-            (true, _) => -out[(i, r)],
-            (false, true) => out[(n + i, r - b)],
-            (false, false) => -out[(i - n, r - b)],
-        });
-        let v = Mat::from_fn(2 * b, g, |r, c| if r < b { new[r][c] } else { new[r - b][g + c] });
-        add_product(rest.as_mut(), negative.as_ref(), v.as_ref());
-        (0..b).for_each(|r| data.extend_from_slice(out.col_as_slice(r)));
+        add_product(rest.as_mut(), turned(n, -1.0, &of_block).as_ref(), stacked(new, g).as_ref());
+        data.extend(of_block);
     };
-    let rho = rows.len();
-    let basis = Mat::from_fn(2 * rho, g, |r, c| if r < rho { rows[r][c] } else { rows[r - rho][g + c] });
+    let basis = stacked(&rows, g);
     (Compressed { data, basis: Some(basis), columns }, dropped.max(0.0) + left)
+}
+
+/// `sign` X, then `sign` i X, of complex columns X.
+fn turned(n: usize, sign: f64, x: &[f64]) -> Mat<f64> {
+    let b = x.len() / (2 * n);
+    Mat::from_fn(2 * n, 2 * b, |i, r| match (r < b, i < n) {
+        (true, _) => sign * x[i + 2 * n * r],
+        (false, true) => -sign * x[n + i + 2 * n * (r - b)],
+        (false, false) => sign * x[i - n + 2 * n * (r - b)],
+    })
+}
+
+/// The real parts of rows above their imaginary parts.
+fn stacked(rows: &[Vec<f64>], g: usize) -> Mat<f64> {
+    let b = rows.len();
+    Mat::from_fn(2 * b, g, |r, c| if r < b { rows[r][c] } else { rows[r - b][g + c] })
 }
 
 /// A complex row, real parts before imaginary parts, made orthonormal to others by going through them twice; nothing if it is one

@@ -1,14 +1,13 @@
-//! The least-squares problem of one group of wave vectors.
+//! The least-squares problem of one wave vector.
 use super::amplitudes::Amplitudes;
-use super::problem::Problem;
-use super::spectrum::Group;
+use super::problem::{Piece, Problem};
 use monomorphic::{MatMut, MatRef, add_product};
 
 /// Weight of ‖Φ‖² against the squared error at amplitudes of length one: where the frames cannot be told apart, the smallest modes
 /// are taken.
 pub(super) const DAMPING: f64 = 1e-13;
 
-/// D ≈ B Φ for one group after the other. Complex columns are two columns, of real and of imaginary parts.
+/// D ≈ B Φ for one wave vector after the other. Complex columns are two columns, of real and of imaginary parts.
 pub(super) struct Normal {
     n: usize,
     frames: Vec<usize>,
@@ -67,10 +66,10 @@ impl Normal {
         self.phases[2 * self.n * k..][..2 * self.n].split_at(self.n)
     }
 
-    /// B of these amplitudes at this group.
-    pub(super) fn begin(&mut self, problem: &Problem<'_>, group: &Group, a: &Amplitudes) {
+    /// B of these amplitudes at this piece.
+    pub(super) fn begin(&mut self, problem: &Problem<'_>, piece: &Piece<'_>, a: &Amplitudes) {
         let n = self.n;
-        problem.phases.of(group.wave, &mut self.phases);
+        problem.phases.of(piece.wave, &mut self.phases);
         for (r, (&k, column)) in self.frames.iter().zip(self.design.chunks_exact_mut(2 * n)).enumerate() {
             let (pr, pi) = self.phases[2 * n * k..][..2 * n].split_at(n);
             let a = a.values.col_as_slice(r);
@@ -100,11 +99,11 @@ impl Normal {
         }
     }
 
-    /// The best Φ for this group, and what it leaves.
-    pub(super) fn solve(&mut self, group: &Group) {
+    /// The best Φ for it, and what it leaves.
+    pub(super) fn solve(&mut self, piece: &Piece<'_>) {
         let width = 2 * self.frames.len();
         self.residual.clear();
-        self.residual.extend_from_slice(&group.data);
+        self.residual.extend_from_slice(&piece.data);
         self.phi.clear();
         if width == 0 {
             return;
@@ -122,7 +121,7 @@ impl Normal {
                 (matrix[r + (c + 1) * width], matrix[r + 1 + (c + 1) * width]) = (-im, re);
             }
         }
-        self.project(&group.data);
+        self.project(&piece.data);
         factorise(width, &mut self.matrix, DAMPING);
         self.phi.chunks_exact_mut(width).for_each(|x| substitute(&self.matrix, x));
         self.negate();

@@ -1,8 +1,8 @@
 //! The squared error of given amplitudes with the best modes.
 use super::amplitudes::{Amplitudes, add};
 use super::normal::{DAMPING, Normal, factorise, substitute};
-use super::problem::Problem;
-use super::spectrum::{Group, Spectrum};
+use super::problem::{Piece, Problem};
+use super::spectrum::Spectrum;
 use crate::Mat;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -28,10 +28,10 @@ fn squares(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum()
 }
 
-/// Sums over groups: in as many parts on every machine, added in their order.
-fn sum<T: Send>(problem: &Problem<'_>, part: impl Fn(&[(&Group, f64)]) -> T + Sync, mut fold: impl FnMut(T)) {
-    let size = problem.groups.len().div_ceil(16).max(1);
-    let parts: Vec<_> = problem.groups.par_chunks(size).map(&part).collect();
+/// Sums over wave vectors: in as many parts on every machine, added in their order.
+fn sum<T: Send>(problem: &Problem<'_>, part: impl Fn(&[Piece<'_>]) -> T + Sync, mut fold: impl FnMut(T)) {
+    let size = problem.pieces.len().div_ceil(16).max(1);
+    let parts: Vec<_> = problem.pieces.par_chunks(size).map(&part).collect();
     parts.into_iter().for_each(&mut fold);
 }
 
@@ -48,19 +48,19 @@ impl Evaluation {
     /// Of these amplitudes, the columns of each frame orthonormal.
     pub(super) fn new(problem: &Problem<'_>, a: &Amplitudes) -> Self {
         let (n, rank) = a.values.shape();
-        let of = |groups: &[(&Group, f64)]| {
+        let of = |pieces: &[Piece<'_>]| {
             let (mut sum, mut normal) = (Self::zero(n, rank), Normal::new(problem, a));
             let mut product = vec![0.0; 2 * n];
-            for (group, weight) in groups {
-                normal.begin(problem, group, a);
-                normal.solve(group);
-                let squared = weight * squares(&normal.residual);
+            for piece in pieces {
+                normal.begin(problem, piece, a);
+                normal.solve(piece);
+                let squared = piece.weight * squares(&normal.residual);
                 sum.residual += squared;
-                sum.value += squared + weight * DAMPING * squares(&normal.phi);
+                sum.value += squared + piece.weight * DAMPING * squares(&normal.phi);
                 let residual = std::mem::take(&mut normal.residual);
-                normal.add_gradient(&residual, *weight, &mut sum.gradient);
+                normal.add_gradient(&residual, piece.weight, &mut sum.gradient);
                 normal.residual = residual;
-                sum.add_gram(&normal, &a.frames(), *weight, &mut product);
+                sum.add_gram(&normal, &a.frames(), piece.weight, &mut product);
             }
             sum
         };
@@ -125,18 +125,18 @@ impl Evaluation {
     }
 }
 
-/// The best modes of these amplitudes, group by group: real and imaginary parts by turns, a column for each of the data.
+/// The best modes of these amplitudes, wave vector by wave vector: real and imaginary parts by turns, a column for each of the data.
 pub(super) fn modes(spectrum: &Spectrum, a: &Amplitudes) -> Vec<Vec<f64>> {
     let problem = Problem::all(spectrum);
     let mut all = Vec::new();
-    let of = |groups: &[(&Group, f64)]| {
+    let of = |pieces: &[Piece<'_>]| {
         let mut normal = Normal::new(&problem, a);
-        let mut solve = |group: &Group| {
-            normal.begin(&problem, group, a);
-            normal.solve(group);
+        let mut solve = |piece: &Piece<'_>| {
+            normal.begin(&problem, piece, a);
+            normal.solve(piece);
             normal.phi.clone()
         };
-        groups.iter().map(|(group, _)| solve(group)).collect::<Vec<_>>()
+        pieces.iter().map(&mut solve).collect::<Vec<_>>()
     };
     sum(&problem, of, |part: Vec<_>| all.extend(part));
     all
@@ -151,15 +151,15 @@ pub(super) fn dominant(problem: &Problem<'_>, a: &Amplitudes, more: &[usize]) ->
     let mut trial = Amplitudes { ranks: more.to_vec(), values };
     trial.orthonormalise();
     for _ in 0..POWERS {
-        let of = |groups: &[(&Group, f64)]| {
+        let of = |pieces: &[Piece<'_>]| {
             let (mut old, mut new) = (Normal::new(problem, a), Normal::new(problem, &trial));
             let mut sum = Mat::zeros(n, total);
-            for (group, weight) in groups {
-                old.begin(problem, group, a);
-                old.solve(group);
-                new.begin(problem, group, &trial);
+            for piece in pieces {
+                old.begin(problem, piece, a);
+                old.solve(piece);
+                new.begin(problem, piece, &trial);
                 new.project(&old.residual);
-                new.add_gradient(&old.residual, *weight, &mut sum);
+                new.add_gradient(&old.residual, piece.weight, &mut sum);
             }
             sum
         };

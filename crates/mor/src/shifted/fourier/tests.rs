@@ -159,6 +159,39 @@ fn it_goes_on_from_a_start_and_without_the_noise() {
 }
 
 #[test]
+fn a_sample_is_fitted_first_and_all_in_the_end() {
+    // Many wave vectors, and many columns that cannot be compressed, at each of few wave vectors.
+    for (cells, drift) in [([64, 100], 8.0), ([40, 160], 0.0)] {
+        let (grid, motions, mut q) = two_discs(cells, 24, drift);
+        let mut rng = Pcg64::seed_from_u64(1);
+        q += Mat::from_fn(q.nrows(), q.ncols(), |_, _| 0.05 * rng.random_range(-1.0..1.0));
+        let als = Als::new([1, 1]);
+        let d = solve(&als, &grid, &motions, &q);
+        let [e, told] = [error(&grid, &motions, &q, &d), d.history.last().unwrap().error];
+        assert!((e / told - 1.0).abs() < 1e-6, "{e} {told}");
+        // From the motions that are meant.
+        let one = Decomposition { history: Vec::new(), ..d.clone() };
+        let long = Als { stagnation: 1e-7, ..als };
+        let more = long.solve(&grid, &motions, q.as_ref(), Some(&one), None, &mut |_| true).unwrap();
+        let best = more.history.last().unwrap().error;
+        assert!(e < 1.002 * best, "{e} {best}");
+    }
+}
+
+#[test]
+fn threads_do_not_matter() {
+    let (grid, motions, q) = two_discs([30, 20], 40, 3.0);
+    let [a, b] = [1, 3].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| solve(&Als::new([2, 1]), &grid, &motions, &q))
+    });
+    assert_eq!(a.history, b.history);
+    assert!(
+        a.frames.iter().zip(&b.frames).all(|(a, b)| a.modes == b.modes && a.coefficients == b.coefficients)
+    );
+}
+
+#[test]
 fn nothing_and_constants_and_one_snapshot() {
     let grid = Grid::new([12, 8], [1.0; 2]).unwrap();
     let motions = Motions::by(2, 5, |k, j| Motion::translation(Vector::new((k * j) as f64, 0.0, 0.0)));

@@ -2,10 +2,11 @@
 use cpu_time::ProcessTime;
 use interfaces::Vector;
 use mor::Mat;
-use mor::shifted::fourier::Als;
+use mor::shifted::fourier::{Als, centred};
 use mor::shifted::{Grid, Motion, Motions};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use std::f64::consts::PI;
 
 /// Snapshots, where they are, and how their frames move.
 struct Case {
@@ -65,6 +66,38 @@ fn two_discs([nx, ny]: [usize; 2], n: usize, d: f64, drift: f64, offset: f64) ->
     }
 }
 
+/// In frames whose bodies are at rest at the centres of cells.
+fn on_cells(mut case: Case) -> Case {
+    case.motions = centred(&case.grid, &case.motions, case.snapshots.as_ref()).unwrap();
+    case
+}
+
+/// Velocities: two spheres that fall on curves in a periodic cube, each as fast as it moves.
+fn two_spheres(cells: usize, n: usize) -> Case {
+    let length = cells as f64;
+    let grid = Grid::new([cells; 3], [1.0; 3]).unwrap();
+    let moved = |k: usize, t: f64| {
+        let turn = 2.0 * PI * t + k as f64;
+        Vector::new(0.2 * turn.cos(), 0.2 * turn.sin(), [1.5, 0.7][k] * t) * length
+    };
+    let time = |j: usize| j as f64 / n as f64;
+    let value = |row: usize, j: usize| {
+        let (component, cell) = (row / grid.n_cells(), row % grid.n_cells());
+        let sphere = |k: usize| {
+            let r = grid.centre(cell).coords - moved(k, time(j)) - Vector::repeat(0.5 * k as f64 * length);
+            let r = r.map(|x| x - length * (x / length).round());
+            let speed = (moved(k, time(j) + 1e-4) - moved(k, time(j) - 1e-4))[component] / 2e-4;
+            speed * (-r.norm_squared() / (0.1 * length).powi(2)).exp()
+        };
+        sphere(0) + sphere(1)
+    };
+    Case {
+        motions: Motions::by(2, n, |k, j| Motion::translation(moved(k, time(j)))),
+        snapshots: Mat::from_fn(3 * grid.n_cells(), n, value),
+        grid,
+    }
+}
+
 /// With noise of this standard deviation.
 fn noisy(mut case: Case, deviation: f64) -> Case {
     let mut rng = Pcg64::seed_from_u64(3);
@@ -96,7 +129,9 @@ fn main() {
         ("discs_small_drifting", &|| two_discs(SMALL, 201, 9.0, 20.0, 0.0), &[&[1, 1], &[5, 5]]),
         ("discs", &|| two_discs(FULL, 601, 15.0, 0.0, 0.0), &[&[1, 1], &[3, 3]]),
         ("discs_between_cells", &|| two_discs(FULL, 601, 15.0, 0.0, 0.5), &[&[1, 1], &[3, 3], &[4, 4]]),
+        ("discs_centred", &|| on_cells(two_discs(FULL, 601, 15.0, 0.0, 0.5)), &[&[1, 1], &[3, 3]]),
         ("discs_drifting", &|| two_discs(FULL, 601, 15.0, 40.0, 0.0), &[&[1, 1], &[3, 3], &[5, 5]]),
+        ("spheres", &|| two_spheres(40, 100), &[&[1, 1], &[3, 3]]),
         ("discs_noisy", &|| noisy(two_discs(FULL, 601, 15.0, 0.0, 0.0), 0.05), &[&[1, 1], &[3, 3]]),
     ];
     println!("case                 ranks         error      steps  stopped      CPU s  peak GB");

@@ -3,6 +3,7 @@
 //! There T^s multiplies the coefficient of wave vector κ by e^(−iκ·s): each wave vector is a problem of its own.
 mod als;
 mod amplitudes;
+mod centring;
 mod compression;
 mod descent;
 mod finish;
@@ -16,3 +17,4 @@ mod spectrum;
 mod tests;
 
 pub use als::Als;
+pub use centring::centred;

@@ -1,4 +1,4 @@
-use super::Als;
+use super::{Als, centred};
 use crate::Mat;
 use crate::shifted::{
     Decomposition, Grid, Interpolation, Interpolator, Motion, Motions, ShiftedError, Shifts, StopReason,
@@ -79,6 +79,11 @@ fn random(
 
 /// Two discs on parallel ways at different, growing speeds, `drift` cells aside.
 fn two_discs(cells: [usize; 2], n: usize, drift: f64) -> (Grid, Motions, Mat<f64>) {
+    two_discs_at([0.0; 2], cells, n, drift)
+}
+
+/// Their centres so far from those of cells, along both axes.
+fn two_discs_at(beside: [f64; 2], cells: [usize; 2], n: usize, drift: f64) -> (Grid, Motions, Mat<f64>) {
     let [nx, ny] = cells.map(|n| n as f64);
     let moved = |k: usize, j: usize| {
         let t = j as f64 / n as f64;
@@ -86,7 +91,7 @@ fn two_discs(cells: [usize; 2], n: usize, drift: f64) -> (Grid, Motions, Mat<f64
     };
     let grid = Grid::new(cells, [1.0; 2]).unwrap();
     let disc = |k: usize, i: usize, j: usize| {
-        let start = Vector::new(0.1 * nx, [0.25, 0.75][k] * ny, 0.0);
+        let start = Vector::new(0.1 * nx + beside[k], [0.25, 0.75][k] * ny + beside[k], 0.0);
         let mut r = grid.centre(i).coords - start - moved(k, j);
         r.x -= nx * (r.x / nx).round();
         r.y -= ny * (r.y / ny).round();
@@ -127,6 +132,28 @@ fn the_edges_of_discs_need_three_modes() {
         e
     });
     assert!(one < 3e-3 && three < 1e-6, "{one:.2e} {three:.2e}");
+}
+
+#[test]
+fn frames_are_best_centred_on_cells() {
+    // Along x only, and in the plane, where the waves of two cells along either axis have phases along the other one.
+    for (drift, rank, small) in [(0.0, 3, 1e-6), (8.0, 5, 2e-4)] {
+        let beside = [0.3, -0.45];
+        let (grid, motions, q) = two_discs_at(beside, [80, 40], 150, drift);
+        let on_cells = centred(&grid, &motions, q.as_ref()).unwrap();
+        for (k, c) in beside.into_iter().enumerate() {
+            let by = on_cells.motion(k, 7).displacement - motions.motion(k, 7).displacement;
+            let expected = Vector::new(c, if drift > 0.0 { c } else { 0.0 }, 0.0);
+            assert!((by - expected).norm() < 0.02, "{by} {expected}");
+        }
+        let als = Als::new([rank, rank]);
+        let [e, without] = [&on_cells, &motions].map(|m| error(&grid, m, &q, &solve(&als, &grid, m, &q)));
+        assert!(e < small && without > 3e-4, "{e:.2e} {without:.2e}");
+    }
+    // Whole cells tell nothing.
+    let (grid, _, q) = two_discs([40, 20], 30, 0.0);
+    let whole = Motions::by(2, 30, |k, j| Motion::translation(Vector::new((j * (k + 1)) as f64, 0.0, 0.0)));
+    assert_eq!(centred(&grid, &whole, q.as_ref()).unwrap(), whole);
 }
 
 #[test]

@@ -35,15 +35,16 @@ fn crossing_waves(frames: usize) -> Case {
     }
 }
 
-/// Two discs with a tanh edge one cell wide that fall side by side at different, growing speeds; `drift` cells sideways as well.
-fn two_discs(cells: [usize; 2], n: usize, d: f64, drift: f64) -> Case {
+/// Two discs with a tanh edge one cell wide that fall side by side at different, growing speeds; `drift` cells sideways
+/// as well, from centres `offset` cells aside from those of cells.
+fn two_discs([nx, ny]: [usize; 2], n: usize, d: f64, drift: f64, offset: f64) -> Case {
+    let cells = [nx, ny];
     let [nx, ny] = cells.map(|n| n as f64);
     let way = [320.0, 180.0].map(|w| w * nx / 300.0);
-    let start = [Vector::new(0.1 * nx, ny / 3.0, 0.0), Vector::new(0.1 * nx, 2.0 * ny / 3.0, 0.0)];
+    let start = [1.0, 2.0].map(|y| Vector::new(0.1 * nx + offset, y * ny / 3.0 + offset, 0.0));
     let moved = |k: usize, j: usize| {
         let t = j as f64 / (n - 1) as f64;
-        let accelerated = [0.6, 0.3][k] * t + [0.4, 0.7][k] * t * t;
-        Vector::new(way[k] * accelerated, drift * (t * (1.0 + t)) * [0.5, -0.5][k], 0.0)
+        Vector::new(way[k] * 0.5 * t * (1.0 + t), drift * (t * (1.0 + t)) * [0.5, -0.5][k], 0.0)
     };
     let grid = Grid::new(cells, [1.0; 2]).unwrap();
     let field = |i: usize, j: usize| {
@@ -62,6 +63,9 @@ fn two_discs(cells: [usize; 2], n: usize, d: f64, drift: f64) -> Case {
     }
 }
 
+/// Its name, itself, and which ranks.
+type Entry<'a> = (&'a str, &'a dyn Fn() -> Case, &'a [&'a [usize]]);
+
 fn peak_memory() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));
@@ -71,14 +75,18 @@ fn peak_memory() -> f64 {
 fn main() {
     let chosen: Vec<_> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
     let chosen = |name: &str| chosen.is_empty() || chosen.iter().any(|c| name.contains(c.as_str()));
-    let cases: [(&str, &dyn Fn() -> Case, &[&[usize]]); 5] = [
+    const SMALL: [usize; 2] = [100, 50];
+    const FULL: [usize; 2] = [300, 150];
+    let cases: &[Entry<'_>] = &[
         ("crossing_waves", &|| crossing_waves(2), &[&[1, 1]]),
         ("three_waves", &|| crossing_waves(3), &[&[1, 1, 1]]),
-        ("two_discs_small", &|| two_discs([100, 50], 201, 9.0, 0.0), &[&[1, 1], &[3, 3]]),
-        ("two_discs_drifting", &|| two_discs([100, 50], 201, 9.0, 20.0), &[&[1, 1], &[3, 3]]),
-        ("two_discs_full", &|| two_discs([300, 150], 601, 15.0, 0.0), &[&[1, 1], &[3, 3]]),
+        ("discs_small", &|| two_discs(SMALL, 201, 9.0, 0.0, 0.0), &[&[1, 1], &[3, 3]]),
+        ("discs_small_drifting", &|| two_discs(SMALL, 201, 9.0, 20.0, 0.0), &[&[1, 1], &[5, 5]]),
+        ("discs", &|| two_discs(FULL, 601, 15.0, 0.0, 0.0), &[&[1, 1], &[3, 3]]),
+        ("discs_between_cells", &|| two_discs(FULL, 601, 15.0, 0.0, 0.5), &[&[1, 1], &[3, 3], &[4, 4]]),
+        ("discs_drifting", &|| two_discs(FULL, 601, 15.0, 40.0, 0.0), &[&[1, 1], &[3, 3], &[5, 5]]),
     ];
-    println!("case                ranks         error      steps  stopped      CPU s  peak GB");
+    println!("case                 ranks         error      steps  stopped      CPU s  peak GB");
     for (name, case, all) in cases.iter().filter(|c| chosen(c.0)) {
         let Case { grid, motions, snapshots } = case();
         for ranks in *all {
@@ -103,7 +111,7 @@ fn main() {
             let ranks = format!("{ranks:?}");
             let stopped = format!("{:?}", out.stopped);
             println!(
-                "{name:19} {ranks:12} {:10.3e} {:5}  {stopped:11} {seconds:6.3}  {:6.3}",
+                "{name:20} {ranks:12} {:10.3e} {:5}  {stopped:11} {seconds:6.3}  {:6.3}",
                 last.error,
                 last.step,
                 peak_memory()

@@ -2,11 +2,14 @@
 //!
 //! There T^s multiplies the coefficient of wave vector κ by e^(−iκ·s): each wave vector is a problem of its own.
 mod als;
+mod amplitudes;
 mod compression;
 mod descent;
 mod finish;
+mod normal;
 mod objective;
 mod phases;
+mod problem;
 mod spectrum;
 
 #[cfg(test)]

@@ -1,10 +1,19 @@
 //! Alternating least squares, accelerated.
+use super::amplitudes::Amplitudes;
 use super::descent::Descent;
 use super::finish::frame;
-use super::objective::{Amplitudes, dominant, modes};
+use super::objective::{dominant, modes};
+use super::problem::Problem;
 use super::spectrum::Spectrum;
 use crate::shifted::{Decomposition, Frame, Grid, Progress, ShiftedError, Shifts, StopReason};
 use crate::{Mat, MatRef};
+
+/// With as many modes as asked for: by [`Als::stagnation`].
+const LONG: Patience = (10, 0.0);
+/// With fewer.
+const SHORT: Patience = (3, 0.1);
+/// On all data after a sample.
+const POLISH: Patience = (1, 1e-3);
 
 /// The best approximation Q ≈ Σ_k T^k Φ_k A_k with given ranks, for translations on periodic axes.
 ///
@@ -61,11 +70,19 @@ impl Als {
         let stopped = if spectrum.energy == 0.0 {
             StopReason::Tolerance
         } else {
+            let all = Problem::all(&spectrum);
+            let sample = Problem::sample(&spectrum, ranks.iter().sum());
+            let first = sample.as_ref().unwrap_or(&all);
+            let mut run = Run { als: self, spectrum: &spectrum, history: &mut history, progress };
             loop {
-                amplitudes = grow(&spectrum, amplitudes, &ranks);
+                amplitudes = grow(first, amplitudes, &ranks);
                 let last = amplitudes.ranks == ranks;
-                let mut descent = Descent::new(&spectrum, amplitudes);
-                let reason = self.descend(&spectrum, &mut descent, last, &mut history, progress);
+                let mut descent = Descent::new(first, amplitudes);
+                let mut reason = run.descend(&mut descent, if last { LONG } else { SHORT });
+                if last && sample.is_some() && reason != StopReason::Asked {
+                    descent = descent.with(&all);
+                    reason = run.descend(&mut descent, POLISH);
+                }
                 amplitudes = descent.amplitudes;
                 match reason {
                     StopReason::Stagnation if !last => {}
@@ -85,31 +102,38 @@ impl Als {
         };
         Ok(Decomposition { frames, noise: noise.map(|e| e.to_owned()), history, stopped })
     }
+}
 
+/// An iteration with its history.
+struct Run<'a> {
+    als: &'a Als,
+    spectrum: &'a Spectrum,
+    history: &'a mut Vec<Progress>,
+    progress: &'a mut dyn FnMut(&Progress) -> bool,
+}
+
+/// When to stop: steps, and the part by which they must lower the error.
+type Patience = (usize, f64);
+
+impl Run<'_> {
     /// Goes down until it is good enough or does not get better.
-    fn descend(
-        &self,
-        spectrum: &Spectrum,
-        descent: &mut Descent<'_>,
-        last: bool,
-        history: &mut Vec<Progress>,
-        progress: &mut dyn FnMut(&Progress) -> bool,
-    ) -> StopReason {
+    fn descend(&mut self, descent: &mut Descent<'_>, (window, part): Patience) -> StopReason {
         let rank = descent.amplitudes.ranks.iter().sum();
+        let part = if part > 0.0 { part } else { self.als.stagnation };
         let mut errors = Vec::new();
         loop {
-            let error = ((descent.evaluation.residual + spectrum.dropped) / spectrum.energy).sqrt();
+            let left = descent.evaluation.residual + self.spectrum.dropped;
+            let error = (left / self.spectrum.energy).sqrt();
             errors.push(error);
-            let now = Progress { step: history.len(), error, rank };
-            history.push(now);
-            let stagnation = if last { self.stagnation } else { self.stagnation.max(1e-2) };
-            if !progress(&now) {
+            let now = Progress { step: self.history.len(), error, rank };
+            self.history.push(now);
+            if !(self.progress)(&now) {
                 return StopReason::Asked;
-            } else if error <= self.tolerance {
+            } else if error <= self.als.tolerance {
                 return StopReason::Tolerance;
-            } else if errors.len() > 10 && error > (1.0 - stagnation) * errors[errors.len() - 11] {
+            } else if errors.len() > window && error > (1.0 - part) * errors[errors.len() - 1 - window] {
                 return StopReason::Stagnation;
-            } else if history.len() > self.max_steps {
+            } else if self.history.len() > self.als.max_steps {
                 return StopReason::Steps;
             } else if !descent.step() {
                 return StopReason::Stagnation;
@@ -139,9 +163,9 @@ fn begin(start: Option<&Decomposition>, ranks: &[usize], n: usize) -> Result<Amp
 }
 
 /// One more mode in each frame that is to have more: the residual's largest in it.
-fn grow(spectrum: &Spectrum, old: Amplitudes, ranks: &[usize]) -> Amplitudes {
+fn grow(problem: &Problem<'_>, old: Amplitudes, ranks: &[usize]) -> Amplitudes {
     let more: Vec<_> = old.ranks.iter().zip(ranks).map(|(&a, &b)| usize::from(a < b)).collect();
-    let new = dominant(spectrum, &old, &more);
+    let new = dominant(problem, &old, &more);
     let sum: Vec<_> = old.ranks.iter().zip(&more).map(|(a, b)| a + b).collect();
     let (mut i, mut m) = (0, 0);
     let mut columns = Vec::new();
@@ -156,7 +180,7 @@ fn grow(spectrum: &Spectrum, old: Amplitudes, ranks: &[usize]) -> Amplitudes {
 
 fn result(spectrum: &Spectrum, amplitudes: &Amplitudes) -> Vec<Frame> {
     let (n, rank) = amplitudes.values.shape();
-    let fields = spectrum.fields(rank, &modes(spectrum, amplitudes));
+    let fields = spectrum.fields(rank, modes(spectrum, amplitudes));
     let mut first = 0;
     let column = |m: &Mat<f64>, c: usize| m.col_as_slice(c).to_vec();
     let mut frames = Vec::new();

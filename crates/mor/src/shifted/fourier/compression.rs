@@ -1,42 +1,46 @@
 //! Few columns instead of many.
 use crate::Mat;
-use monomorphic::add_product;
+use monomorphic::{MatMut, add_product};
 
 /// Directions that are found at a time.
 const BLOCK: usize = 4;
+/// Fewer columns are left as they are.
+const FEW: usize = 4;
 
 /// D ≈ `data` · V.
 pub(super) struct Compressed {
-    /// Real parts above imaginary parts.
-    pub(super) data: Mat<f64>,
-    /// V: orthonormal rows; the real parts of all above the imaginary parts of all.
-    pub(super) basis: Mat<f64>,
+    /// Complex columns: real parts, then imaginary parts.
+    pub(super) data: Vec<f64>,
+    /// V: orthonormal rows; the real parts of all above the imaginary parts of all. None if it is the identity.
+    pub(super) basis: Option<Mat<f64>>,
     /// The columns of D that V is about.
     pub(super) columns: Vec<usize>,
 }
 
-/// Approximates complex columns, real parts above imaginary parts, to ‖D − D Vᴴ V‖² ≤ `allowed`, and says what that is. The rows
-/// with the largest residuals become V, one after the other.
-pub(super) fn compress(full: Mat<f64>, allowed: f64) -> (Compressed, f64) {
-    let (n, total) = (full.nrows() / 2, full.ncols());
-    let energy = |j: usize| full.col_as_slice(j).iter().map(|x| x * x).sum::<f64>();
-    let energies: Vec<_> = (0..total).map(energy).collect();
+/// Approximates complex columns of length `n`, to ‖D − D Vᴴ V‖² ≤ `allowed`, and says what that is. The rows with the largest
+/// residuals become V, one after the other.
+pub(super) fn compress(n: usize, mut full: Vec<f64>, allowed: f64) -> (Compressed, f64) {
+    let energies: Vec<f64> = full.chunks_exact(2 * n).map(|c| c.iter().map(|x| x * x).sum()).collect();
+    let total = energies.len();
     // Half of what is allowed goes to columns with nearly nothing.
     let columns: Vec<_> = (0..total).filter(|&j| energies[j] > 0.5 * allowed / total as f64).collect();
     let dropped = energies.iter().sum::<f64>() - columns.iter().map(|&j| energies[j]).sum::<f64>();
     let g = columns.len();
-    let mut rest = Mat::from_fn(2 * n, g, |i, j| full[(i, columns[j])]);
-    drop(full);
-    let most = n.min(g);
-    if g == 1 {
-        let basis = Mat::from_fn(2, 1, |i, _| if i == 0 { 1.0 } else { 0.0 });
-        return (Compressed { data: rest, basis, columns }, dropped.max(0.0));
+    for (to, &from) in columns.iter().enumerate().filter(|(to, from)| to != *from) {
+        full.copy_within(2 * n * from..2 * n * (from + 1), 2 * n * to);
     }
-    let (mut data, mut rows) = (Vec::<Mat<f64>>::new(), Vec::<Vec<f64>>::new());
+    full.truncate(2 * n * g);
+    if g < FEW {
+        return (Compressed { data: full, basis: None, columns }, dropped.max(0.0));
+    }
+    let mut rest = MatMut::from_column_major_slice_mut(&mut full, 2 * n, g);
+    let most = n.min(g);
+    let (mut data, mut rows) = (Vec::<f64>::new(), Vec::<Vec<f64>>::new());
     let left = loop {
         let mut of_row = vec![0.0; 2 * n];
         for j in 0..g {
-            of_row.iter_mut().zip(rest.col_as_slice(j)).for_each(|(s, x)| *s += x * x);
+            let column = &rest.as_ref().col(j);
+            (0..2 * n).for_each(|i| of_row[i] += column[i].powi(2));
         }
         let mut norms: Vec<_> = (0..n).map(|i| (of_row[i] + of_row[n + i], i)).collect();
         let left = norms.iter().map(|x| x.0).sum::<f64>();
@@ -74,14 +78,11 @@ pub(super) fn compress(full: Mat<f64>, allowed: f64) -> (Compressed, f64) {
         });
         let v = Mat::from_fn(2 * b, g, |r, c| if r < b { new[r][c] } else { new[r - b][g + c] });
         add_product(rest.as_mut(), negative.as_ref(), v.as_ref());
-        data.push(out);
+        (0..b).for_each(|r| data.extend_from_slice(out.col_as_slice(r)));
     };
     let rho = rows.len();
     let basis = Mat::from_fn(2 * rho, g, |r, c| if r < rho { rows[r][c] } else { rows[r - rho][g + c] });
-    let columns_of = data.iter().flat_map(|d| (0..d.ncols()).map(move |c| d.col_as_slice(c)));
-    let columns_of: Vec<_> = columns_of.collect();
-    let data = Mat::from_fn(2 * n, rho, |i, c| columns_of[c][i]);
-    (Compressed { data, basis, columns }, dropped.max(0.0) + left)
+    (Compressed { data, basis: Some(basis), columns }, dropped.max(0.0) + left)
 }
 
 /// A complex row, real parts before imaginary parts, made orthonormal to others by going through them twice; nothing if it is one

@@ -18,11 +18,13 @@ pub(super) struct Group {
     pub(super) wave: [usize; 3],
     /// D: a column holds the real parts at all snapshots, then the imaginary parts. The values at the cells of the other axes
     /// and of all components are D V.
-    pub(super) data: Mat<f64>,
-    /// V: orthonormal rows, the real parts of all above the imaginary parts of all.
-    pub(super) basis: Mat<f64>,
+    pub(super) data: Vec<f64>,
+    /// V: orthonormal rows, the real parts of all above the imaginary parts of all; the identity if there is none.
+    basis: Option<Mat<f64>>,
     /// Which cells of the other axes and components these are.
-    pub(super) places: Vec<usize>,
+    places: Vec<usize>,
+    /// ‖D‖².
+    pub(super) energy: f64,
 }
 
 /// Snapshots in Fourier space along the axes on which something moves. Of each pair ±κ there is one.
@@ -33,6 +35,7 @@ pub(super) struct Spectrum {
     pub(super) energy: f64,
     /// What of it was left away.
     pub(super) dropped: f64,
+    n_snapshots: usize,
     layout: Layout,
 }
 
@@ -146,7 +149,7 @@ impl Spectrum {
         let layout = Layout { cells: grid.cells(), n_rows: rows, moving };
         let others = layout.others();
         let waves = layout.waves();
-        let mut blocks: Vec<_> = waves.iter().map(|_| Mat::<f64>::zeros(2 * n, others.len())).collect();
+        let mut blocks: Vec<_> = waves.iter().map(|_| vec![0.0; 2 * n * others.len()]).collect();
         for first in (0..n).step_by(BATCH) {
             let batch = first..(first + BATCH).min(n);
             // Two real fields are one complex field.
@@ -164,8 +167,8 @@ impl Spectrum {
                 let opposite = layout.opposite(wave);
                 let weight = if wave == opposite { 0.5 } else { 0.5_f64.sqrt() };
                 let (here, there) = (layout.row(wave), layout.row(opposite));
-                for (c, &other) in others.iter().enumerate() {
-                    let (re, im) = block.col_as_slice_mut(c).split_at_mut(n);
+                for (column, &other) in block.chunks_exact_mut(2 * n).zip(&others) {
+                    let (re, im) = column.split_at_mut(n);
                     let to = re[batch.clone()].chunks_mut(2).zip(im[batch.clone()].chunks_mut(2));
                     for ((re, im), z) in to.zip(&pairs) {
                         let (a, b) = (z[other + here] * weight, z[other + there].conj() * weight);
@@ -183,14 +186,15 @@ impl Spectrum {
             .into_par_iter()
             .zip(&waves)
             .map(|(block, &wave)| {
-                let (kept, dropped) = compress(block, allowed);
+                let (kept, dropped) = compress(n, block, allowed);
                 let places = kept.columns.iter().map(|&c| others[c] + layout.row(wave)).collect();
-                (Group { wave, data: kept.data, basis: kept.basis, places }, dropped)
+                let energy = kept.data.iter().map(|x| x * x).sum();
+                (Group { wave, data: kept.data, basis: kept.basis, places, energy }, dropped)
             })
             .collect();
         let dropped = groups.iter().map(|g| g.1).sum();
-        let groups = groups.into_iter().map(|g| g.0).filter(|g| g.data.ncols() > 0).collect();
-        Ok(Self { phases, groups, energy, dropped, layout })
+        let groups = groups.into_iter().map(|g| g.0).filter(|g: &Group| !g.data.is_empty()).collect();
+        Ok(Self { phases, groups, energy, dropped, n_snapshots: n, layout })
     }
 
     /// Unknowns of a snapshot.
@@ -198,48 +202,41 @@ impl Spectrum {
         self.layout.n_rows
     }
 
-    /// Fields from their coefficients: for each group Φ, in the layout of its basis.
-    pub(super) fn fields(&self, n_fields: usize, coefficients: &[Mat<f64>]) -> Mat<f64> {
+    pub(super) fn n_snapshots(&self) -> usize {
+        self.n_snapshots
+    }
+
+    /// Fields from their coefficients: for each column of each group's data those of all fields, real and imaginary parts by turns.
+    pub(super) fn fields(&self, n_fields: usize, coefficients: Vec<Vec<f64>>) -> Mat<f64> {
         let mut out = Mat::zeros(self.layout.n_rows, n_fields);
-        // Coefficients of all columns of the data, one below the other real and imaginary parts of all fields.
         let full: Vec<_> = self
             .groups
             .par_iter()
             .zip(coefficients)
             .map(|(group, phi)| {
-                // Φ V, V = V_r + i V_i.
-                let rho = group.data.ncols();
-                let (vr, vi) = group.basis.split_at_row(rho);
-                let (pr, pi) = phi.split_at_row(n_fields);
-                let [mut re, mut im, mut twice] =
-                    [(); 3].map(|()| Mat::<f64>::zeros(n_fields, group.places.len()));
-                add_product(re.as_mut(), pr, vr);
-                add_product(im.as_mut(), pr, vi);
-                add_product(im.as_mut(), pi, vr);
-                add_product(twice.as_mut(), pi, vi);
-                for c in 0..re.ncols() {
-                    let twice = twice.col_as_slice(c);
-                    re.col_as_slice_mut(c).iter_mut().zip(twice).for_each(|(x, y)| *x -= y);
-                }
-                [re, im]
+                let Some(basis) = &group.basis else { return phi };
+                let (vr, vi) = basis.split_at_row(basis.nrows() / 2);
+                let phi = MatRef::from_column_major_slice(&phi, 2 * n_fields, vr.nrows());
+                let [mut x, mut y] = [(); 2].map(|()| Mat::<f64>::zeros(2 * n_fields, vr.ncols()));
+                add_product(x.as_mut(), phi, vr);
+                add_product(y.as_mut(), phi, vi);
+                let pairs = (0..x.ncols()).flat_map(|c| {
+                    let (x, y) = (x.col_as_slice(c).chunks_exact(2), y.col_as_slice(c).chunks_exact(2));
+                    x.zip(y).flat_map(|(x, y)| [x[0] - y[1], x[1] + y[0]])
+                });
+                pairs.collect()
             })
             .collect();
         for field in (0..n_fields).step_by(2) {
             let mut z = vec![Complex::default(); self.layout.n_rows];
-            for (group, [re, im]) in self.groups.iter().zip(&full) {
+            for (group, full) in self.groups.iter().zip(&full) {
                 let opposite = self.layout.opposite(group.wave);
                 let alone = group.wave == opposite;
                 let weight = if alone { 1.0 } else { 0.5_f64.sqrt() };
                 let back = self.layout.row(opposite) as isize - self.layout.row(group.wave) as isize;
-                for (c, &row) in group.places.iter().enumerate() {
-                    let of = |f: usize| {
-                        if f < n_fields {
-                            Complex::new(re[(f, c)], im[(f, c)]) * weight
-                        } else {
-                            Complex::default()
-                        }
-                    };
-                    let (a, b) = (of(field), of(field + 1));
+                for (of, &row) in full.chunks_exact(2 * n_fields).zip(&group.places) {
+                    let mut of = of[2 * field..].chunks_exact(2).map(|z| Complex::new(z[0], z[1]) * weight);
+                    let [a, b] = [(); 2].map(|()| of.next().unwrap_or_default());
                     let i = Complex::<f64>::I;
                     if alone {
                         // Real and imaginary parts of waves that are their own opposites belong to real fields alone.

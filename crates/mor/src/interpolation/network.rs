@@ -65,7 +65,8 @@ pub struct NetworkParams {
     /// Iterations of L-BFGS at most, the second descent. With the last layer eliminated they are shared out among five regularisations
     /// of it, each weaker than the one before.
     pub iterations: usize,
-    /// Solve for the last layer, which is linear, in every iteration, and descend with the others alone.
+    /// Solve for the last layer, which is linear, in every iteration, and descend with the others alone: orders of magnitude more
+    /// accurate for samples without noise. Noise it fits sooner as well: hold samples out, give a decay, or leave all weights free.
     pub eliminate: bool,
     /// Of all random numbers.
     pub seed: u64,

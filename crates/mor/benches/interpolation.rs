@@ -145,8 +145,11 @@ fn parameters() -> Outcome {
             Samples::new(points.as_ref(), values.as_ref())
         };
         let [samples, truth] = [of(&points)?, of(&fine)?];
-        let folds =
-            [Folds::leave_one_out(&samples), Folds::leave_one_out_inside(&samples), Folds::planes(&samples)?];
+        let folds = [
+            Folds::leave_one_out(&samples),
+            Folds::leave_one_out_inside(&samples),
+            Folds::planes(&samples, 5)?,
+        ];
         for method in candidates(&samples) {
             print!("{:34}", method.name());
             for folds in &folds {

@@ -1,5 +1,5 @@
 //! What every method owes, and every function made by one.
-use super::{Folds, InterpolationError, Network, Rbf, Record, RecordError, Samples, Spline};
+use super::{Folds, InterpolationError, Network, Product, Rbf, Record, RecordError, Samples, Spline};
 use crate::{Mat, MatRef};
 
 /// A way to make a function of samples, with all its parameters.
@@ -78,6 +78,7 @@ pub fn load(record: &Record) -> Result<Box<dyn Interpolator>, RecordError> {
     match record.kind() {
         Spline::KIND => Ok(Box::new(Spline::from_record(record)?)),
         Rbf::KIND => Ok(Box::new(Rbf::from_record(record)?)),
+        Product::KIND => Ok(Box::new(Product::from_record(record)?)),
         Network::KIND => Ok(Box::new(Network::from_record(record)?)),
         kind => Err(RecordError::Kind { found: kind.into(), expected: "an interpolator".into() }),
     }

@@ -93,14 +93,14 @@ impl NetworkParams {
             starts: 1,
         }
     }
-    /// Networks of one hidden layer, as wide as the number of samples suggests, and iterations for a few seconds.
+    /// Networks of one hidden layer, as wide as the number of samples suggests, and iterations for a second or so.
     ///
     /// With one input it sees the waves it finds. With more there are usually few samples to each: two networks that begin flat, one
     /// of them with a decay that keeps them smooth between the samples.
     #[must_use]
     pub fn suited(samples: &Samples) -> Vec<Self> {
         let m = samples.len();
-        let iterations = ((2500.0 * (600.0 / m as f64).min(1.0)) as usize).max(100);
+        let iterations = (500_000 / m).clamp(200, 2500);
         if samples.inputs() == 1 {
             let fourier = Fourier::Found { most: 8 };
             return vec![Self { fourier, iterations, ..Self::new(&[(m / 4).clamp(4, 64)]) }];

@@ -128,7 +128,6 @@ fn waves_make_fast_periodic_functions_learnable() {
     let with = |fourier| NetworkParams { fourier, ..plain.clone() }.network(&samples).unwrap();
     let [blind, found] = [Fourier::None, Fourier::Found { most: 8 }].map(with);
     let off = [&blind, &found].map(|network| error(network, f));
-    println!("{off:?} {:?}", found.frequencies());
     assert!(off[0] > 0.1 && off[1] < 1e-4, "{off:?}");
     // The waves are the ones it is made of.
     let frequencies = found.frequencies();
@@ -178,7 +177,6 @@ fn stopping_early_keeps_noise_out() {
                 }
             }
         }
-        println!("{eliminate} {sums:?}");
         assert!(sums[1] < 0.5 * sums[0], "eliminate {eliminate}: {sums:?}");
     }
 }

@@ -102,7 +102,7 @@ pub struct Best {
 }
 
 /// Compares the methods, and fits the [`Table::best`] of them to all samples. A method that is a hundred times worse than another one
-/// on the first fifth of the sets is not tried on the others.
+/// on a fifth of the sets is not tried on the others.
 ///
 /// # Errors
 /// That of the first method if none works, or that of the last fit.
@@ -111,10 +111,10 @@ pub fn best_of(
     samples: &Samples,
     folds: &Folds,
 ) -> Result<Best, InterpolationError> {
-    let first = folds.first(folds.sets().len().div_ceil(5));
+    let some = folds.some(folds.sets().len().div_ceil(5));
     let mut least = f64::INFINITY;
     let row = |method: &dyn Method| {
-        let trial = cross_validate(method, samples, &first);
+        let trial = cross_validate(method, samples, &some);
         let error = trial.as_ref().map_or(f64::INFINITY, |of| of.error);
         least = least.min(error);
         let in_full = error <= HOPELESS * least.max(ROUND_OFF);

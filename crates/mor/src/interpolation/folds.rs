@@ -120,10 +120,10 @@ impl Folds {
         let set = |first: usize| order.iter().skip(first).step_by(count).copied().collect();
         Ok(Self { sets: (0..count).map(set).collect() })
     }
-    /// The first sets alone.
+    /// At most so many of the sets, evenly chosen.
     #[must_use]
-    pub fn first(&self, count: usize) -> Self {
-        Self { sets: self.sets.iter().take(count).cloned().collect() }
+    pub fn some(&self, most: usize) -> Self {
+        Self { sets: thinned(0..self.sets.len(), most).map(|i| self.sets[i].clone()).collect() }
     }
     /// Samples of each set.
     #[must_use]

@@ -278,6 +278,19 @@ fn what_cannot_be_is_said_with_numbers() {
     let two = Fourier::Multiples { periods: vec![1.0, 1.0], up_to: 1 };
     let error = NetworkParams { fourier: two, ..good.clone() }.network(&samples).unwrap_err();
     assert!(matches!(error, InterpolationError::Shape { expected: 1, found: 2, .. }), "{error}");
+    // Steps of Adam that leave no number standing, and no second descent.
+    let adam = Adam { first: 1e300, last: 1e300, steps: 3 };
+    let far = NetworkParams { adam, iterations: 0, eliminate: false, ..good.clone() }.network(&samples);
+    assert!(far.is_ok_and(|kept| kept.report().unwrap().adam_stop == Stop::NotFinite));
+    let steep =
+        NetworkParams { bandwidth: 1e200, activation: Activation::Silu, eliminate: false, ..good.clone() };
+    let error = steep.network(&samples).unwrap_err();
+    assert!(matches!(error, InterpolationError::Diverged { .. }), "{error}");
+    let network = good.network(&samples).unwrap();
+    let error = network.predict(&[f64::NAN], &mut [0.0]).unwrap_err();
+    assert!(matches!(error, InterpolationError::Point { input: 0, .. }), "{error}");
+    let error = network.derivative(&[0.0], 1, &mut [0.0]).unwrap_err();
+    assert!(matches!(error, InterpolationError::Shape { expected: 2, found: 1, .. }), "{error}");
     let one = samples.subset(&[3]).unwrap();
     let error = good.network(&one).unwrap_err();
     assert!(matches!(error, InterpolationError::TooFew { needed: 2, found: 1, .. }), "{error}");

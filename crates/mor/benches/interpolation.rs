@@ -1,5 +1,5 @@
 //! Error against CPU time of all methods of interpolation. `cargo bench -p mor --bench interpolation`, or with `time`, `parameters`,
-//! `widths` after `--`; on one thread.
+//! `runs`, `widths` after `--`; on one thread.
 use cpu_time::ProcessTime;
 use monomorphic::self_adjoint_eigenvectors;
 use mor::Mat;
@@ -13,7 +13,7 @@ type Outcome = Result<(), InterpolationError>;
 type Case = (&'static str, fn() -> Outcome);
 
 fn main() -> Outcome {
-    let cases: [Case; 3] = [("time", time), ("parameters", parameters), ("widths", widths)];
+    let cases: [Case; 4] = [("time", time), ("parameters", parameters), ("runs", runs), ("widths", widths)];
     let asked: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
     for (name, case) in cases {
         if asked.is_empty() || asked.iter().any(|a| a == name) {
@@ -23,19 +23,29 @@ fn main() -> Outcome {
     Ok(())
 }
 
-/// Coefficients of the first 20 modes of a pulse e^{−(x − path(t))²/0.05²} that travels in [0, 1), 400 points, 601 times.
-fn travelling(path: impl Fn(f64) -> f64) -> Result<Samples, InterpolationError> {
-    let (points, modes, width) = (400, 20, 0.05);
-    let times: Vec<f64> = (0..601).map(|j| f64::from(j) / 600.0).collect();
-    let snapshots = Mat::from_fn(points, times.len(), |i, j| {
-        let away = (i as f64 + 0.5) / points as f64 - path(times[j]);
-        (-((away - away.round()) / width).powi(2)).exp()
-    });
-    let gram = &snapshots * snapshots.transpose();
+/// A pulse e^{−s²/0.05²} at 400 points of [0, 1), periodic, around these places.
+fn pulses(places: &[f64]) -> Mat<f64> {
+    Mat::from_fn(400, places.len(), |i, j| {
+        let away = (i as f64 + 0.5) / 400.0 - places[j];
+        (-((away - away.round()) / 0.05).powi(2)).exp()
+    })
+}
+
+/// The first 20 modes of snapshots.
+fn modes(snapshots: &Mat<f64>) -> Result<Mat<f64>, InterpolationError> {
+    let gram = snapshots * snapshots.transpose();
     let vectors = self_adjoint_eigenvectors(gram.as_ref())
-        .ok_or(InterpolationError::Singular { what: "the modes".into(), remedy: "this does not happen" })?;
-    let modes = Mat::from_fn(points, modes, |i, j| vectors[(i, points - 1 - j)]);
-    Samples::of_one_input(&times, (modes.transpose() * &snapshots).as_ref())
+        .ok_or(InterpolationError::Singular { what: "the modes".into(), remedy: "look at the snapshots" })?;
+    let last = vectors.ncols() - 1;
+    Ok(Mat::from_fn(vectors.nrows(), 20, |i, j| vectors[(i, last - j)]))
+}
+
+/// Coefficients of the first 20 modes of a travelling pulse at 601 times.
+fn travelling(path: impl Fn(f64) -> f64) -> Result<Samples, InterpolationError> {
+    let times: Vec<f64> = (0..601).map(|j| f64::from(j) / 600.0).collect();
+    let snapshots = pulses(&times.iter().map(|&t| path(t)).collect::<Vec<_>>());
+    let coefficients = modes(&snapshots)?.transpose() * &snapshots;
+    Samples::of_one_input(&times, coefficients.as_ref())
 }
 
 /// Every second time, and the others.
@@ -145,8 +155,11 @@ fn parameters() -> Outcome {
             Samples::new(points.as_ref(), values.as_ref())
         };
         let [samples, truth] = [of(&points)?, of(&fine)?];
-        let folds =
-            [Folds::leave_one_out(&samples), Folds::leave_one_out_inside(&samples), Folds::planes(&samples)?];
+        let folds = [
+            Folds::leave_one_out(&samples),
+            Folds::leave_one_out_inside(&samples),
+            Folds::planes(&samples, 5)?,
+        ];
         for method in candidates(&samples) {
             print!("{:34}", method.name());
             for folds in &folds {
@@ -165,6 +178,42 @@ fn parameters() -> Outcome {
         chosen(&samples)?;
     }
     Ok(())
+}
+
+/// Coefficients of the same 20 modes in 5 × 5 runs of 121 times, and in 4 × 4 runs at points between.
+fn runs() -> Outcome {
+    println!(
+        "\nPulses that start at 0.1…0.15 and travel by 0.3…0.4 or so: 20 coefficients at 121 times in 5 × 5 runs. Relative error of \
+         cross-validation (runs and times left out), in 4 × 4 runs between, and in these runs"
+    );
+    let times = 121;
+    let inputs = |n: usize, first: f64, step: f64| {
+        let parameter = move |i: usize| first + step * i as f64;
+        let at = move |j: usize| [parameter((j / times) % n), parameter(j / times / n)];
+        Mat::from_fn(3, times * n * n, |i, j| {
+            if i == 0 { (j % times) as f64 / (times - 1) as f64 } else { at(j)[i - 1] }
+        })
+    };
+    let snapshots = |inputs: &Mat<f64>| {
+        let place = |j: usize| {
+            let (t, speed, offset) = (inputs[(0, j)], inputs[(1, j)], inputs[(2, j)]);
+            0.1 + 0.05 * offset + (0.3 + 0.1 * speed) * t + 0.1 * t * t
+        };
+        pulses(&(0..inputs.ncols()).map(place).collect::<Vec<_>>())
+    };
+    let [known, held] = [inputs(5, 0.0, 0.25), inputs(4, 0.125, 0.25)];
+    let [q, r] = [snapshots(&known), snapshots(&held)];
+    let modes = modes(&q)?;
+    let [known, held] = [(known, q), (held, r)]
+        .map(|(inputs, snapshots)| Samples::new(inputs.as_ref(), (modes.transpose() * snapshots).as_ref()));
+    let [known, held] = [known?, held?];
+    let folds = Folds::suited(&known, 1)?;
+    heading();
+    for method in candidates(&known) {
+        let error = cross_validate(method.as_ref(), &known, &folds)?.error;
+        row(&format!("{}: {error:.2e}", method.name()), method.as_ref(), &known, &held)?;
+    }
+    chosen(&known)
 }
 
 /// How the error of a network falls with its size and its iterations.

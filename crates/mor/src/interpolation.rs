@@ -14,12 +14,29 @@
 //! assert!((y[0] - 0.3_f64.sin()).abs() < 1e-12);
 //! # Ok::<(), mor::interpolation::InterpolationError>(())
 //! ```
+//!
+//! Which method? [`best`] cross-validates those that suit the samples ([`candidates`]) and takes the one with the smallest error.
+//!
+//! ```
+//! use mor::Mat;
+//! use mor::interpolation::{Samples, best};
+//! // Runs at four points of a parameter, ten times each: inputs are the time and the parameter.
+//! let points = Mat::from_fn(2, 40, |i, j| if i == 0 { 0.1 * (j % 10) as f64 } else { (j / 10) as f64 });
+//! let values = Mat::from_fn(1, 40, |_, j| points[(0, j)].sin() * (1.0 + 0.1 * points[(1, j)]));
+//! let best = best(&Samples::new(points.as_ref(), values.as_ref())?)?;
+//! println!("{}", best.table);
+//! let mut y = [0.0];
+//! best.interpolator.predict(&[0.42, 1.5], &mut y)?;
+//! assert!((y[0] - 0.42_f64.sin() * 1.15).abs() < 1e-6);
+//! # Ok::<(), mor::interpolation::InterpolationError>(())
+//! ```
 mod choice;
 mod cross_validation;
 mod error;
 mod folds;
 mod interpolator;
 mod network;
+mod product;
 mod rbf;
 mod record;
 mod samples;
@@ -33,6 +50,7 @@ pub use error::InterpolationError;
 pub use folds::Folds;
 pub use interpolator::{Interpolator, Method, load};
 pub use network::{Activation, Adam, Epoch, Fourier, Network, NetworkParams, Report, Stop};
+pub use product::{Product, ProductParams};
 pub use rbf::{Kernel, Rbf, RbfParams, Shape};
 pub use record::{Record, RecordError};
 pub use samples::{Grid, Samples};

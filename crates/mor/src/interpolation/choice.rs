@@ -1,7 +1,8 @@
 //! Methods side by side, and the best of them.
+use super::product::Runs;
 use super::{
     CrossValidation, Degree, Folds, InterpolationError, Interpolator, Kernel, Method, NetworkParams,
-    RbfParams, Samples, SplineParams, cross_validate,
+    ProductParams, RbfParams, Samples, SplineParams, cross_validate,
 };
 use cpu_time::ThreadTime;
 use std::fmt;
@@ -101,7 +102,7 @@ pub struct Best {
 }
 
 /// Compares the methods, and fits the [`Table::best`] of them to all samples. A method that is a hundred times worse than another one
-/// on the first fifth of the sets is not tried on the others.
+/// on a fifth of the sets is not tried on the others.
 ///
 /// # Errors
 /// That of the first method if none works, or that of the last fit.
@@ -110,10 +111,10 @@ pub fn best_of(
     samples: &Samples,
     folds: &Folds,
 ) -> Result<Best, InterpolationError> {
-    let first = folds.first(folds.sets().len().div_ceil(5));
+    let some = folds.some(folds.sets().len().div_ceil(5));
     let mut least = f64::INFINITY;
     let row = |method: &dyn Method| {
-        let trial = cross_validate(method, samples, &first);
+        let trial = cross_validate(method, samples, &some);
         let error = trial.as_ref().map_or(f64::INFINITY, |of| of.error);
         least = least.min(error);
         let in_full = error <= HOPELESS * least.max(ROUND_OFF);
@@ -146,19 +147,17 @@ pub fn best(samples: &Samples) -> Result<Best, InterpolationError> {
 
 /// Methods that suit the samples, the cheaper first.
 ///
-/// A line or a full grid: (products of) splines of every degree there are enough values for. At most 2000 samples off a line:
-/// radial functions without a shape; at most 600: those that look for their shape. Ten samples at least:
-/// [networks](NetworkParams::suited).
+/// Runs at points of the other inputs, each at the same seven or more values of the first: the spline of the highest degree in the
+/// first by the candidates of the others ([`ProductParams`]). Else, on a line or a full grid: (products of) splines of every degree
+/// there are enough values for; of at most 2000 samples off a line: radial functions without a shape; of at most 600: those that
+/// look for their shape; of ten to 2000, or on a line: [networks](NetworkParams::suited).
 #[must_use]
 pub fn candidates(samples: &Samples) -> Vec<Box<dyn Method>> {
-    let (m, d) = (samples.len(), samples.inputs());
-    let mut methods: Vec<Box<dyn Method>> = Vec::new();
-    if let (Ok(highest), Ok(_)) = (SplineParams::highest(samples), samples.grid()) {
-        let mut splines: Vec<SplineParams> =
-            Degree::ALL.iter().map(|degree| highest.at_most(*degree)).collect();
-        splines.dedup();
-        methods.extend(splines.into_iter().map(|params| Box::new(params) as Box<dyn Method>));
+    let products = products(samples);
+    if !products.is_empty() {
+        return products;
     }
+    let (m, d) = (samples.len(), samples.inputs());
     let mut radial = Vec::new();
     if m <= 2000 && d > 1 {
         radial.extend([Kernel::ThinPlate, Kernel::Cubic, Kernel::Quintic].map(RbfParams::new));
@@ -167,13 +166,36 @@ pub fn candidates(samples: &Samples) -> Vec<Box<dyn Method>> {
     if m <= 600 {
         radial.extend([Kernel::Multiquadric, Kernel::Gaussian].map(RbfParams::new));
     }
-    methods.extend(radial.into_iter().map(|params| Box::new(params) as Box<dyn Method>));
-    if m >= 10 {
-        methods.extend(
-            NetworkParams::suited(samples).into_iter().map(|params| Box::new(params) as Box<dyn Method>),
-        );
+    let small = m >= 10 && (m <= 2000 || d == 1);
+    let networks = if small { NetworkParams::suited(samples) } else { vec![] };
+    let splines = splines(samples).into_iter().map(boxed);
+    splines.chain(radial.into_iter().map(boxed)).chain(networks.into_iter().map(boxed)).collect()
+}
+
+fn boxed(method: impl Method + 'static) -> Box<dyn Method> {
+    Box::new(method)
+}
+
+fn splines(samples: &Samples) -> Vec<SplineParams> {
+    let (Ok(highest), Ok(_)) = (SplineParams::highest(samples), samples.grid()) else { return vec![] };
+    let mut splines: Vec<SplineParams> = Degree::ALL.iter().map(|degree| highest.at_most(*degree)).collect();
+    splines.dedup();
+    splines
+}
+
+fn products(samples: &Samples) -> Vec<Box<dyn Method>> {
+    let Ok(Runs { first, samples: runs }) = Runs::of(samples) else { return vec![] };
+    let of_runs: Vec<usize> = runs.iter().map(|run| run[0]).collect();
+    let (Some(others), Some(degree)) = (samples.without_first_input(&of_runs), Degree::highest(first.len()))
+    else {
+        return vec![];
+    };
+    if first.len() < 7 || runs.len() < 3 {
+        return vec![];
     }
-    methods
+    let first = SplineParams::new(degree);
+    let product = |others| boxed(ProductParams { first: first.clone(), others });
+    candidates(&others).into_iter().map(product).collect()
 }
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
 //! Which samples are left out together.
+use super::product::Runs;
 use super::{InterpolationError, Samples};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -43,17 +44,18 @@ impl Folds {
         order.sort_by(|&a, &b| samples.point(a)[0].total_cmp(&samples.point(b)[0]));
         Self::dealt(&order, sets)
     }
-    /// Of a full grid, every plane of nodes across every axis, save the outermost ones: what is left is a full grid again.
+    /// Of a full grid, planes of nodes across every axis, save the outermost ones: what is left is a full grid again. At most so many
+    /// across one axis, evenly chosen.
     ///
     /// # Errors
     /// [`InterpolationError::NotAGrid`], [`InterpolationError::TooFew`] if no axis has three values.
-    pub fn planes(samples: &Samples) -> Result<Self, InterpolationError> {
+    pub fn planes(samples: &Samples, most: usize) -> Result<Self, InterpolationError> {
         let grid = samples.grid()?;
         let mut sets = Vec::new();
         let mut stride = 1;
         for axis in &grid.axes {
             let of = |node: usize| (node / stride) % axis.len();
-            for plane in 1..axis.len().saturating_sub(1) {
+            for plane in thinned(1..axis.len().saturating_sub(1), most) {
                 let nodes = (0..grid.samples.len()).filter(|&node| of(node) == plane);
                 sets.push(nodes.map(|node| grid.samples[node]).collect());
             }
@@ -65,9 +67,29 @@ impl Folds {
         }
         Ok(Self { sets })
     }
-    /// Those that suit the samples: five [`interleaved`](Self::interleaved) sets for one input; [`planes`](Self::planes) of a grid, ten
-    /// of them evenly chosen if there are more; each sample alone of up to 40 scattered ones, five [`random`](Self::random) sets of
-    /// more.
+    /// Of samples at all pairs of values of the first input, say time, and points of the others, say the parameters of runs: at most so
+    /// many runs, evenly chosen, and five interleaved sets of the values between the first and the last.
+    ///
+    /// # Errors
+    /// [`InterpolationError::NotAGrid`], [`InterpolationError::TooFew`] values of the first input or runs.
+    pub fn runs(samples: &Samples, most: usize) -> Result<Self, InterpolationError> {
+        let Runs { first, samples: runs } = Runs::of(samples)?;
+        let what = "leaving out runs and values of the first input";
+        if runs.len() < 3 {
+            return Err(too_few(what, "runs", 3, runs.len()));
+        }
+        if first.len() < 7 {
+            return Err(too_few(what, "values of the first input", 7, first.len()));
+        }
+        let between = |from: usize| (from..first.len() - 1).step_by(5);
+        let times =
+            (1..6).map(|from| between(from).flat_map(|j| runs.iter().map(move |run| run[j])).collect());
+        let some = thinned(0..runs.len(), most).map(|run| runs[run].clone());
+        Ok(Self { sets: some.chain(times).collect() })
+    }
+    /// Those that suit the samples: five [`interleaved`](Self::interleaved) sets for one input; five [`planes`](Self::planes) across
+    /// every axis of a grid; ten [`runs`](Self::runs); each sample alone of up to 40 scattered ones, five [`random`](Self::random)
+    /// sets of more.
     ///
     /// # Errors
     /// [`InterpolationError::TooFew`] if there are too few samples to leave any out.
@@ -76,11 +98,8 @@ impl Folds {
         if samples.inputs() == 1 {
             return Self::interleaved(samples, inside.clamp(2, 5));
         }
-        if let Ok(Self { sets }) = Self::planes(samples) {
-            let (count, most) = (sets.len(), 10);
-            let chosen = |i: usize| count <= most || (i * most) / count != ((i + 1) * most) / count;
-            let kept = sets.into_iter().enumerate().filter(|(i, _)| chosen(*i));
-            return Ok(Self { sets: kept.map(|(_, set)| set).collect() });
+        if let Ok(folds) = Self::planes(samples, 5).or_else(|_| Self::runs(samples, 10)) {
+            return Ok(folds);
         }
         match inside {
             0..5 if samples.len() < 3 => Err(too_few("cross-validation", "samples", 3, samples.len())),
@@ -101,10 +120,10 @@ impl Folds {
         let set = |first: usize| order.iter().skip(first).step_by(count).copied().collect();
         Ok(Self { sets: (0..count).map(set).collect() })
     }
-    /// The first sets alone.
+    /// At most so many of the sets, evenly chosen.
     #[must_use]
-    pub fn first(&self, count: usize) -> Self {
-        Self { sets: self.sets.iter().take(count).cloned().collect() }
+    pub fn some(&self, most: usize) -> Self {
+        Self { sets: thinned(0..self.sets.len(), most).map(|i| self.sets[i].clone()).collect() }
     }
     /// Samples of each set.
     #[must_use]
@@ -115,6 +134,14 @@ impl Folds {
 
 fn too_few(what: &str, of: &'static str, needed: usize, found: usize) -> InterpolationError {
     InterpolationError::TooFew { what: what.into(), of, needed, found }
+}
+
+/// At most so many, evenly chosen.
+fn thinned(all: std::ops::Range<usize>, most: usize) -> impl Iterator<Item = usize> {
+    let count = all.len();
+    all.enumerate()
+        .filter(move |(i, _)| count <= most || (i * most) / count != ((i + 1) * most) / count)
+        .map(|(_, of)| of)
 }
 
 /// At no end of an input that has more than two values.

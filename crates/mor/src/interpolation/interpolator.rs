@@ -1,5 +1,7 @@
 //! What every method owes, and every function made by one.
-use super::{Folds, InterpolationError, Network, Rbf, Record, RecordError, Samples, Spline, Varying};
+use super::{
+    Folds, InterpolationError, Network, Product, Rbf, Record, RecordError, Samples, Spline, Varying,
+};
 use crate::{Mat, MatRef};
 
 /// A way to make a function of samples, with all its parameters.
@@ -79,6 +81,7 @@ pub fn load(record: &Record) -> Result<Box<dyn Interpolator>, RecordError> {
         Spline::KIND => Ok(Box::new(Spline::from_record(record)?)),
         Rbf::KIND => Ok(Box::new(Rbf::from_record(record)?)),
         Varying::KIND => Ok(Box::new(Varying::from_record(record)?)),
+        Product::KIND => Ok(Box::new(Product::from_record(record)?)),
         Network::KIND => Ok(Box::new(Network::from_record(record)?)),
         kind => Err(RecordError::Kind { found: kind.into(), expected: "an interpolator".into() }),
     }

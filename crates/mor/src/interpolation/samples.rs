@@ -149,6 +149,16 @@ impl Samples {
         let [points, values] = self.pick(which);
         (!which.is_empty()).then(|| Self { domain: ranges(points.as_ref()), values, points })
     }
+    /// Those samples alone, without their first input; none if there is no other one.
+    pub(super) fn without_first_input(&self, which: &[usize]) -> Option<Self> {
+        let [points, values] = self.pick(which);
+        let points = points.get(1.., ..).to_owned();
+        (points.nrows() > 0 && !which.is_empty()).then(|| Self {
+            domain: ranges(points.as_ref()),
+            values,
+            points,
+        })
+    }
     /// All but those.
     ///
     /// # Errors
@@ -197,7 +207,7 @@ impl Samples {
 }
 
 /// Where the value nearest to x is among ascending ones.
-fn nearest(ascending: &[f64], x: f64) -> usize {
+pub(super) fn nearest(ascending: &[f64], x: f64) -> usize {
     let after = ascending.partition_point(|v| *v < x).min(ascending.len() - 1);
     let before = after.saturating_sub(1);
     if (x - ascending[before]).abs() < (ascending[after] - x).abs() { before } else { after }

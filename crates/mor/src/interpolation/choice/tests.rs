@@ -11,7 +11,6 @@ fn line(m: usize, f: impl Fn(f64) -> f64) -> Samples {
 fn smooth_functions_of_time_get_the_highest_spline() {
     let samples = line(81, |t| (9.0 * t).sin() + (4.0 * t).cos());
     let best = best(&samples).unwrap();
-    println!("{}", best.table);
     let error = |i: usize| best.table.rows[i].outcome.as_ref().unwrap().error;
     assert!(best.table.rows.iter().all(|row| row.outcome.is_ok()));
     assert!((0..best.table.rows.len()).all(|i| CLEARLY * error(best.chosen) <= error(i)));

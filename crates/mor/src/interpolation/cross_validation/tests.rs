@@ -65,7 +65,7 @@ fn what_cannot_be_left_out_is_said() {
     let folds = Folds::interleaved(&samples, 2).unwrap();
     let error = cross_validate(&method, &samples, &folds).unwrap_err();
     assert!(matches!(error, InterpolationError::TooFew { needed: 6, found: 5, .. }), "{error}");
-    let error = cross_validate(&method, &samples, &folds.first(0)).unwrap_err();
+    let error = cross_validate(&method, &samples, &folds.some(0)).unwrap_err();
     assert!(matches!(error, InterpolationError::TooFew { needed: 1, found: 0, .. }), "{error}");
     let one = samples.subset(&[2]).unwrap();
     let all = Folds::leave_one_out(&one);

@@ -38,7 +38,7 @@ fn every_sample_between_the_ends_is_left_out_once() {
 #[test]
 fn planes_leave_grids() {
     let samples = grid([4, 3]);
-    let folds = Folds::planes(&samples).unwrap();
+    let folds = Folds::planes(&samples, 9).unwrap();
     assert_eq!(folds.sets().iter().map(Vec::len).collect::<Vec<_>>(), [3, 3, 4]);
     for set in folds.sets() {
         let rest = samples.without(set).unwrap();
@@ -46,11 +46,35 @@ fn planes_leave_grids() {
         assert_eq!(rest.domain(), samples.domain());
     }
     assert!(matches!(
-        Folds::planes(&grid([2, 2])),
+        Folds::planes(&grid([2, 2]), 9),
         Err(InterpolationError::TooFew { needed: 3, found: 2, .. })
     ));
     let scattered = samples.subset(&[0, 1, 2, 5, 7]).unwrap();
-    assert!(matches!(Folds::planes(&scattered), Err(InterpolationError::NotAGrid { .. })));
+    assert!(matches!(Folds::planes(&scattered, 9), Err(InterpolationError::NotAGrid { .. })));
+}
+
+#[test]
+fn runs_are_left_out_whole_and_times_of_all_runs() {
+    // Three runs at points that are no grid, 14 times.
+    let samples =
+        samples(&Mat::from_fn(3, 42, |i, j| [(j % 14) as f64, [0.0, 1.0, 0.5][j / 14], (j / 14) as f64][i]));
+    let folds = Folds::runs(&samples, 2).unwrap();
+    assert_eq!(folds.sets().iter().map(Vec::len).collect::<Vec<_>>(), [14, 14, 9, 9, 6, 6, 6]);
+    let times = &folds.sets()[2..];
+    assert_eq!(times.concat().len(), 12 * 3);
+    for set in folds.sets() {
+        assert!(Runs::of(&samples.without(set).unwrap()).is_ok());
+    }
+    assert_eq!(Folds::suited(&samples, 1).unwrap().sets().len(), 3 + 5);
+    assert!(matches!(
+        Folds::runs(&grid([7, 2]), 9),
+        Err(InterpolationError::TooFew { needed: 3, found: 2, .. })
+    ));
+    assert!(matches!(
+        Folds::runs(&grid([6, 3]), 9),
+        Err(InterpolationError::TooFew { needed: 7, found: 6, .. })
+    ));
+    assert!(matches!(Folds::runs(&line(9), 9), Err(InterpolationError::NotAGrid { .. })));
 }
 
 #[test]
@@ -59,7 +83,7 @@ fn sets_suit_the_samples() {
     assert_eq!(sets(&line(601)), 5);
     assert_eq!(sets(&line(6)), 4);
     assert_eq!(sets(&grid([5, 5])), 6);
-    assert_eq!(sets(&grid([30, 5])), 10);
+    assert_eq!(sets(&grid([30, 5])), 5 + 3);
     let off = |m| samples(&Mat::from_fn(2, m, |i, j| [j as f64, ((j * j) % 17) as f64 + 0.01 * j as f64][i]));
     assert!(sets(&off(20)) > 10);
     assert_eq!(sets(&off(200)), 5);

@@ -12,7 +12,7 @@ pub(super) trait Objective {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limits {
     pub(super) iterations: usize,
-    /// Of the changes of θ and of the gradient that are remembered.
+    /// How many changes of θ and of the gradient are remembered, at least 1.
     pub(super) memory: usize,
     /// Stop once the largest entry of the gradient is this small.
     pub(super) gradient: f64,
@@ -48,7 +48,7 @@ pub(super) fn minimise<O: Objective>(
     let n = theta.len();
     let zeros = || vec![0.0; n];
     let mut pairs: Vec<Pair> =
-        (0..limits.memory.max(1)).map(|_| Pair { s: zeros(), y: zeros(), rho: 0.0, alpha: 0.0 }).collect();
+        (0..limits.memory).map(|_| Pair { s: zeros(), y: zeros(), rho: 0.0, alpha: 0.0 }).collect();
     // Pairs are a ring: the newest is at `next − 1`.
     let (mut known, mut next) = (0, 0);
     let (mut gradient, mut direction) = (zeros(), zeros());

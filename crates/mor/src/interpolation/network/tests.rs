@@ -120,6 +120,83 @@ fn a_sine_is_learnt_to_five_digits() {
 }
 
 #[test]
+fn waves_make_fast_periodic_functions_learnable() {
+    let turn = |x: f64| std::f64::consts::TAU * x;
+    let f = |x: f64| turn(21.0 * x).sin() * (1.0 + 0.5 * turn(2.0 * x).cos()) + 0.3 * turn(34.3 * x).cos();
+    let samples = on_line(301, [0.0, 1.0], f);
+    let plain = NetworkParams { iterations: 500, ..NetworkParams::new(&[32]) };
+    let with = |fourier| NetworkParams { fourier, ..plain.clone() }.network(&samples).unwrap();
+    let [blind, found] = [Fourier::None, Fourier::Found { most: 8 }].map(with);
+    let off = [&blind, &found].map(|network| error(network, f));
+    assert!(off[0] > 0.1 && off[1] < 1e-4, "{off:?}");
+    // The waves are the ones it is made of.
+    let frequencies = found.frequencies();
+    for wanted in [19.0, 21.0, 23.0, 34.3] {
+        let nearest = (0..frequencies.ncols()).map(|j| (frequencies[(0, j)] - wanted).abs());
+        let nearest = nearest.fold(f64::INFINITY, f64::min);
+        assert!(nearest < 0.2, "{wanted} by {nearest}");
+    }
+    // A known period, in one of two inputs, from a part of it.
+    let points = Mat::from_fn(2, 400, |i, j| [(j % 40) as f64 * 0.11, (j / 40) as f64 / 9.0][i]);
+    let g = |x: &[f64]| (turn(x[0] / 2.5).sin() + x[1]).powi(3);
+    let values = Mat::from_fn(1, 400, |_, j| g(points.col_as_slice(j)));
+    let samples = Samples::new(points.as_ref(), values.as_ref()).unwrap();
+    let fourier = Fourier::Multiples { periods: vec![2.5, f64::INFINITY], up_to: 2 };
+    let network = NetworkParams { fourier, ..plain }.network(&samples).unwrap();
+    for x in [[0.3, 0.4], [2.4, 0.9]] {
+        let mut y = [[0.0]; 2];
+        network.predict(&x, &mut y[0]).unwrap();
+        network.predict(&[x[0] + 250.0, x[1]], &mut y[1]).unwrap();
+        assert!((y[0][0] - g(&x)).abs() < 1e-3 && (y[0][0] - y[1][0]).abs() < 1e-9, "{y:?} {}", g(&x));
+    }
+}
+
+#[test]
+fn stopping_early_keeps_noise_out() {
+    let f = |x: f64| (std::f64::consts::TAU * x).sin();
+    for eliminate in [false, true] {
+        let mut sums = [0.0; 2];
+        for seed in 0..5 {
+            let noise = random(80, 1, 100 + seed);
+            let exact = on_line(80, [0.0, 1.0], f);
+            let values = Mat::from_fn(1, 80, |_, j| exact.values()[(0, j)] + 0.3 * noise[(j, 0)]);
+            let noisy = Samples::new(exact.points(), values.as_ref()).unwrap();
+            for (sum, validation) in sums.iter_mut().zip([0.0, 0.25]) {
+                let params =
+                    NetworkParams { eliminate, validation, seed, patience: 100, ..NetworkParams::new(&[40]) };
+                let network = params.network(&noisy).unwrap();
+                *sum += error(&network, f).powi(2);
+                let report = network.report().unwrap();
+                assert_eq!(report.held_out.len(), (80.0 * validation) as usize);
+                assert!(!report.held_out.contains(&0) && !report.held_out.contains(&79));
+                if validation > 0.0 {
+                    assert_eq!(report.lbfgs_stop, Stop::Validation);
+                    let least =
+                        report.history.iter().filter_map(|e| e.validation).fold(f64::INFINITY, f64::min);
+                    assert_eq!(report.history[report.kept].validation, Some(least));
+                }
+            }
+        }
+        assert!(sums[1] < 0.5 * sums[0], "eliminate {eliminate}: {sums:?}");
+    }
+}
+
+#[test]
+fn the_best_of_several_starts_is_kept() {
+    let samples = on_line(40, [0.0, 1.0], |x| (9.0 * x).sin());
+    let params = NetworkParams { iterations: 60, ..NetworkParams::new(&[5]) };
+    let score = |params: &NetworkParams| params.network(&samples).unwrap().report().unwrap().score();
+    let each: Vec<f64> =
+        (0..4).map(|start| score(&NetworkParams { seed: 1 + start, ..params.clone() })).collect();
+    let network = NetworkParams { starts: 4, ..params }.network(&samples).unwrap();
+    let report = network.report().unwrap();
+    let least = each.iter().copied().fold(f64::INFINITY, f64::min);
+    assert_eq!(report.score(), least);
+    assert_eq!(each[report.start], least);
+    assert!(report.cpu_seconds > 0.0 && report.history.len() > report.adam_steps);
+}
+
+#[test]
 fn derivatives_are_those_of_predictions() {
     let points = random(2, 40, 5);
     let values = Mat::from_fn(2, 40, |i, j| (3.0 * points[(i, j)]).sin() + points[(1 - i, j)]);
@@ -201,6 +278,19 @@ fn what_cannot_be_is_said_with_numbers() {
     let two = Fourier::Multiples { periods: vec![1.0, 1.0], up_to: 1 };
     let error = NetworkParams { fourier: two, ..good.clone() }.network(&samples).unwrap_err();
     assert!(matches!(error, InterpolationError::Shape { expected: 1, found: 2, .. }), "{error}");
+    // Steps of Adam that leave no number standing, and no second descent.
+    let adam = Adam { first: 1e300, last: 1e300, steps: 3 };
+    let far = NetworkParams { adam, iterations: 0, eliminate: false, ..good.clone() }.network(&samples);
+    assert!(far.is_ok_and(|kept| kept.report().unwrap().adam_stop == Stop::NotFinite));
+    let steep =
+        NetworkParams { bandwidth: 1e200, activation: Activation::Silu, eliminate: false, ..good.clone() };
+    let error = steep.network(&samples).unwrap_err();
+    assert!(matches!(error, InterpolationError::Diverged { .. }), "{error}");
+    let network = good.network(&samples).unwrap();
+    let error = network.predict(&[f64::NAN], &mut [0.0]).unwrap_err();
+    assert!(matches!(error, InterpolationError::Point { input: 0, .. }), "{error}");
+    let error = network.derivative(&[0.0], 1, &mut [0.0]).unwrap_err();
+    assert!(matches!(error, InterpolationError::Shape { expected: 2, found: 1, .. }), "{error}");
     let one = samples.subset(&[3]).unwrap();
     let error = good.network(&one).unwrap_err();
     assert!(matches!(error, InterpolationError::TooFew { needed: 2, found: 1, .. }), "{error}");

@@ -131,7 +131,7 @@ fn one(params: &NetworkParams, layers: &Layers, data: &Data, start: usize) -> (V
     let mut misfit = Misfit::new(layers, [x, y], params.decay, params.eliminate);
     let held = data.held.each_ref().map(Mat::as_ref);
     let report = Report {
-        history: Vec::with_capacity(params.adam.steps + params.iterations + 1),
+        history: Vec::new(),
         adam_steps: 0,
         adam_stop: Stop::Iterations,
         lbfgs_stop: Stop::Iterations,
@@ -172,7 +172,8 @@ fn one(params: &NetworkParams, layers: &Layers, data: &Data, start: usize) -> (V
 }
 
 /// Weights to start from. The first layer lets every feature contribute slopes within ± the bandwidth, over the root of their number,
-/// and its neurons are centred at samples drawn at random; the others are uniform as Glorot & Bengio (2010) have it for tanh and SiLU, and Sitzmann et al. (2020) for sine.
+/// and its neurons are centred at samples drawn at random; the others are uniform as Glorot & Bengio (2010) have it for tanh and SiLU,
+/// and Sitzmann et al. (2020) for sine.
 fn initial(
     params: &NetworkParams,
     layers: &Layers,

@@ -207,16 +207,23 @@ impl Spectrum {
     }
 
     /// Fields from their coefficients: for each column of each group's data those of all fields, real and imaginary parts by turns.
-    pub(super) fn fields(&self, n_fields: usize, coefficients: Vec<Vec<f64>>) -> Mat<f64> {
+    pub(super) fn fields(&self, n_fields: usize, mut coefficients: &[f64]) -> Mat<f64> {
         let mut out = Mat::zeros(self.layout.n_rows, n_fields);
+        let mut of_groups = Vec::with_capacity(self.groups.len());
+        for group in &self.groups {
+            let (of_group, others) =
+                coefficients.split_at(2 * n_fields * (group.data.len() / (2 * self.n_snapshots)));
+            of_groups.push(of_group);
+            coefficients = others;
+        }
         let full: Vec<_> = self
             .groups
             .par_iter()
-            .zip(coefficients)
+            .zip(of_groups)
             .map(|(group, phi)| {
-                let Some(basis) = &group.basis else { return phi };
+                let Some(basis) = &group.basis else { return phi.to_vec() };
                 let (vr, vi) = basis.split_at_row(basis.nrows() / 2);
-                let phi = MatRef::from_column_major_slice(&phi, 2 * n_fields, vr.nrows());
+                let phi = MatRef::from_column_major_slice(phi, 2 * n_fields, vr.nrows());
                 let [mut x, mut y] = [(); 2].map(|()| Mat::<f64>::zeros(2 * n_fields, vr.ncols()));
                 add_product(x.as_mut(), phi, vr);
                 add_product(y.as_mut(), phi, vi);

@@ -55,7 +55,7 @@ impl Evaluation {
             let mut product = vec![0.0; 2 * n];
             for piece in pieces {
                 normal.begin(problem, piece, a);
-                normal.solve(piece);
+                normal.solve(problem, piece);
                 let squared = piece.weight * squares(&normal.residual);
                 sum.residual += squared;
                 sum.value += squared + piece.weight * DAMPING * squares(&normal.phi);
@@ -143,7 +143,7 @@ pub(super) fn dominant(problem: &Problem<'_>, a: &Amplitudes, more: &[usize]) ->
             let mut sum = Mat::zeros(n, total);
             for piece in pieces {
                 old.begin(problem, piece, a);
-                old.solve(piece);
+                old.solve(problem, piece);
                 new.begin(problem, piece, &trial);
                 new.project(&old.residual);
                 new.add_gradient(&old.residual, piece.weight, &mut sum);

@@ -69,7 +69,7 @@ impl Als {
         let mut amplitudes = begin(start, &ranks, n)?;
         let mut run = Run { als: self, spectrum: &spectrum, history: Vec::new(), progress };
         if spectrum.energy == 0.0 {
-            let nothing = || frame(Vec::new(), Vec::new(), spectrum.n_rows(), n);
+            let nothing = || frame(Mat::zeros(spectrum.n_rows(), 0), &Mat::zeros(n, 0), 1.0);
             let frames = ranks.iter().map(|_| nothing()).collect();
             run.note(0.0, 0);
             let (history, stopped) = (run.history, StopReason::Tolerance);
@@ -189,8 +189,9 @@ fn frames_of(spectrum: &Spectrum, amplitudes: &Amplitudes, evaluation: &Evaluati
     let mut first = 0;
     let mut frames = Vec::new();
     for &r in &amplitudes.ranks {
-        let of = |m: &Mat<f64>| (first..first + r).map(|c| m.col_as_slice(c).to_vec()).collect();
-        frames.push(frame(of(&fields), of(&amplitudes.values), spectrum.n_rows(), n));
+        let fields = Mat::from_fn(spectrum.n_rows(), r, |i, c| fields[(i, first + c)]);
+        let amplitudes = Mat::from_fn(n, r, |j, c| amplitudes.values[(j, first + c)]);
+        frames.push(frame(fields, &amplitudes, spectrum.scale));
         first += r;
     }
     frames

@@ -42,7 +42,7 @@ impl Amplitudes {
                 }
                 let after = norm(&x);
                 let factor = if after > 1e-13 * before && after > 0.0 { after.recip() } else { 0.0 };
-                triangle[(c, c)] = after;
+                triangle[(c, c)] = if factor > 0.0 { after } else { 0.0 };
                 let to = self.values.col_as_slice_mut(first + c);
                 to.iter_mut().zip(&x).for_each(|(to, x)| *to = if factor > 0.0 { x * factor } else { 0.0 });
             }

@@ -212,6 +212,23 @@ fn a_sample_is_fitted_first_and_all_in_the_end() {
 }
 
 #[test]
+fn units_do_not_matter() {
+    let (grid, motions, q) = two_discs([30, 20], 40, 3.0);
+    let one = solve(&Als::new([2, 1]), &grid, &motions, &q);
+    for factor in [2.0_f64.powi(900), 2.0_f64.powi(-900)] {
+        let d = solve(
+            &Als::new([2, 1]),
+            &grid,
+            &motions,
+            &Mat::from_fn(q.nrows(), 40, |i, j| factor * q[(i, j)]),
+        );
+        assert_eq!(d.history, one.history);
+        assert!(d.frames[0].modes == one.frames[0].modes);
+        assert_eq!(d.frames[1].singular_values[0], factor * one.frames[1].singular_values[0]);
+    }
+}
+
+#[test]
 fn threads_do_not_matter() {
     let (grid, motions, q) = two_discs([30, 20], 40, 3.0);
     let [a, b] = [1, 3].map(|threads| {

@@ -9,6 +9,7 @@
 //! | `ibm` | solid fraction, forcing, loads | `bodies` |
 //! | `dem` | rigid bodies, overlap, contact | `bodies` |
 //! | `coupling` | the time loop, output, ledger, restart | `bodies` |
+//! | `mor` | snapshots, POD, POD–Galerkin, shifted POD, interpolation in time and parameters | `mor` |
 #![deny(missing_docs)]
 
 #[cfg(feature = "bodies")]
@@ -20,3 +21,5 @@ pub use fv_mesh as flow;
 #[cfg(feature = "bodies")]
 pub use ibm;
 pub use interfaces;
+#[cfg(feature = "mor")]
+pub use mor;

@@ -1,7 +1,5 @@
 //! Dense matrices.
-use faer::diag::Diag;
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::evd::{self, ComputeEigenvectors};
+use crate::self_adjoint_eigen;
 use faer::linalg::matmul::matmul;
 use faer::linalg::solvers::DenseSolveCore;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
@@ -10,20 +8,7 @@ use faer::{Accum, Mat, MatMut, MatRef, Par};
 /// read. None if the decomposition does not converge.
 #[must_use]
 pub fn self_adjoint_eigenvectors(a: MatRef<'_, f64>) -> Option<Mat<f64>> {
-    let n = a.nrows();
-    let (mut values, mut vectors) = (Diag::zeros(n), Mat::zeros(n, n));
-    let need =
-        evd::self_adjoint_evd_scratch::<f64>(n, ComputeEigenvectors::Yes, Par::Seq, Default::default());
-    evd::self_adjoint_evd(
-        a,
-        values.as_mut(),
-        Some(vectors.as_mut()),
-        Par::Seq,
-        MemStack::new(&mut MemBuffer::new(need)),
-        Default::default(),
-    )
-    .ok()?;
-    Some(vectors)
+    Some(self_adjoint_eigen(a)?.1)
 }
 
 /// `to` += A B.

@@ -4,12 +4,16 @@
 //! All of it runs on the calling thread alone, so that results do not depend on the number of threads.
 #![forbid(unsafe_code)]
 
+mod decompositions;
 mod dense;
+mod least_squares;
 mod solve;
 mod sparse;
 
+pub use decompositions::{add_gram, self_adjoint_eigen, thin_svd};
 pub use dense::{add_product, inverse, self_adjoint_eigenvectors};
 pub use faer::{ColRef, Mat, MatMut, MatRef};
+pub use least_squares::LeastSquares;
 pub use solve::{DenseLu, Qr, solve_positive};
 pub use sparse::{Cholesky, FactorError, Lu, Pattern};
 

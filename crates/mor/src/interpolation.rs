@@ -14,18 +14,28 @@
 //! assert!((y[0] - 0.3_f64.sin()).abs() < 1e-12);
 //! # Ok::<(), mor::interpolation::InterpolationError>(())
 //! ```
+mod choice;
+mod cross_validation;
 mod error;
+mod folds;
 mod interpolator;
+mod network;
 mod rbf;
 mod record;
 mod samples;
 mod scaling;
 mod spline;
+mod varying;
 
+pub use choice::{Best, Row, Table, best, best_of, candidates, compare};
+pub use cross_validation::{CrossValidation, cross_validate};
 pub use error::InterpolationError;
+pub use folds::Folds;
 pub use interpolator::{Interpolator, Method, load};
+pub use network::{Activation, Adam, Epoch, Fourier, Network, NetworkParams, Report, Stop};
 pub use rbf::{Kernel, Rbf, RbfParams, Shape};
 pub use record::{Record, RecordError};
 pub use samples::{Grid, Samples};
 pub use scaling::Scaling;
 pub use spline::{Degree, Spline, SplineParams};
+pub use varying::{Varying, VaryingParams};

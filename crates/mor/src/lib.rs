@@ -5,6 +5,8 @@
 
 pub mod galerkin;
 pub mod interpolation;
+pub mod models;
+pub mod pod;
 pub mod shifted;
 
 pub use monomorphic::{Mat, MatRef};

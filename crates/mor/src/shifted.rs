@@ -4,9 +4,11 @@
 //!
 //! T^s q (x) = q(x − s): what frame k carries is at rest in it, and moved by Δ_k(t_j) in snapshot j.
 mod axis;
+mod correlation;
 mod dense;
 mod descent;
 mod error;
+mod estimate;
 pub mod fourier;
 mod frames;
 mod gather;
@@ -29,6 +31,7 @@ mod waves;
 
 pub use descent::JointDescent;
 pub use error::ShiftedError;
+pub use estimate::ShiftEstimate;
 pub use frames::{Decomposition, Frame, FrameOperators, Progress, StopReason};
 pub use grid::Grid;
 pub use interpolator::Interpolator;

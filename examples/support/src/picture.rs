@@ -9,6 +9,7 @@ mod axes;
 mod canvas;
 mod colour;
 pub mod comparison;
+pub mod gallery;
 pub mod plot;
 pub mod sketch;
 pub mod solids;

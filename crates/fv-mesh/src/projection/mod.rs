@@ -3,6 +3,7 @@ mod checkpoint;
 mod immersed;
 mod prediction;
 mod sources;
+mod unknowns;
 mod window;
 
 use crate::cut::{Step, Walls};

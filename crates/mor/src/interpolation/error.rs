@@ -106,6 +106,14 @@ pub enum InterpolationError {
         /// What it must be.
         must: &'static str,
     },
+    /// A training that went out of bounds.
+    #[error(
+        "after {iterations} iterations the loss is not a number; take smaller steps of Adam, or a smaller bandwidth"
+    )]
+    Diverged {
+        /// How many were made.
+        iterations: usize,
+    },
     /// A prediction was asked for at a point that is none.
     #[error("a prediction was asked for where input {input} is {value}; give finite inputs")]
     Point {

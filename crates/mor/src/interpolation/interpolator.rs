@@ -1,5 +1,5 @@
 //! What every method owes, and every function made by one.
-use super::{InterpolationError, Rbf, Record, RecordError, Samples, Spline};
+use super::{Folds, InterpolationError, Network, Rbf, Record, RecordError, Samples, Spline, Varying};
 use crate::{Mat, MatRef};
 
 /// A way to make a function of samples, with all its parameters.
@@ -11,6 +11,22 @@ pub trait Method: Send + Sync {
     /// # Errors
     /// [`InterpolationError`] when the samples are too few, too many or not arranged as the method needs them.
     fn fit(&self, samples: &Samples) -> Result<Box<dyn Interpolator>, InterpolationError>;
+    /// Errors ŷ − y (k × size of the set) at the samples of every set, of functions through all the others: one fit for each set,
+    /// where there is no closed form.
+    ///
+    /// # Errors
+    /// As [`fit`](Self::fit), of a part of the samples; [`InterpolationError::Empty`] if a set has them all.
+    fn left_out(&self, samples: &Samples, folds: &Folds) -> Result<Vec<Mat<f64>>, InterpolationError> {
+        let one = |set: &Vec<usize>| {
+            let mut errors = self.fit(&samples.without(set)?)?.predict_all(samples.pick(set)[0].as_ref())?;
+            for (j, &sample) in set.iter().enumerate() {
+                let pairs = errors.col_as_slice_mut(j).iter_mut().zip(samples.value(sample));
+                pairs.for_each(|(error, value)| *error -= value);
+            }
+            Ok(errors)
+        };
+        folds.sets().iter().map(one).collect()
+    }
 }
 
 /// A function ℝᵈ → ℝᵏ made of samples.
@@ -62,6 +78,8 @@ pub fn load(record: &Record) -> Result<Box<dyn Interpolator>, RecordError> {
     match record.kind() {
         Spline::KIND => Ok(Box::new(Spline::from_record(record)?)),
         Rbf::KIND => Ok(Box::new(Rbf::from_record(record)?)),
+        Varying::KIND => Ok(Box::new(Varying::from_record(record)?)),
+        Network::KIND => Ok(Box::new(Network::from_record(record)?)),
         kind => Err(RecordError::Kind { found: kind.into(), expected: "an interpolator".into() }),
     }
 }

@@ -6,7 +6,7 @@ mod tail;
 pub use kernel::Kernel;
 
 use super::interpolator::check_input;
-use super::{InterpolationError, Interpolator, Method, Record, RecordError, Samples, Scaling};
+use super::{Folds, InterpolationError, Interpolator, Method, Record, RecordError, Samples, Scaling};
 use crate::Mat;
 use system::System;
 use tail::Tail;
@@ -125,6 +125,11 @@ impl Method for RbfParams {
     }
     fn fit(&self, samples: &Samples) -> Result<Box<dyn Interpolator>, InterpolationError> {
         Ok(Box::new(self.rbf(samples)?))
+    }
+    /// In closed form, with the shape that suits all samples.
+    fn left_out(&self, samples: &Samples, folds: &Folds) -> Result<Vec<Mat<f64>>, InterpolationError> {
+        let (system, _) = self.checked(samples)?;
+        system.left_out(self.choose(&system)?, folds).ok_or_else(|| self.singular())
     }
 }
 

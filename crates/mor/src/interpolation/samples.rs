@@ -138,16 +138,27 @@ impl Samples {
         x.len() == self.inputs()
             && x.iter().zip(&self.domain).all(|(x, [low, high])| (low..=high).contains(&x))
     }
+    /// Points and values of those samples, in that order, as columns.
+    pub(super) fn pick(&self, which: &[usize]) -> [Mat<f64>; 2] {
+        let pick = |of: &Mat<f64>| Mat::from_fn(of.nrows(), which.len(), |i, j| of[(i, which[j])]);
+        [pick(&self.points), pick(&self.values)]
+    }
     /// Those samples alone, in that order; none if `which` is empty.
     #[must_use]
     pub fn subset(&self, which: &[usize]) -> Option<Self> {
-        let pick = |of: &Mat<f64>| Mat::from_fn(of.nrows(), which.len(), |i, j| of[(i, which[j])]);
-        let points = pick(&self.points);
-        (!which.is_empty()).then(|| Self {
-            domain: ranges(points.as_ref()),
-            values: pick(&self.values),
-            points,
-        })
+        let [points, values] = self.pick(which);
+        (!which.is_empty()).then(|| Self { domain: ranges(points.as_ref()), values, points })
+    }
+    /// All but those.
+    ///
+    /// # Errors
+    /// [`InterpolationError::Empty`] if none are left.
+    pub fn without(&self, which: &[usize]) -> Result<Self, InterpolationError> {
+        let mut kept = vec![true; self.len()];
+        which.iter().for_each(|&i| kept[i] = false);
+        let rest: Vec<usize> = (0..self.len()).filter(|&i| kept[i]).collect();
+        let none = InterpolationError::Empty { samples: 0, inputs: self.inputs(), outputs: self.outputs() };
+        self.subset(&rest).ok_or(none)
     }
     /// The points as a full grid.
     ///

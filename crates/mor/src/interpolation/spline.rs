@@ -6,7 +6,7 @@ use super::interpolator::check_input;
 use super::scaling::ranges;
 use super::{InterpolationError, Interpolator, Method, Record, RecordError, Samples};
 use crate::Mat;
-use axis::Axis;
+pub(super) use axis::Axis;
 use collocation::Collocation;
 
 /// Degree of a spline, one less than its order of accuracy.
@@ -67,6 +67,11 @@ impl SplineParams {
             Degree::highest(found).ok_or_else(|| too_few(i, Degree::Linear, found))
         };
         Ok(Self { degrees: (0..samples.inputs()).map(of).collect::<Result<_, _>>()? })
+    }
+    /// The same with lower degrees where they are higher than this.
+    #[must_use]
+    pub fn at_most(&self, degree: Degree) -> Self {
+        Self { degrees: self.degrees.iter().map(|own| degree.min(*own)).collect() }
     }
     /// The spline through the samples.
     ///
@@ -182,18 +187,12 @@ impl Spline {
     pub(super) fn from_record(record: &Record) -> Result<Self, RecordError> {
         record.expect(Self::KIND)?;
         let degrees = record.counts("degrees")?;
-        if degrees.is_empty() || degrees.iter().any(|d| ![1, 3, 5].contains(d)) {
-            return Err(record.wrong("degrees", format!("is {degrees:?}")));
+        if degrees.is_empty() {
+            return Err(record.wrong("degrees", "is empty".into()));
         }
         let mut axes = Vec::new();
         for (i, &degree) in degrees.iter().enumerate() {
-            let name = format!("knots {i}");
-            let knots = record.numbers(&name)?.to_vec();
-            let ordered = knots.len() >= 2 * (degree + 1) && knots.windows(2).all(|w| w[0] <= w[1]);
-            if !(ordered && knots[degree] < knots[degree + 1]) {
-                return Err(record.wrong(&name, "are not ascending knots".into()));
-            }
-            axes.push(Axis { degree, knots });
+            axes.push(Axis::from_record(record, &format!("knots {i}"), degree)?);
         }
         let rows = record.count("outputs")?;
         let columns: usize = axes.iter().map(Axis::len).product();

@@ -1,13 +1,13 @@
 //! How many modes each frame needs.
 use super::dense::{orthonormalise, product, thin};
 use super::residual::{Observer, Problem};
-use super::{Frame, FrameOperators, JointDescent, ShiftedError, StopReason};
+use super::{Frame, FrameOperators, ShiftedError, StopReason};
 use monomorphic::{Mat, MatRef};
 
 /// Adds modes where the residual has them and takes those away that are not needed.
 ///
 /// What is left of the snapshots is brought into every frame; its leading mode joins the frame where it is largest, and all frames are
-/// fitted anew by [`JointDescent`]. A mode must stand out of what noise of the residual's own level has: the largest singular value
+/// fitted anew. A mode must stand out of what noise of the residual's own level has: the largest singular value
 /// of M × N numbers of deviation s is s (√M + √N). s is told from the median of the entries, which a few large ones do not move.
 /// In the end each frame must do without its last mode, if the error stays below the tolerance or grows by noise only.
 pub(super) struct RankSearch<'a> {
@@ -20,22 +20,23 @@ pub(super) struct RankSearch<'a> {
     pub(super) ranks: &'a [usize],
     /// As many as that are wanted, whether they stand out of the noise or not, and needed.
     pub(super) all: bool,
-    /// Of a fit.
-    pub(super) max_steps: usize,
+    /// Fits frames of these ranks to a relative error, beginning with them.
+    pub(super) fit: Fit<'a>,
 }
+
+/// Frames and why there are no better ones.
+pub(super) type Found = Result<(Vec<Frame>, StopReason), ShiftedError>;
+/// What fits frames.
+pub(super) type Fit<'a> = &'a dyn Fn(&[Frame], f64, Observer<'_>) -> Found;
 
 /// So much more than the largest singular value of noise.
 const CLEARLY: f64 = 1.05;
 impl RankSearch<'_> {
     /// From these frames, which may be nothing.
-    pub(super) fn search(
-        &self,
-        start: Vec<Frame>,
-        observer: Observer<'_>,
-    ) -> Result<(Vec<Frame>, StopReason), ShiftedError> {
+    pub(super) fn search(&self, start: Vec<Frame>, observer: Observer<'_>) -> Found {
         let mut frames = start;
         if frames.iter().any(|f| f.rank() > 0) {
-            match self.fit(&frames, self.tolerance, observer)? {
+            match (self.fit)(&frames, self.tolerance, observer)? {
                 (_, StopReason::Asked) => return Ok((frames, StopReason::Asked)),
                 (fitted, _) => frames = fitted,
             }
@@ -52,7 +53,7 @@ impl RankSearch<'_> {
                 break;
             }
             let Some(grown) = self.grown(&frames, &residual, edge) else { break };
-            match self.fit(&grown, self.tolerance, observer)? {
+            match (self.fit)(&grown, self.tolerance, observer)? {
                 (_, StopReason::Asked) => return Ok((frames, StopReason::Asked)),
                 (fitted, _) => frames = fitted,
             }
@@ -70,7 +71,7 @@ impl RankSearch<'_> {
                 let bound = self.tolerance.max(error.hypot(noise));
                 let mut fewer = frames.clone();
                 fewer[k] = fewer[k].cut(fewer[k].rank() - 1);
-                let (fitted, reason) = self.fit(&fewer, bound, observer)?;
+                let (fitted, reason) = (self.fit)(&fewer, bound, observer)?;
                 if reason == StopReason::Asked {
                     return Ok((frames, reason));
                 }
@@ -108,22 +109,6 @@ impl RankSearch<'_> {
             grown[k] = grown[k].plus(&mode);
             grown
         })
-    }
-
-    fn fit(
-        &self,
-        frames: &[Frame],
-        tolerance: f64,
-        observer: Observer<'_>,
-    ) -> Result<(Vec<Frame>, StopReason), ShiftedError> {
-        let ranks: Vec<_> = frames.iter().map(Frame::rank).collect();
-        let descent = JointDescent::new(ranks)
-            .tolerance(tolerance)
-            .stagnation(5e-3)
-            .max_steps(self.max_steps)
-            .ignoring(self.ignored);
-        let d = descent.solve(self.operators, self.snapshots, Some(frames), observer)?;
-        Ok((d.frames, d.stopped))
     }
 }
 

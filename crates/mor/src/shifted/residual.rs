@@ -33,11 +33,7 @@ impl<'a> Problem<'a> {
         if rows != operators.n_rows() {
             return Err(ShiftedError::Unknowns { rows, expected: operators.n_rows() });
         }
-        for (snapshot, column) in snapshots.col_iter().enumerate() {
-            if let Some((row, &value)) = column.iter().enumerate().find(|(_, x)| !x.is_finite()) {
-                return Err(ShiftedError::NotFinite { snapshot, row, value });
-            }
-        }
+        check_finite(snapshots)?;
         Ok(Self { operators, snapshots, norm: snapshots.norm_l2(), ignored: &[] })
     }
 
@@ -108,6 +104,17 @@ impl<'a> Problem<'a> {
     pub(super) fn relative(&self, norm: f64) -> f64 {
         if self.norm > 0.0 { norm / self.norm } else { 0.0 }
     }
+}
+
+/// # Errors
+/// [`ShiftedError::NotFinite`].
+pub(super) fn check_finite(snapshots: MatRef<'_, f64>) -> Result<(), ShiftedError> {
+    for (snapshot, column) in snapshots.col_iter().enumerate() {
+        if let Some((row, &value)) = column.iter().enumerate().find(|(_, x)| !x.is_finite()) {
+            return Err(ShiftedError::NotFinite { snapshot, row, value });
+        }
+    }
+    Ok(())
 }
 
 /// When to stop.

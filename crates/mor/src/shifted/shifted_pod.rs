@@ -1,6 +1,7 @@
 //! The usual way to decompose snapshots.
 use super::dense::thin;
-use super::rank_search::{RankSearch, deviation};
+use super::fourier::Als;
+use super::rank_search::{Fit, Found, RankSearch, deviation};
 use super::residual::{Observer, Problem};
 use super::waves::Waves;
 use super::{
@@ -36,7 +37,7 @@ pub enum Noise {
 ///    on some of the snapshots if there are many.
 /// 3. [`JointDescent`] fits all modes to the entries that are not wrong: nothing is left of the bias of the nuclear norm.
 ///
-/// Frames that only move, with [`Interpolation::Spectral`], are decomposed in the space of wave vectors.
+/// Frames that only move, with [`Interpolation::Spectral`], are decomposed in the space of wave vectors and fitted by [`Als`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShiftedPod {
     grid: Grid,
@@ -48,9 +49,6 @@ pub struct ShiftedPod {
     max_rank: usize,
     max_steps: usize,
 }
-
-/// The operators of some of the snapshots.
-type OperatorsOf<'a> = dyn Fn(&[usize]) -> Result<Box<dyn FrameOperators>, ShiftedError> + 'a;
 
 /// More snapshots than this are thinned out to find the ranks.
 const MANY: usize = 150;
@@ -134,24 +132,10 @@ impl ShiftedPod {
             return self.robust(&operators, snapshots, start, &mut watch);
         }
         let waves = Waves::new(&self.grid, shifts, snapshots.nrows());
-        let Some(waves) = waves.filter(|_| self.interpolation == Interpolation::Spectral) else {
-            let thinned = |snapshots: &[usize]| -> Result<Box<dyn FrameOperators>, ShiftedError> {
-                let some = Thinned { shifts, snapshots };
-                Ok(Box::new(GridFrames::new(self.grid, self.interpolation, &some, operators.n_rows())?))
-            };
-            return self.dense(&operators, snapshots, start, &thinned, &mut watch);
-        };
-        let thinned = |snapshots: &[usize]| -> Result<Box<dyn FrameOperators>, ShiftedError> {
-            Ok(Box::new(waves.thinned(snapshots)))
-        };
-        let carried = |frames: Vec<Frame>, map: &dyn Fn(MatRef<'_, f64>) -> Mat<f64>| -> Vec<Frame> {
-            frames.into_iter().map(|frame| Frame { modes: map(frame.modes.as_ref()), ..frame }).collect()
-        };
-        let start = start.map(|frames| carried(frames, &|modes| waves.waves(modes)));
-        let transformed = waves.waves(snapshots);
-        let mut d = self.dense(&waves, transformed.as_ref(), start, &thinned, &mut watch)?;
-        d.frames = carried(d.frames, &|modes| waves.fields(modes));
-        Ok(d)
+        match waves.filter(|_| self.interpolation == Interpolation::Spectral) {
+            Some(waves) => self.translated(&waves, shifts, snapshots, start, &mut watch),
+            None => self.dense(&operators, shifts, snapshots, start, &mut watch),
+        }
     }
 
     /// Decomposes snapshots that any operators carry along, all of them at once.
@@ -178,37 +162,84 @@ impl ShiftedPod {
         }
     }
 
-    /// No entry is wrong. Ranks are looked for on some of the snapshots if there are many.
+    /// No entry is wrong. If there are many snapshots, modes are looked for on some of them first.
     fn dense(
         &self,
-        operators: &dyn FrameOperators,
+        operators: &GridFrames,
+        shifts: &dyn Shifts,
         snapshots: MatRef<'_, f64>,
         start: Option<Vec<Frame>>,
-        thinned: &OperatorsOf<'_>,
         watch: &mut Watch<'_>,
     ) -> Result<Decomposition, ShiftedError> {
         let (m, n) = snapshots.shape();
-        let mut frames = start.unwrap_or_else(|| vec![Frame::nothing(m, n); operators.n_frames()]);
-        let fresh = frames.iter().all(|f| f.rank() == 0);
-        if fresh && n > MANY {
-            let some: Vec<usize> = (0..SOME).map(|i| i * (n - 1) / (SOME - 1)).collect();
-            let few = Mat::from_fn(m, SOME, |i, j| snapshots[(i, some[j])]);
-            let ranks = match &self.ranks {
-                Ranks::Given(ranks) => ranks.clone(),
-                Ranks::Found => vec![self.max_rank; frames.len()],
-            };
-            let some_operators = thinned(&some)?;
-            let ranks = Problem::new(&*some_operators, few.as_ref())?.ranks(&ranks)?;
-            let start = vec![Frame::nothing(m, SOME); frames.len()];
-            let search = self.rank_search(&*some_operators, few.as_ref(), &[], &ranks);
-            let search = search.search(start, &mut |p| watch.see(p))?;
-            frames = search.0.iter().map(|f| f.between(&some, n)).collect();
-            if search.1 == StopReason::Asked {
-                return Ok(Decomposition { frames, noise: None, history: watch.take(), stopped: search.1 });
+        let frames = match start {
+            Some(frames) => frames,
+            None if n > MANY => {
+                let (some, few) = thinned(snapshots);
+                let shifts = Thinned { shifts, snapshots: &some };
+                let operators = GridFrames::new(self.grid, self.interpolation, &shifts, m)?;
+                let fit = self.descent(&operators, few.as_ref(), &[]);
+                let (frames, stopped) = self.search(&operators, few.as_ref(), &[], None, &fit, watch)?;
+                let frames = frames.iter().map(|f| f.between(&some, n)).collect();
+                if stopped == StopReason::Asked {
+                    return Ok(Decomposition { frames, noise: None, history: watch.take(), stopped });
+                }
+                frames
             }
-        }
+            None => vec![Frame::nothing(m, n); operators.n_frames()],
+        };
         let (frames, stopped) = self.fit(operators, snapshots, &[], frames, watch)?;
         Ok(Decomposition { frames, noise: None, history: watch.take(), stopped })
+    }
+
+    /// The same of frames that only move, by their waves: [`Als`] fits them.
+    fn translated(
+        &self,
+        waves: &Waves,
+        shifts: &dyn Shifts,
+        snapshots: MatRef<'_, f64>,
+        start: Option<Vec<Frame>>,
+        watch: &mut Watch<'_>,
+    ) -> Result<Decomposition, ShiftedError> {
+        let n = snapshots.ncols();
+        let decomposition =
+            |frames| Decomposition { frames, noise: None, history: vec![], stopped: StopReason::Asked };
+        let als =
+            |ranks: &[usize], tolerance| Als { tolerance, max_steps: 5 * self.max_steps, ..Als::new(ranks) };
+        let (ranks, start) = match &self.ranks {
+            Ranks::Given(ranks) => (ranks.clone(), start),
+            Ranks::Found => {
+                let (some, few) = match &start {
+                    None if n > MANY => thinned(snapshots),
+                    _ => ((0..n).collect(), snapshots.to_owned()),
+                };
+                let thinned = Thinned { shifts, snapshots: &some };
+                let fit = |frames: &[Frame], tolerance: f64, observer: Observer<'_>| {
+                    let ranks: Vec<_> = frames.iter().map(Frame::rank).collect();
+                    let start = decomposition(frames.to_vec());
+                    let mut go_on = |p: &Progress| observer(p).is_continue();
+                    let als = als(&ranks, tolerance);
+                    let d = als.solve(&self.grid, &thinned, few.as_ref(), Some(&start), None, &mut go_on)?;
+                    Ok((carried(d.frames, &|modes| waves.waves(modes)), d.stopped))
+                };
+                let start = start.map(|frames| carried(frames, &|modes| waves.waves(modes)));
+                let transformed = waves.waves(few.as_ref());
+                let waves_of_some = waves.thinned(&some);
+                let (frames, stopped) =
+                    self.search(&waves_of_some, transformed.as_ref(), &[], start, &fit, watch)?;
+                let frames = carried(frames, &|modes| waves.fields(modes));
+                let frames: Vec<_> = frames.iter().map(|f| f.between(&some, n)).collect();
+                if stopped == StopReason::Asked {
+                    return Ok(Decomposition { history: watch.take(), ..decomposition(frames) });
+                }
+                (frames.iter().map(Frame::rank).collect(), Some(frames))
+            }
+        };
+        let start = start.map(decomposition);
+        let mut go_on = |p: &Progress| watch.see(p).is_continue();
+        let als = als(&ranks, self.tolerance);
+        let d = als.solve(&self.grid, shifts, snapshots, start.as_ref(), None, &mut go_on)?;
+        Ok(Decomposition { history: watch.take(), ..d })
     }
 
     /// Some entries are wrong.
@@ -291,21 +322,23 @@ impl ShiftedPod {
         wrong: &[(usize, usize)],
         start: Vec<Frame>,
         watch: &mut Watch<'_>,
-    ) -> Result<(Vec<Frame>, StopReason), ShiftedError> {
-        let problem = Problem::new(operators, snapshots)?;
-        let (ranks, all) = match &self.ranks {
-            Ranks::Given(ranks) => (problem.ranks(ranks)?, true),
-            Ranks::Found => (problem.ranks(&vec![self.max_rank; operators.n_frames()])?, false),
+    ) -> Found {
+        let given = match &self.ranks {
+            Ranks::Given(ranks) => Some(Problem::new(operators, snapshots)?.ranks(ranks)?),
+            Ranks::Found => None,
         };
+        let full =
+            given.as_ref().is_some_and(|r| start.iter().zip(r).all(|(frame, &rank)| frame.rank() >= rank));
         let mut frames = start;
-        if !all || frames.iter().zip(&ranks).any(|(frame, &rank)| frame.rank() < rank) {
-            let search = self.rank_search(operators, snapshots, wrong, &ranks);
+        if !full {
             let stopped;
-            (frames, stopped) = search.search(frames, &mut |p| watch.see(p))?;
+            let fit = self.descent(operators, snapshots, wrong);
+            (frames, stopped) = self.search(operators, snapshots, wrong, Some(frames), &fit, watch)?;
             if stopped == StopReason::Asked {
                 return Ok((frames, stopped));
             }
         }
+        let ranks = given.unwrap_or_else(|| frames.iter().map(Frame::rank).collect());
         let ranks: Vec<_> = frames.iter().zip(&ranks).map(|(frame, &rank)| frame.rank().min(rank)).collect();
         frames = frames.iter().zip(&ranks).map(|(frame, &rank)| frame.cut(rank)).collect();
         let descent =
@@ -314,17 +347,53 @@ impl ShiftedPod {
         Ok((d.frames, d.stopped))
     }
 
-    fn rank_search<'a>(
-        &self,
+    /// A rough fit by [`JointDescent`].
+    fn descent<'a>(
+        &'a self,
         operators: &'a dyn FrameOperators,
         snapshots: MatRef<'a, f64>,
         ignored: &'a [(usize, usize)],
-        ranks: &'a [usize],
-    ) -> RankSearch<'a> {
-        let all = self.ranks != Ranks::Found;
-        let tolerance = if all { self.tolerance } else { self.rank_tolerance };
-        RankSearch { operators, snapshots, ignored, tolerance, ranks, all, max_steps: self.max_steps }
+    ) -> impl Fn(&[Frame], f64, Observer<'_>) -> Found + 'a {
+        move |frames, tolerance, observer| {
+            let ranks: Vec<_> = frames.iter().map(Frame::rank).collect();
+            let descent = JointDescent::new(ranks).tolerance(tolerance).stagnation(5e-3);
+            let descent = descent.max_steps(self.max_steps).ignoring(ignored);
+            let d = descent.solve(operators, snapshots, Some(frames), observer)?;
+            Ok((d.frames, d.stopped))
+        }
     }
+
+    /// Modes as many as are given, or needed, roughly fitted.
+    fn search(
+        &self,
+        operators: &dyn FrameOperators,
+        snapshots: MatRef<'_, f64>,
+        ignored: &[(usize, usize)],
+        start: Option<Vec<Frame>>,
+        fit: Fit<'_>,
+        watch: &mut Watch<'_>,
+    ) -> Found {
+        let problem = Problem::new(operators, snapshots)?;
+        let (ranks, all, tolerance) = match &self.ranks {
+            Ranks::Given(ranks) => (ranks.clone(), true, self.tolerance),
+            Ranks::Found => (vec![self.max_rank; operators.n_frames()], false, self.rank_tolerance),
+        };
+        let ranks = problem.ranks(&ranks)?;
+        let search = RankSearch { operators, snapshots, ignored, tolerance, ranks: &ranks, all, fit };
+        search.search(start.map_or_else(|| problem.start(None), Ok)?, &mut |p| watch.see(p))
+    }
+}
+
+/// Frames with other modes.
+fn carried(frames: Vec<Frame>, map: &dyn Fn(MatRef<'_, f64>) -> Mat<f64>) -> Vec<Frame> {
+    frames.into_iter().map(|frame| Frame { modes: map(frame.modes.as_ref()), ..frame }).collect()
+}
+
+/// Some of the snapshots, the first and the last among them.
+fn thinned(snapshots: MatRef<'_, f64>) -> (Vec<usize>, Mat<f64>) {
+    let some: Vec<usize> = (0..SOME).map(|i| i * (snapshots.ncols() - 1) / (SOME - 1)).collect();
+    let few = Mat::from_fn(snapshots.nrows(), SOME, |i, j| snapshots[(i, some[j])]);
+    (some, few)
 }
 
 /// Modes of the augmented Lagrangian below this part of the largest one are not started from.

@@ -20,6 +20,29 @@ pub enum Interpolation {
 }
 
 impl Interpolation {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::Lagrange1,
+        Self::Lagrange3,
+        Self::Lagrange5,
+        Self::CubicSpline,
+        Self::QuinticSpline,
+        Self::Spectral,
+    ];
+
+    /// What tables and files call it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lagrange1 => "Lagrange polynomials of degree 1",
+            Self::Lagrange3 => "Lagrange polynomials of degree 3",
+            Self::Lagrange5 => "Lagrange polynomials of degree 5",
+            Self::CubicSpline => "cubic spline",
+            Self::QuinticSpline => "quintic spline",
+            Self::Spectral => "spectral",
+        }
+    }
+
     /// A point between two values takes `reach` values on either side.
     pub(super) fn reach(self) -> usize {
         match self {

@@ -1,4 +1,5 @@
 mod algorithms;
+mod estimate;
 mod operators;
 mod proximal;
 mod shifted_pod;

@@ -2,11 +2,11 @@
 use super::dense::columns;
 use super::stencil::phase;
 use super::{FrameOperators, Grid, Shifts};
-use interfaces::Vector;
 use monomorphic::{Mat, MatMut, MatRef, fourier_transforms};
 use rayon::prelude::*;
 use rustfft::Fft;
 use rustfft::num_complex::Complex;
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// The Fourier coefficients of fields along all axes that frames move along: a shift multiplies each by its phase, nothing else.
@@ -16,6 +16,7 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub(super) struct Waves {
     cells: [usize; 3],
+    spacing: [f64; 3],
     /// Coefficients along each axis.
     counts: [usize; 3],
     moving: Vec<usize>,
@@ -30,27 +31,53 @@ pub(super) struct Waves {
 impl Waves {
     /// None if a frame turns or moves along an axis that has ends, or if none moves.
     pub(super) fn new(grid: &Grid, shifts: &dyn Shifts, n_rows: usize) -> Option<Self> {
-        let cells = grid.cells();
-        let (n_frames, n_snapshots) = (shifts.n_frames(), shifts.n_snapshots());
-        let mut ways = Vec::with_capacity(n_frames * n_snapshots);
-        for (k, j) in (0..n_frames).flat_map(|k| (0..n_snapshots).map(move |j| (k, j))) {
-            let motion = shifts.motion(k, j);
+        let numbers = (0..shifts.n_frames()).flat_map(|k| (0..shifts.n_snapshots()).map(move |j| (k, j)));
+        let mut moves = [false; 3];
+        for motion in numbers.map(|(k, j)| shifts.motion(k, j)) {
             if !motion.is_translation() {
                 return None;
             }
-            let s: Vector = motion.displacement;
-            ways.push([0, 1, 2].map(|a| s[a] / grid.spacing()[a]));
+            moves = [0, 1, 2].map(|a| moves[a] || motion.displacement[a] != 0.0 && grid.cells()[a] > 1);
         }
-        let moving: Vec<_> = (0..3).filter(|&a| cells[a] > 1 && ways.iter().any(|w| w[a] != 0.0)).collect();
-        let first = *moving.first()?;
-        if moving.iter().any(|&a| !grid.periodic()[a]) {
-            return None;
-        }
+        let moving: Vec<_> = (0..3).filter(|&a| moves[a]).collect();
+        let possible = !moving.is_empty() && moving.iter().all(|&a| grid.periodic()[a]);
+        possible.then(|| Self::along(grid, moving, shifts, n_rows))
+    }
+
+    /// Along these axes, which are periodic, at least one.
+    pub(super) fn along(grid: &Grid, moving: Vec<usize>, shifts: &dyn Shifts, n_rows: usize) -> Self {
+        let cells = grid.cells();
+        let (n_frames, n_snapshots) = (shifts.n_frames(), shifts.n_snapshots());
+        let numbers = (0..n_frames).flat_map(|k| (0..n_snapshots).map(move |j| (k, j)));
+        let ways = numbers.map(|(k, j)| {
+            let s = shifts.motion(k, j).displacement;
+            [0, 1, 2].map(|a| s[a] / grid.spacing()[a])
+        });
+        let ways = ways.collect();
         let mut counts = cells;
-        counts[first] = cells[first] / 2 + 1;
+        counts[moving[0]] = cells[moving[0]] / 2 + 1;
         let transforms = moving.iter().map(|&a| fourier_transforms(cells[a])).collect();
         let n_components = n_rows / grid.n_cells();
-        Some(Self { cells, counts, moving, transforms, n_components, n_frames, n_snapshots, shifts: ways })
+        let spacing = grid.spacing();
+        Self { cells, spacing, counts, moving, transforms, n_components, n_frames, n_snapshots, shifts: ways }
+    }
+
+    /// ∂/∂x along an axis that fields move along; the wave of two cells has no slope at the nodes.
+    pub(super) fn differentiate(&self, a: usize, waves: &mut Mat<f64>) {
+        let (n, count) = (self.cells[a], self.counts[a]);
+        let stride: usize = self.counts[..a].iter().product();
+        let number = |m: usize| match (2 * m).cmp(&n) {
+            std::cmp::Ordering::Less => m as f64,
+            std::cmp::Ordering::Equal => 0.0,
+            std::cmp::Ordering::Greater => m as f64 - n as f64,
+        };
+        let unit = 2.0 * PI / (n as f64 * self.spacing[a]);
+        for column in columns(waves) {
+            for (i, w) in column.chunks_exact_mut(2).enumerate() {
+                let k = unit * number(i / stride % count);
+                (w[0], w[1]) = (-k * w[1], k * w[0]);
+            }
+        }
     }
 
     /// Of some of the snapshots.
@@ -207,7 +234,7 @@ impl Waves {
 }
 
 /// Transforms blocks of `n` × `inner` values along `n`.
-fn transform(z: &mut [Complex<f64>], n: usize, inner: usize, transform: &dyn Fft<f64>) {
+pub(super) fn transform(z: &mut [Complex<f64>], n: usize, inner: usize, transform: &dyn Fft<f64>) {
     let mut scratch = vec![Complex::default(); transform.get_inplace_scratch_len()];
     let mut line = vec![Complex::default(); n];
     for block in z.chunks_exact_mut(n * inner) {

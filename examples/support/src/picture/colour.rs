@@ -31,6 +31,17 @@ const VIRIDIS: [Colour; 33] = [
 /// From white to a deep blue-grey, at equal steps of lightness.
 const SLATE: [Colour; 5] = [[255, 255, 255], [199, 205, 214], [145, 156, 173], [92, 107, 131], [39, 60, 91]];
 
+/// From a deep blue over white to a deep red, at equal steps of lightness to both sides.
+const SEISMIC: [Colour; 7] = [
+    [5, 48, 97],
+    [67, 133, 187],
+    [171, 208, 230],
+    [255, 255, 255],
+    [246, 178, 147],
+    [208, 88, 76],
+    [103, 0, 31],
+];
+
 /// A colour map as 256 entries.
 #[derive(Clone)]
 pub(crate) struct Map([Colour; 256]);
@@ -44,6 +55,11 @@ impl Map {
     /// For fractions: white to slate.
     pub(crate) fn slate() -> Self {
         Self::through(&SLATE)
+    }
+
+    /// For what has a sign: blue over white to red.
+    pub(crate) fn signed() -> Self {
+        Self::through(&SEISMIC)
     }
 
     fn through(knots: &[Colour]) -> Self {

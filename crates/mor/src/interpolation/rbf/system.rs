@@ -1,6 +1,6 @@
 //! The equations of the weights.
 use super::{Kernel, Tail, too_few};
-use crate::interpolation::{InterpolationError, Samples, Scaling};
+use crate::interpolation::{Folds, InterpolationError, Samples, Scaling};
 use crate::{Mat, MatRef};
 use monomorphic::{DenseLu, Qr};
 
@@ -103,6 +103,21 @@ impl System {
         let weights = &inverse * &self.right;
         let errors = Mat::from_fn(self.right.ncols(), self.m(), |row, i| weights[(i, row)] / inverse[(i, i)]);
         (errors, norm(&matrix) * norm(&inverse))
+    }
+    /// The errors ŷ − y at the samples of every set S of the interpolant through all the others: with the inverse of the matrix of all
+    /// equations and all weights, −((M⁻¹)_SS)⁻¹ w_S, by the same elimination of several rows at once. None if there is no such
+    /// interpolant, or it is round-off.
+    pub(super) fn left_out(&self, shape: f64, folds: &Folds) -> Option<Vec<Mat<f64>>> {
+        let inverse = DenseLu::new(self.matrix(shape)).inverse();
+        let weights = &inverse * &self.right;
+        let one = |set: &Vec<usize>| {
+            let block = Mat::from_fn(set.len(), set.len(), |i, j| inverse[(set[i], set[j])]);
+            let mut errors = Mat::from_fn(set.len(), weights.ncols(), |i, row| -weights[(set[i], row)]);
+            DenseLu::new(block).solve(errors.as_mut());
+            let enough = self.m() - set.len() >= self.tail.len();
+            (enough && largest(errors.as_ref()).is_finite()).then(|| errors.transpose().to_owned())
+        };
+        folds.sets().iter().map(one).collect()
     }
     /// Points per unit of length if they were on a grid.
     pub(super) fn density(&self) -> f64 {

@@ -1,0 +1,131 @@
+//! Which samples are left out together.
+use super::{InterpolationError, Samples};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+/// Sets of samples: each in turn is left out and predicted from all the others.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Folds {
+    sets: Vec<Vec<usize>>,
+}
+
+impl Folds {
+    /// Every sample alone, also those at the ends: predictions there are extrapolations.
+    #[must_use]
+    pub fn leave_one_out(samples: &Samples) -> Self {
+        Self { sets: (0..samples.len()).map(|i| vec![i]).collect() }
+    }
+    /// Every sample alone that is not at an end of any input.
+    #[must_use]
+    pub fn leave_one_out_inside(samples: &Samples) -> Self {
+        Self { sets: inside(samples).into_iter().map(|i| vec![i]).collect() }
+    }
+    /// The samples that are at no end of an input, shared out at random among so many sets that differ by one at most.
+    ///
+    /// # Errors
+    /// [`InterpolationError::Parameter`] if there are fewer than two sets, [`InterpolationError::TooFew`] if there are fewer such
+    /// samples.
+    pub fn random(samples: &Samples, sets: usize, seed: u64) -> Result<Self, InterpolationError> {
+        let mut order = inside(samples);
+        let mut random = Pcg64::seed_from_u64(seed);
+        for i in (1..order.len()).rev() {
+            order.swap(i, random.random_range(0..=i));
+        }
+        Self::dealt(&order, sets)
+    }
+    /// The samples between the ends, shared out in the order of the first input: with one input each is predicted from neighbours on
+    /// both sides.
+    ///
+    /// # Errors
+    /// As [`random`](Self::random).
+    pub fn interleaved(samples: &Samples, sets: usize) -> Result<Self, InterpolationError> {
+        let mut order = inside(samples);
+        order.sort_by(|&a, &b| samples.point(a)[0].total_cmp(&samples.point(b)[0]));
+        Self::dealt(&order, sets)
+    }
+    /// Of a full grid, every plane of nodes across every axis, save the outermost ones: what is left is a full grid again.
+    ///
+    /// # Errors
+    /// [`InterpolationError::NotAGrid`], [`InterpolationError::TooFew`] if no axis has three values.
+    pub fn planes(samples: &Samples) -> Result<Self, InterpolationError> {
+        let grid = samples.grid()?;
+        let mut sets = Vec::new();
+        let mut stride = 1;
+        for axis in &grid.axes {
+            let of = |node: usize| (node / stride) % axis.len();
+            for plane in 1..axis.len().saturating_sub(1) {
+                let nodes = (0..grid.samples.len()).filter(|&node| of(node) == plane);
+                sets.push(nodes.map(|node| grid.samples[node]).collect());
+            }
+            stride *= axis.len();
+        }
+        if sets.is_empty() {
+            let found = grid.axes.iter().map(Vec::len).max().unwrap_or(0);
+            return Err(too_few("leaving out planes of a grid", "values of an input", 3, found));
+        }
+        Ok(Self { sets })
+    }
+    /// Those that suit the samples: five [`interleaved`](Self::interleaved) sets for one input; [`planes`](Self::planes) of a grid, ten
+    /// of them evenly chosen if there are more; each sample alone of up to 40 scattered ones, five [`random`](Self::random) sets of
+    /// more.
+    ///
+    /// # Errors
+    /// [`InterpolationError::TooFew`] if there are too few samples to leave any out.
+    pub fn suited(samples: &Samples, seed: u64) -> Result<Self, InterpolationError> {
+        let inside = inside(samples).len();
+        if samples.inputs() == 1 {
+            return Self::interleaved(samples, inside.clamp(2, 5));
+        }
+        if let Ok(Self { sets }) = Self::planes(samples) {
+            let (count, most) = (sets.len(), 10);
+            let chosen = |i: usize| count <= most || (i * most) / count != ((i + 1) * most) / count;
+            let kept = sets.into_iter().enumerate().filter(|(i, _)| chosen(*i));
+            return Ok(Self { sets: kept.map(|(_, set)| set).collect() });
+        }
+        match inside {
+            0..5 if samples.len() < 3 => Err(too_few("cross-validation", "samples", 3, samples.len())),
+            0..5 => Ok(Self::leave_one_out(samples)),
+            5..=40 => Ok(Self::leave_one_out_inside(samples)),
+            _ => Self::random(samples, 5, seed),
+        }
+    }
+
+    fn dealt(order: &[usize], count: usize) -> Result<Self, InterpolationError> {
+        if count < 2 {
+            let (what, value, must) = ("number of sets", count as f64, "at least 2");
+            return Err(InterpolationError::Parameter { what, value, must });
+        }
+        if order.len() < count {
+            return Err(too_few("cross-validation", "samples between the ends", count, order.len()));
+        }
+        let set = |first: usize| order.iter().skip(first).step_by(count).copied().collect();
+        Ok(Self { sets: (0..count).map(set).collect() })
+    }
+    /// The first sets alone.
+    #[must_use]
+    pub fn first(&self, count: usize) -> Self {
+        Self { sets: self.sets.iter().take(count).cloned().collect() }
+    }
+    /// Samples of each set.
+    #[must_use]
+    pub fn sets(&self) -> &[Vec<usize>] {
+        &self.sets
+    }
+}
+
+fn too_few(what: &str, of: &'static str, needed: usize, found: usize) -> InterpolationError {
+    InterpolationError::TooFew { what: what.into(), of, needed, found }
+}
+
+/// At no end of an input that has more than two values.
+fn inside(samples: &Samples) -> Vec<usize> {
+    let bounded: Vec<usize> = (0..samples.inputs()).filter(|&i| samples.distinct(i).len() > 2).collect();
+    let is_inside = |j: &usize| {
+        let x = samples.point(*j);
+        bounded.iter().all(|&i| samples.domain()[i][0] < x[i] && x[i] < samples.domain()[i][1])
+    };
+    (0..samples.len()).filter(|j| !bounded.is_empty() && is_inside(j)).collect()
+}
+
+#[cfg(test)]
+mod tests;

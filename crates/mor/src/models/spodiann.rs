@@ -1,0 +1,389 @@
+//! Shifted POD with interpolated coefficients and paths.
+use super::assessment::Sums;
+use super::coefficients::Coefficients;
+use super::modes::write_modes;
+use super::paths::Paths;
+use super::{Assessment, ModelError};
+use crate::interpolation::{Method, Record, RecordError, Samples};
+use crate::shifted::{
+    Decomposition, FrameOperators, Grid, GridFrames, Interpolation, Interpolator, Motion, Motions,
+    ShiftedError, Shifts,
+};
+use crate::{Mat, MatRef};
+use interfaces::Point;
+use monomorphic::Qr;
+use std::f64::consts::TAU;
+use std::io;
+use std::path::Path;
+
+/// How a [`Spodiann`] interpolates; `None`: the way that predicts samples best which are held out.
+#[derive(Clone, Copy, Default)]
+pub struct SpodiannParams<'a> {
+    /// The coefficients, as functions of time and parameters, and of phases where those help.
+    pub coefficients: Option<&'a dyn Method>,
+    /// The frames' paths.
+    pub paths: Option<&'a dyn Method>,
+}
+
+/// Q(x, t, μ) ≈ Σ_k T^{Δ_k(t, μ)} Σ_i c_i^k(t, μ) φ_i^k(x): modes in frames of reference that move, with interpolated coefficients c and motions Δ
+/// (sPODIANN; Isoz et al. 2023, equation (9) and figure 8).
+///
+/// Inputs are time and then parameters. Where they are time alone and a frame crosses cells of the grid, its coefficients may also
+/// depend on the phase cos 2πs/h, sin 2πs/h of its displacement ([`Varying`](crate::interpolation::Varying)), if samples that are held out tell so.
+pub struct Spodiann {
+    interpolation: Interpolation,
+    interpolator: Interpolator,
+    frames: Vec<Carried>,
+    paths: Paths,
+    inputs: usize,
+    rows: usize,
+    /// ‖Q − Σ T^k Q_k‖/‖Q‖ of the decomposition.
+    projection_error: f64,
+    /// Root mean square norm of a snapshot.
+    typical: f64,
+}
+
+/// What one frame carries.
+struct Carried {
+    modes: Mat<f64>,
+    /// None without modes.
+    coefficients: Option<Coefficients>,
+    /// Axes whose phase is an input of the coefficients, too.
+    phases: Vec<usize>,
+}
+
+impl Spodiann {
+    const KIND: &str = "sPODIANN";
+
+    /// Of a decomposition of snapshots at points (inputs × snapshots) that were carried along by `shifts` on a grid.
+    ///
+    /// # Errors
+    /// [`ModelError`]: sizes that do not fit, and those of the interpolation.
+    pub fn new(
+        points: MatRef<'_, f64>,
+        decomposition: &Decomposition,
+        (grid, interpolation): (Grid, Interpolation),
+        shifts: &dyn Shifts,
+        params: SpodiannParams<'_>,
+    ) -> Result<Self, ModelError> {
+        let (frames, m) = (&decomposition.frames, points.ncols());
+        ModelError::same("frames of the shifts", frames.len(), shifts.n_frames())?;
+        ModelError::same("motions of every frame, one for each point", m, shifts.n_snapshots())?;
+        let rows = frames.first().map_or(0, |f| f.modes.nrows());
+        if rows == 0 || !rows.is_multiple_of(grid.n_cells()) {
+            return Err(ShiftedError::Rows { rows, cells: grid.n_cells() }.into());
+        }
+        let paths = Paths::fit(points, shifts, params.paths)?;
+        let mut squares = 0.0;
+        let mut carried = Vec::new();
+        for (k, frame) in frames.iter().enumerate() {
+            ModelError::same("rows of a frame's modes", rows, frame.modes.nrows())?;
+            ModelError::same("coefficients of a frame, one for each point", m, frame.coefficients.ncols())?;
+            squares += frame.singular_values.iter().map(|s| s * s).sum::<f64>();
+            carried.push(if frame.rank() == 0 {
+                Carried { modes: frame.modes.clone(), coefficients: None, phases: Vec::new() }
+            } else {
+                let motions = |j: usize| shifts.motion(k, j);
+                Carried::fit(points, frame, &grid, &motions, params.coefficients)?
+            });
+        }
+        Ok(Self {
+            interpolation,
+            interpolator: Interpolator::new(grid, interpolation),
+            frames: carried,
+            paths,
+            inputs: points.nrows(),
+            rows,
+            projection_error: decomposition.history.last().map_or(0.0, |p| p.error),
+            typical: (squares / m as f64).sqrt(),
+        })
+    }
+
+    /// Time and parameters.
+    #[must_use]
+    pub fn inputs(&self) -> usize {
+        self.inputs
+    }
+    /// Is x within the samples' times and parameters?
+    #[must_use]
+    pub fn covers(&self, x: &[f64]) -> bool {
+        let domain = self.frames.iter().find_map(|f| f.coefficients.as_ref()).map_or(&[][..], |c| c.domain());
+        x.len() == self.inputs && x.iter().zip(domain).all(|(x, [low, high])| (low..=high).contains(&x))
+    }
+    /// Unknowns of a field.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+    /// Modes of each frame.
+    #[must_use]
+    pub fn ranks(&self) -> Vec<usize> {
+        self.frames.iter().map(|f| f.modes.ncols()).collect()
+    }
+    /// φ^k, rows × r_k.
+    #[must_use]
+    pub fn modes(&self, frame: usize) -> MatRef<'_, f64> {
+        self.frames[frame].modes.as_ref()
+    }
+    /// The motion of every frame at x.
+    ///
+    /// # Errors
+    /// [`ModelError::Shape`], [`ModelError::Interpolation`].
+    pub fn motions(&self, x: &[f64]) -> Result<Vec<Motion>, ModelError> {
+        ModelError::same("inputs", self.inputs, x.len())?;
+        self.paths.motions(x)
+    }
+
+    /// The field at time and parameters x into `out`.
+    ///
+    /// # Errors
+    /// [`ModelError::Shape`], [`ModelError::Interpolation`]; [`ModelError::Shifted`] if a frame leaves the grid's plane.
+    pub fn predict(&self, x: &[f64], out: &mut [f64]) -> Result<(), ModelError> {
+        ModelError::same("rows", self.rows, out.len())?;
+        out.fill(0.0);
+        let mut field = vec![0.0; self.rows];
+        for (frame, motion) in self.frames.iter().zip(self.motions(x)?) {
+            let Some(function) = &frame.coefficients else { continue };
+            let mut c = vec![0.0; function.outputs()];
+            function.predict(&frame.inputs(x, &motion, self.interpolator.grid()), &mut c)?;
+            field.fill(0.0);
+            for (i, c) in c.iter().enumerate() {
+                field.iter_mut().zip(frame.modes.col_as_slice(i)).for_each(|(f, mode)| *f += c * mode);
+            }
+            let moved = self.carry(&motion, &field)?;
+            out.iter_mut().zip(moved).for_each(|(out, f)| *out += f);
+        }
+        Ok(())
+    }
+
+    /// An estimate of the relative error at x, without the paths': the decomposition's, and the larger of what the coefficients are off at samples that were held out and
+    /// of how far functions of different order are apart at x; relative to the snapshots' root mean square.
+    ///
+    /// # Errors
+    /// As [`predict`](Self::predict).
+    pub fn error_indicator(&self, x: &[f64]) -> Result<f64, ModelError> {
+        let mut squares = self.projection_error.powi(2);
+        for (frame, motion) in self.frames.iter().zip(self.motions(x)?) {
+            let Some(function) = &frame.coefficients else { continue };
+            let doubt = function.doubt(&frame.inputs(x, &motion, self.interpolator.grid()))?;
+            squares += (function.error().max(doubt) / self.typical.max(f64::MIN_POSITIVE)).powi(2);
+        }
+        Ok(squares.sqrt())
+    }
+
+    /// Errors of the predictions at points of snapshots (rows × m) whose motions are known.
+    ///
+    /// # Errors
+    /// As [`predict`](Self::predict).
+    pub fn assess(
+        &self,
+        points: MatRef<'_, f64>,
+        snapshots: MatRef<'_, f64>,
+        shifts: &dyn Shifts,
+    ) -> Result<Assessment, ModelError> {
+        ModelError::same("snapshots, one for each point", points.ncols(), snapshots.ncols())?;
+        ModelError::same("rows of the snapshots", self.rows, snapshots.nrows())?;
+        ModelError::same("frames of the shifts", self.frames.len(), shifts.n_frames())?;
+        ModelError::same("motions of every frame, one for each point", points.ncols(), shifts.n_snapshots())?;
+        let mut sums = Sums::default();
+        let (mut predicted, mut x) = (vec![0.0; self.rows], vec![0.0; self.inputs]);
+        for j in 0..points.ncols() {
+            x.iter_mut().enumerate().for_each(|(i, x)| *x = points[(i, j)]);
+            self.predict(&x, &mut predicted)?;
+            let snapshot: Vec<f64> = (0..self.rows).map(|row| snapshots[(row, j)]).collect();
+            let nearest = self.nearest(&snapshot, |k| shifts.motion(k, j))?;
+            sums.add(&snapshot, &nearest, &predicted);
+        }
+        Ok(sums.assessment())
+    }
+
+    /// The field nearest to a snapshot that the modes have in frames at these places.
+    fn nearest(&self, snapshot: &[f64], motion: impl Fn(usize) -> Motion) -> Result<Vec<f64>, ModelError> {
+        let mut columns = Vec::new();
+        for (k, frame) in self.frames.iter().enumerate() {
+            for i in 0..frame.modes.ncols() {
+                columns.push(self.carry(&motion(k), frame.modes.col_as_slice(i))?);
+            }
+        }
+        let r = columns.len();
+        // A little of each mode's norm, so that modes which cannot be told apart do no harm.
+        let mut a =
+            Mat::from_fn(self.rows + r, r, |row, i| if row < self.rows { columns[i][row] } else { 0.0 });
+        (0..r).for_each(|i| a[(self.rows + i, i)] = 1e-9);
+        let mut c =
+            Mat::from_fn(self.rows + r, 1, |row, _| if row < self.rows { snapshot[row] } else { 0.0 });
+        Qr::new(a).solve(c.as_mut());
+        let mut nearest = vec![0.0; self.rows];
+        for (i, column) in columns.iter().enumerate() {
+            nearest.iter_mut().zip(column).for_each(|(n, f)| *n += c[(i, 0)] * f);
+        }
+        Ok(nearest)
+    }
+
+    fn carry(&self, motion: &Motion, field: &[f64]) -> Result<Vec<f64>, ModelError> {
+        if motion.is_translation() {
+            return Ok(self.interpolator.shift(motion.displacement, field));
+        }
+        let one = Motions::by(1, 1, |_, _| *motion);
+        let frame = GridFrames::new(*self.interpolator.grid(), self.interpolation, &one, self.rows)?;
+        let mut column = Mat::from_fn(self.rows, 1, |row, _| field[row]);
+        frame.to_lab(0, column.as_mut());
+        Ok(column.col_as_slice(0).to_vec())
+    }
+
+    /// All of it, for a file.
+    #[must_use]
+    pub fn record(&self) -> Record {
+        let grid = self.interpolator.grid();
+        let numbers = |v: [usize; 3]| v.map(|n| n as f64);
+        let mut record = Record::new(Self::KIND)
+            .with("cells", numbers(grid.cells()))
+            .with("spacing", grid.spacing())
+            .with("periodic", grid.periodic().map(|p| f64::from(u8::from(p))))
+            .with("first", [grid.first().x, grid.first().y, grid.first().z])
+            .with_word("interpolation", self.interpolation.name())
+            .with("sizes", [self.inputs as f64, self.rows as f64, self.frames.len() as f64])
+            .with("errors", [self.projection_error, self.typical])
+            .with_record("paths", &self.paths.record());
+        for (k, frame) in self.frames.iter().enumerate() {
+            record = record.with_record(&format!("frame {k}"), &frame.record());
+        }
+        record
+    }
+
+    /// What [`record`](Self::record) recorded.
+    ///
+    /// # Errors
+    /// [`RecordError`] if it is no such model, or not whole.
+    pub fn from_record(record: &Record) -> Result<Self, RecordError> {
+        record.expect(Self::KIND)?;
+        let of_three = |name: &str| -> Result<[f64; 3], RecordError> {
+            let n = record.numbers_of(name, 3)?;
+            Ok([n[0], n[1], n[2]])
+        };
+        record.numbers_of("cells", 3)?;
+        let cells = record.counts("cells")?;
+        let (spacing, periodic, first) = (of_three("spacing")?, of_three("periodic")?, of_three("first")?);
+        let grid = Grid::new([cells[0], cells[1], cells[2]], spacing)
+            .map_err(|why| record.wrong("cells", format!("are no grid: {why}")))?
+            .bounded((0..3).filter(|&a| periodic[a] == 0.0))
+            .starting_at(Point::from(first));
+        let name = record.word("interpolation")?;
+        let interpolation = Interpolation::ALL
+            .into_iter()
+            .find(|i| i.name() == name)
+            .ok_or_else(|| record.wrong("interpolation", format!("is `{name}`")))?;
+        let [inputs, rows, frames] = record.counts("sizes")?[..] else {
+            return Err(record.wrong("sizes", "are not three".into()));
+        };
+        let [projection_error, typical] = record.numbers("errors")?[..] else {
+            return Err(record.wrong("errors", "are not two".into()));
+        };
+        if rows == 0 || !rows.is_multiple_of(grid.n_cells()) {
+            return Err(record.wrong("sizes", format!("have {rows} rows on {} cells", grid.n_cells())));
+        }
+        let frame = |k: usize| Carried::from_record(&record.record(&format!("frame {k}"))?, rows);
+        Ok(Self {
+            interpolation,
+            interpolator: Interpolator::new(grid, interpolation),
+            frames: (0..frames).map(frame).collect::<Result<_, _>>()?,
+            paths: Paths::from_record(&record.record("paths")?)?,
+            inputs,
+            rows,
+            projection_error,
+            typical,
+        })
+    }
+
+    /// Writes all modes, in their frames, as cell data of an image for ParaView (`.vti`): `frame k mode i`, with the component if there are several.
+    ///
+    /// # Errors
+    /// Of the file system.
+    pub fn write_modes(&self, path: &Path) -> io::Result<()> {
+        let named = self.frames.iter().enumerate().flat_map(|(k, frame)| {
+            (0..frame.modes.ncols())
+                .map(move |i| (format!("frame {k} mode {i}"), frame.modes.col_as_slice(i)))
+        });
+        write_modes(path, self.interpolator.grid(), named)
+    }
+}
+
+impl Carried {
+    fn fit(
+        points: MatRef<'_, f64>,
+        frame: &crate::shifted::Frame,
+        grid: &Grid,
+        motion: &dyn Fn(usize) -> Motion,
+        method: Option<&dyn Method>,
+    ) -> Result<Self, ModelError> {
+        let values = frame.scaled_coefficients();
+        let plain = Coefficients::fit(&Samples::new(points, values.as_ref())?, method, false);
+        let mut carried = Self { modes: frame.modes.clone(), coefficients: None, phases: Vec::new() };
+        if points.nrows() == 1 {
+            let first = motion(0).displacement;
+            let crosses = |a: usize| {
+                let far = |j: usize| (motion(j).displacement[a] - first[a]).abs() > 0.5 * grid.spacing()[a];
+                grid.cells()[a] > 1 && (0..points.ncols()).any(far)
+            };
+            carried.phases = (0..3).filter(|&a| crosses(a)).collect();
+            if !carried.phases.is_empty() {
+                let all: Vec<Vec<f64>> = (0..points.ncols())
+                    .map(|j| carried.inputs(&[points[(0, j)]], &motion(j), grid))
+                    .collect();
+                let inputs = Mat::from_fn(all[0].len(), points.ncols(), |i, j| all[j][i]);
+                let phased = Coefficients::fit(&Samples::new(inputs.as_ref(), values.as_ref())?, None, true);
+                match (phased, &plain) {
+                    (Ok(phased), Ok(plain)) if phased.error() < plain.error() => {
+                        carried.coefficients = Some(phased);
+                        return Ok(carried);
+                    }
+                    _ => carried.phases.clear(),
+                }
+            }
+        }
+        carried.coefficients = Some(plain?);
+        Ok(carried)
+    }
+
+    /// x and the phases.
+    fn inputs(&self, x: &[f64], motion: &Motion, grid: &Grid) -> Vec<f64> {
+        let phase = |&a: &usize| {
+            let cells: f64 = motion.displacement[a] / grid.spacing()[a];
+            let (sin, cos) = (TAU * cells.fract()).sin_cos();
+            [cos, sin]
+        };
+        x.iter().copied().chain(self.phases.iter().flat_map(phase)).collect()
+    }
+
+    fn record(&self) -> Record {
+        let r = self.modes.ncols();
+        let record = Record::new("frame")
+            .with("rank", [r as f64])
+            .with("modes", (0..r).flat_map(|i| self.modes.col_as_slice(i).iter().copied()))
+            .with("phases", self.phases.iter().map(|&a| a as f64));
+        match &self.coefficients {
+            Some(function) => record.with_record("coefficients", &function.record()),
+            None => record,
+        }
+    }
+    fn from_record(record: &Record, rows: usize) -> Result<Self, RecordError> {
+        record.expect("frame")?;
+        let rank = record.count("rank")?;
+        let values = record.numbers_of("modes", rows * rank)?;
+        let phases = record.counts("phases")?;
+        if phases.iter().any(|&a| a > 2) {
+            return Err(record.wrong("phases", format!("are those of axes {phases:?}")));
+        }
+        let coefficients = match rank {
+            0 => None,
+            _ => Some(Coefficients::from_record(&record.record("coefficients")?)?),
+        };
+        if coefficients.as_ref().is_some_and(|c| c.outputs() != rank) {
+            return Err(record.wrong("rank", "does not fit the coefficients".into()));
+        }
+        Ok(Self { modes: Mat::from_fn(rows, rank, |row, i| values[row + i * rows]), coefficients, phases })
+    }
+}
+
+#[cfg(test)]
+mod tests;

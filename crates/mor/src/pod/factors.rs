@@ -1,0 +1,170 @@
+//! Singular value decompositions of weighted, centred snapshots.
+use super::blocks::Blocks;
+use super::{PodError, PodParams, Rank, SvdMethod};
+use crate::{Mat, MatRef};
+use monomorphic::{add_gram, add_product, self_adjoint_eigen, thin_svd};
+use rand::{RngExt, SeedableRng};
+
+/// Modes (in rows of weight 0, too), singular values that are known, coefficients (r × m), Σσ².
+pub(super) struct Factors {
+    pub(super) modes: Mat<f64>,
+    pub(super) values: Vec<f64>,
+    pub(super) coefficients: Mat<f64>,
+    pub(super) energy: f64,
+}
+
+/// Modes with less than this share of σ₁ are lost in the method of snapshots.
+const GRAM: f64 = 1e-5;
+
+/// `floor` is what round-off leaves in singular values.
+pub(super) fn factors(y: &Blocks<'_>, params: &PodParams, floor: f64) -> Result<Factors, PodError> {
+    let (n, m) = (y.snapshots.nrows(), y.snapshots.ncols());
+    let found = match params.method {
+        // The Gram matrix would be the larger one.
+        SvdMethod::Auto | SvdMethod::Snapshots if n < m => by_qr(y, params, floor),
+        // All there are: small ones, too.
+        SvdMethod::Auto if params.limit(m) == m && params.rank == Rank::All => by_qr(y, params, floor),
+        SvdMethod::Auto => match by_gram(y, params, floor) {
+            Some((factors, true)) => Some(factors),
+            _ => by_qr(y, params, floor),
+        },
+        SvdMethod::Snapshots => by_gram(y, params, floor).map(|(factors, _)| factors),
+        SvdMethod::Qr => by_qr(y, params, floor),
+        SvdMethod::Randomised { oversampling, power_iterations, seed } => {
+            randomised(y, params, floor, oversampling, power_iterations, seed)
+        }
+    };
+    found.ok_or_else(|| {
+        let entry = |j: usize| y.snapshots.col(j).iter().fold(0.0, |a: f64, v| a.max(v.abs()));
+        PodError::NotConverged { rows: n, snapshots: m, largest: (0..m).map(entry).fold(0.0, f64::max) }
+    })
+}
+
+fn by_qr(y: &Blocks<'_>, params: &PodParams, floor: f64) -> Option<Factors> {
+    let (u, values, v) = match (y.mean, y.weights) {
+        (None, None) => thin_svd(y.snapshots)?,
+        _ => thin_svd(y.whole().as_ref())?,
+    };
+    let energy = values.iter().map(|s| s * s).sum();
+    let r = params.kept(&values, energy, floor);
+    let coefficients = v.subcols(0, r).transpose().to_owned();
+    let modes = match y.weights {
+        None if r == u.ncols() => u,
+        None => u.subcols(0, r).to_owned(),
+        Some(weights) => {
+            // Where the weight is 0, the values that the snapshots' combination has.
+            let scaled = Mat::from_fn(v.nrows(), r, |j, k| v[(j, k)] / values[k]);
+            let bare = weights.contains(&0.0).then(|| y.times(false, scaled.as_ref()));
+            Mat::from_fn(u.nrows(), r, |i, k| match (weights[i], &bare) {
+                (0.0, Some(bare)) => bare[(i, k)],
+                (w, _) => u[(i, k)] / w.sqrt(),
+            })
+        }
+    };
+    Some(Factors { modes, values, coefficients, energy })
+}
+
+/// And whether all modes that were asked for are there.
+fn by_gram(y: &Blocks<'_>, params: &PodParams, floor: f64) -> Option<(Factors, bool)> {
+    let (ascending, vectors) = self_adjoint_eigen(y.gram().as_ref())?;
+    let m = ascending.len();
+    let mut values: Vec<f64> = ascending.iter().rev().map(|v| v.max(0.0).sqrt()).collect();
+    let energy = values.iter().map(|s| s * s).sum();
+    let wanted = params.kept(&values, energy, floor);
+    let sound = values.iter().take_while(|s| **s >= GRAM * values[0] && **s > floor).count();
+    let r = wanted.min(sound);
+    let scaled = Mat::from_fn(m, r, |j, k| vectors[(j, m - 1 - k)] / values[k]);
+    let mut modes = y.times(false, scaled.as_ref());
+    // S = Lᵀ Σ Vᵀ with L of the modes' products: modes L⁻ᵀ are orthonormal, and so are the factors of S.
+    let (inverse, lower) = cholesky(products(modes.as_ref(), y.weights).as_ref())?;
+    let right = Mat::from_fn(r, m, |k, j| values[k] * vectors[(j, m - 1 - k)]);
+    let mut s = Mat::zeros(r, m);
+    add_product(s.as_mut(), lower.as_ref().transpose(), right.as_ref());
+    let (u, exact, v) = thin_svd(s.as_ref())?;
+    let turn = inverse.transpose() * u;
+    let mut turned = Mat::zeros(modes.nrows(), r);
+    add_product(turned.as_mut(), modes.as_ref(), turn.as_ref());
+    std::mem::swap(&mut modes, &mut turned);
+    values[..r].copy_from_slice(&exact[..r]);
+    let coefficients = v.subcols(0, r).transpose().to_owned();
+    Some((Factors { modes, values, coefficients, energy }, r == wanted))
+}
+
+/// ΦᵀWΦ, the lower triangle.
+fn products(modes: MatRef<'_, f64>, weights: Option<&[f64]>) -> Mat<f64> {
+    let mut gram = Mat::zeros(modes.ncols(), modes.ncols());
+    match weights {
+        None => add_gram(gram.as_mut(), modes),
+        Some(w) => {
+            let root = Mat::from_fn(modes.nrows(), modes.ncols(), |i, k| w[i].sqrt() * modes[(i, k)]);
+            add_gram(gram.as_mut(), root.as_ref());
+        }
+    }
+    gram
+}
+
+/// L⁻¹ and L of A = L Lᵀ, of which the lower triangle is read.
+fn cholesky(a: MatRef<'_, f64>) -> Option<(Mat<f64>, Mat<f64>)> {
+    let n = a.nrows();
+    let mut lower = Mat::zeros(n, n);
+    for j in 0..n {
+        for i in j..n {
+            let sum: f64 = a[(i, j)] - (0..j).map(|k| lower[(i, k)] * lower[(j, k)]).sum::<f64>();
+            if i == j {
+                if sum.is_nan() || sum <= 0.0 {
+                    return None;
+                }
+                lower[(j, j)] = sum.sqrt();
+            } else {
+                lower[(i, j)] = sum / lower[(j, j)];
+            }
+        }
+    }
+    let mut inverse = Mat::zeros(n, n);
+    for j in 0..n {
+        for i in j..n {
+            let below: f64 = (j..i).map(|k| lower[(i, k)] * inverse[(k, j)]).sum();
+            inverse[(i, j)] = (f64::from(u8::from(i == j)) - below) / lower[(i, i)];
+        }
+    }
+    Some((inverse, lower))
+}
+
+fn randomised(
+    y: &Blocks<'_>,
+    params: &PodParams,
+    floor: f64,
+    oversampling: usize,
+    power_iterations: usize,
+    seed: u64,
+) -> Option<Factors> {
+    let (n, m) = (y.snapshots.nrows(), y.snapshots.ncols());
+    let l = (params.limit(n.min(m)) + oversampling).min(n.min(m));
+    let mut random = rand_pcg::Pcg64::seed_from_u64(seed);
+    // Sums of uniform numbers: near enough to normal ones.
+    let test = Mat::from_fn(m, l, |_, _| (0..4).map(|_| random.random_range(-1.0..1.0)).sum::<f64>());
+    let mut q = orthonormal(y.times(true, test.as_ref()))?;
+    for _ in 0..power_iterations {
+        let right = orthonormal(y.transposed_times(q.as_ref()).transpose().to_owned())?;
+        q = orthonormal(y.times(true, right.as_ref()))?;
+    }
+    let (u, values, v) = thin_svd(y.transposed_times(q.as_ref()).as_ref())?;
+    let energy = y.energy();
+    let r = params.kept(&values, energy, floor);
+    let mut modes = Mat::zeros(n, r);
+    add_product(modes.as_mut(), q.as_ref(), u.subcols(0, r));
+    if let Some(weights) = y.weights {
+        let scaled = Mat::from_fn(m, r, |j, k| v[(j, k)] / values[k]);
+        let bare = weights.contains(&0.0).then(|| y.times(false, scaled.as_ref()));
+        modes = Mat::from_fn(n, r, |i, k| match (weights[i], &bare) {
+            (0.0, Some(bare)) => bare[(i, k)],
+            (w, _) => modes[(i, k)] / w.sqrt(),
+        });
+    }
+    Some(Factors { modes, values, coefficients: v.subcols(0, r).transpose().to_owned(), energy })
+}
+
+/// Orthonormal columns of the same span.
+fn orthonormal(a: Mat<f64>) -> Option<Mat<f64>> {
+    Some(thin_svd(a.as_ref())?.0)
+}

@@ -1,0 +1,151 @@
+//! Modes and their coefficients.
+use super::blocks::Blocks;
+use super::factors::{Factors, factors};
+use super::{PodError, PodParams};
+use crate::{Mat, MatRef};
+
+/// X ≈ x̄ + Φ Σ A: the r modes Φ (n × r) that are nearest to all m snapshots X (n × m), for any r (Eckart and Young, Psychometrika 1 (1936) 211),
+///
+/// ‖X − x̄ − Φ Σ A‖² = Σ_{k > r} σ_k², ‖X‖² = Σ_j ⟨x_j, x_j⟩, ⟨a, b⟩ = Σᵢ wᵢ aᵢ bᵢ.
+#[derive(Clone, Debug)]
+pub struct Pod {
+    /// x̄, if it was taken away.
+    pub mean: Option<Vec<f64>>,
+    /// Φ, orthonormal in the inner product.
+    pub modes: Mat<f64>,
+    /// σ in descending order: those of the modes, and more if they are known.
+    pub singular_values: Vec<f64>,
+    /// A, r × m, orthonormal rows.
+    pub coefficients: Mat<f64>,
+    /// w, if they are not all 1.
+    pub weights: Option<Vec<f64>>,
+    /// Σσ² over all there are.
+    pub energy: f64,
+}
+
+/// What is less than so many units in the last place of the snapshots' norm is round-off.
+const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
+
+impl Pod {
+    /// Of snapshots (n × m).
+    ///
+    /// # Errors
+    /// [`PodError`].
+    pub fn new(snapshots: MatRef<'_, f64>, params: &PodParams) -> Result<Self, PodError> {
+        let (n, m) = (snapshots.nrows(), snapshots.ncols());
+        if n == 0 || m == 0 {
+            return Err(PodError::Empty { rows: n, snapshots: m });
+        }
+        params.check(n)?;
+        let mut mean = vec![0.0; n];
+        let mut squares = 0.0;
+        for j in 0..m {
+            for (row, x) in snapshots.col(j).iter().enumerate() {
+                if !x.is_finite() {
+                    return Err(PodError::NotFinite { snapshot: j, row, value: *x });
+                }
+                mean[row] += x;
+                squares += params.weights.as_ref().map_or(1.0, |w| w[row]) * x * x;
+            }
+        }
+        mean.iter_mut().for_each(|x| *x /= m as f64);
+        let mean = params.subtract_mean.then_some(mean);
+        let y = Blocks { snapshots, mean: mean.as_deref(), weights: params.weights.as_deref() };
+        let floor = ROUND_OFF * (n.min(m) as f64).sqrt() * f64::sqrt(squares);
+        let Factors { modes, values, coefficients, energy } = factors(&y, params, floor)?;
+        // Nothing but round-off is nothing.
+        let energy = if values.first().is_some_and(|s| *s > floor) { energy } else { 0.0 };
+        let weights = params.weights.clone();
+        Ok(Self { mean, modes, singular_values: values, coefficients, weights, energy })
+    }
+
+    /// r.
+    #[must_use]
+    pub fn rank(&self) -> usize {
+        self.modes.ncols()
+    }
+    /// n.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.modes.nrows()
+    }
+    /// The same with fewer modes.
+    #[must_use]
+    pub fn truncated(&self, rank: usize) -> Self {
+        let r = rank.min(self.rank());
+        let modes = self.modes.subcols(0, r).to_owned();
+        Self { modes, coefficients: self.coefficients.subrows(0, r).to_owned(), ..self.clone() }
+    }
+    /// ‖X − x̄ − Φ Σ A‖/‖X − x̄‖ with the first `rank` modes, from the singular values.
+    #[must_use]
+    pub fn relative_error(&self, rank: usize) -> f64 {
+        if self.energy == 0.0 {
+            return 0.0;
+        }
+        let known = &self.singular_values;
+        let kept: f64 = known[..rank.min(known.len())].iter().map(|s| s * s).sum();
+        // What is known to be left has no cancellation.
+        let left: f64 = known[rank.min(known.len())..].iter().map(|s| s * s).sum();
+        let unknown = (self.energy - kept - left).max(0.0);
+        let unknown = if unknown < 1e-12 * self.energy { 0.0 } else { unknown };
+        ((left + unknown) / self.energy).sqrt()
+    }
+    /// σ_i a_i(t_j), r × m: what interpolation is asked for.
+    #[must_use]
+    pub fn scaled_coefficients(&self) -> Mat<f64> {
+        let a = &self.coefficients;
+        Mat::from_fn(a.nrows(), a.ncols(), |i, j| self.singular_values[i] * a[(i, j)])
+    }
+    /// ΦᵀW(x − x̄): coefficients of the nearest field.
+    ///
+    /// # Errors
+    /// [`PodError::Shape`].
+    pub fn project(&self, field: &[f64]) -> Result<Vec<f64>, PodError> {
+        PodError::same("rows of the field", self.rows(), field.len())?;
+        let weighted: Vec<f64> = field
+            .iter()
+            .enumerate()
+            .map(|(i, x)| {
+                let w = self.weights.as_ref().map_or(1.0, |w| w[i]);
+                w * (x - self.mean.as_ref().map_or(0.0, |mean| mean[i]))
+            })
+            .collect();
+        let product = |k: usize| self.modes.col_as_slice(k).iter().zip(&weighted).map(|(m, y)| m * y).sum();
+        Ok((0..self.rank()).map(product).collect())
+    }
+    /// x̄ + Φ c into `out`, for as many coefficients as there are modes.
+    ///
+    /// # Errors
+    /// [`PodError::Shape`].
+    pub fn reconstruct(&self, coefficients: &[f64], out: &mut [f64]) -> Result<(), PodError> {
+        PodError::same("coefficients", self.rank(), coefficients.len())?;
+        PodError::same("rows of the field", self.rows(), out.len())?;
+        match &self.mean {
+            Some(mean) => out.copy_from_slice(mean),
+            None => out.fill(0.0),
+        }
+        for (k, c) in coefficients.iter().enumerate() {
+            out.iter_mut().zip(self.modes.col_as_slice(k)).for_each(|(x, mode)| *x += c * mode);
+        }
+        Ok(())
+    }
+    /// ‖X − P X‖/‖X‖ of snapshots, seen or not, P the projection on the modes (and the mean).
+    ///
+    /// # Errors
+    /// [`PodError::Shape`].
+    pub fn relative_projection_error(&self, snapshots: MatRef<'_, f64>) -> Result<f64, PodError> {
+        PodError::same("rows of the snapshots", self.rows(), snapshots.nrows())?;
+        let (mut off, mut whole) = (0.0, 0.0);
+        let mut nearest = vec![0.0; self.rows()];
+        for j in 0..snapshots.ncols() {
+            let field: Vec<f64> = snapshots.col(j).iter().copied().collect();
+            self.reconstruct(&self.project(&field)?, &mut nearest)?;
+            for (i, (x, p)) in field.iter().zip(&nearest).enumerate() {
+                let w = self.weights.as_ref().map_or(1.0, |w| w[i]);
+                off += w * (x - p) * (x - p);
+                whole += w * x * x;
+            }
+        }
+        Ok(if off == 0.0 { 0.0 } else { (off / whole).sqrt() })
+    }
+}

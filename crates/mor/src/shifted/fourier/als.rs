@@ -2,7 +2,7 @@
 use super::amplitudes::Amplitudes;
 use super::descent::Descent;
 use super::finish::frame;
-use super::objective::{dominant, modes};
+use super::objective::{Evaluation, dominant};
 use super::problem::Problem;
 use super::spectrum::Spectrum;
 use crate::shifted::{Decomposition, Frame, Grid, Progress, ShiftedError, Shifts, StopReason};
@@ -67,43 +67,39 @@ impl Als {
         let n = snapshots.ncols();
         let ranks: Vec<_> = self.ranks.iter().map(|&r| r.min(n).min(spectrum.n_rows())).collect();
         let mut amplitudes = begin(start, &ranks, n)?;
-        let mut history = Vec::new();
-        let stopped = if spectrum.energy == 0.0 {
-            StopReason::Tolerance
-        } else {
-            let all = Problem::all(&spectrum);
-            let sample = Problem::sample(&spectrum, ranks.iter().sum());
-            let mut problem = sample.as_ref().unwrap_or(&all);
-            let mut sampled = sample.is_some();
-            let mut run = Run { als: self, spectrum: &spectrum, history: &mut history, progress };
-            loop {
-                amplitudes = grow(problem, amplitudes, &ranks);
-                let last = amplitudes.ranks == ranks;
-                let mut descent = Descent::new(problem, amplitudes);
-                let mut reason = run.descend(&mut descent, if last { LONG } else { SHORT });
-                if sampled && (last || reason == StopReason::Tolerance) && reason != StopReason::Asked {
-                    (problem, sampled) = (&all, false);
-                    descent = descent.with(problem);
-                    reason = run.descend(&mut descent, POLISH);
-                }
-                amplitudes = descent.amplitudes;
-                match reason {
-                    StopReason::Stagnation if !last => {}
-                    reason => break reason,
-                }
+        let mut run = Run { als: self, spectrum: &spectrum, history: Vec::new(), progress };
+        if spectrum.energy == 0.0 {
+            let nothing = || frame(Mat::zeros(spectrum.n_rows(), 0), &Mat::zeros(n, 0), 1.0);
+            let frames = ranks.iter().map(|_| nothing()).collect();
+            run.note(0.0, 0);
+            let (history, stopped) = (run.history, StopReason::Tolerance);
+            return Ok(Decomposition { frames, noise: noise.map(|e| e.to_owned()), history, stopped });
+        }
+        let all = Problem::all(&spectrum);
+        let sample = Problem::sample(&spectrum, ranks.iter().sum());
+        let mut problem = sample.as_ref().unwrap_or(&all);
+        let mut sampled = sample.is_some();
+        let (descent, stopped) = loop {
+            amplitudes = grow(problem, amplitudes, &ranks);
+            let last = amplitudes.ranks == ranks;
+            let mut descent = Descent::new(problem, amplitudes);
+            let mut reason = run.descend(&mut descent, if last { LONG } else { SHORT });
+            if sampled && (last || reason == StopReason::Tolerance) && reason != StopReason::Asked {
+                (problem, sampled) = (&all, false);
+                descent = descent.with(problem);
+                reason = run.descend(&mut descent, POLISH);
             }
+            if reason != StopReason::Stagnation || last {
+                break (descent, reason);
+            }
+            amplitudes = descent.amplitudes;
         };
-        let frames = if spectrum.energy == 0.0 {
-            let nothing = || Frame {
-                modes: Mat::zeros(spectrum.n_rows(), 0),
-                singular_values: Vec::new(),
-                coefficients: Mat::zeros(0, n),
-            };
-            ranks.iter().map(|_| nothing()).collect()
-        } else {
-            result(&spectrum, &amplitudes)
-        };
-        Ok(Decomposition { frames, noise: noise.map(|e| e.to_owned()), history, stopped })
+        let Descent { amplitudes, mut evaluation, .. } = descent;
+        if sampled {
+            evaluation = Evaluation::new(&all, &amplitudes);
+        }
+        let frames = frames_of(&spectrum, &amplitudes, &evaluation);
+        Ok(Decomposition { frames, noise: noise.map(|e| e.to_owned()), history: run.history, stopped })
     }
 }
 
@@ -111,7 +107,7 @@ impl Als {
 struct Run<'a> {
     als: &'a Als,
     spectrum: &'a Spectrum,
-    history: &'a mut Vec<Progress>,
+    history: Vec<Progress>,
     progress: &'a mut dyn FnMut(&Progress) -> bool,
 }
 
@@ -119,6 +115,13 @@ struct Run<'a> {
 type Patience = (usize, f64);
 
 impl Run<'_> {
+    /// Another step; false if it shall be the last.
+    fn note(&mut self, error: f64, rank: usize) -> bool {
+        let now = Progress { step: self.history.len(), error, rank };
+        self.history.push(now);
+        (self.progress)(&now)
+    }
+
     /// Goes down until it is good enough or does not get better.
     fn descend(&mut self, descent: &mut Descent<'_>, (window, part): Patience) -> StopReason {
         let rank = descent.amplitudes.ranks.iter().sum();
@@ -128,9 +131,7 @@ impl Run<'_> {
             let left = descent.evaluation.residual + self.spectrum.dropped;
             let error = (left / self.spectrum.energy).sqrt();
             errors.push(error);
-            let now = Progress { step: self.history.len(), error, rank };
-            self.history.push(now);
-            if !(self.progress)(&now) {
+            if !self.note(error, rank) {
                 return StopReason::Asked;
             } else if error <= self.als.tolerance {
                 return StopReason::Tolerance;
@@ -162,6 +163,7 @@ fn begin(start: Option<&Decomposition>, ranks: &[usize], n: usize) -> Result<Amp
         Mat::from_fn(n, places.len(), |j, c| start.frames[places[c].0].coefficients[(places[c].1, j)]);
     let mut amplitudes = Amplitudes { ranks: taken, values };
     amplitudes.orthonormalise();
+    amplitudes.drop_zeros();
     Ok(amplitudes)
 }
 
@@ -181,15 +183,15 @@ fn grow(problem: &Problem<'_>, old: Amplitudes, ranks: &[usize]) -> Amplitudes {
     Amplitudes { ranks: sum, values }
 }
 
-fn result(spectrum: &Spectrum, amplitudes: &Amplitudes) -> Vec<Frame> {
+fn frames_of(spectrum: &Spectrum, amplitudes: &Amplitudes, evaluation: &Evaluation) -> Vec<Frame> {
     let (n, rank) = amplitudes.values.shape();
-    let fields = spectrum.fields(rank, modes(spectrum, amplitudes));
+    let fields = spectrum.fields(rank, &evaluation.modes);
     let mut first = 0;
-    let column = |m: &Mat<f64>, c: usize| m.col_as_slice(c).to_vec();
     let mut frames = Vec::new();
     for &r in &amplitudes.ranks {
-        let of = |m: &Mat<f64>| (first..first + r).map(|c| column(m, c)).collect();
-        frames.push(frame(of(&fields), of(&amplitudes.values), spectrum.n_rows(), n));
+        let fields = Mat::from_fn(spectrum.n_rows(), r, |i, c| fields[(i, first + c)]);
+        let amplitudes = Mat::from_fn(n, r, |j, c| amplitudes.values[(j, first + c)]);
+        frames.push(frame(fields, &amplitudes, spectrum.scale));
         first += r;
     }
     frames

@@ -22,7 +22,7 @@ impl Amplitudes {
     }
 
     /// Makes the columns of each frame orthonormal: A = A' R. The R of each frame are returned, column by column. A column that
-    /// depends on those before it becomes zero.
+    /// depends on those before it or is not finite becomes zero.
     pub(super) fn orthonormalise(&mut self) -> Vec<Mat<f64>> {
         let mut first = 0;
         let mut triangles = Vec::new();
@@ -42,14 +42,24 @@ impl Amplitudes {
                 }
                 let after = norm(&x);
                 let factor = if after > 1e-13 * before && after > 0.0 { after.recip() } else { 0.0 };
-                triangle[(c, c)] = after;
+                triangle[(c, c)] = if factor > 0.0 { after } else { 0.0 };
                 let to = self.values.col_as_slice_mut(first + c);
-                to.iter_mut().zip(&x).for_each(|(to, x)| *to = x * factor);
+                to.iter_mut().zip(&x).for_each(|(to, x)| *to = if factor > 0.0 { x * factor } else { 0.0 });
             }
             first += rank;
             triangles.push(triangle);
         }
         triangles
+    }
+
+    /// Without the columns that are zero.
+    pub(super) fn drop_zeros(&mut self) {
+        let zero = |c: &usize| self.values.col_as_slice(*c).iter().all(|&x| x == 0.0);
+        let (kept, frames) =
+            ((0..self.values.ncols()).filter(|c| !zero(c)).collect::<Vec<_>>(), self.frames());
+        let rank = |k: usize| kept.iter().filter(|&&c| frames[c] == k).count();
+        self.ranks = (0..self.ranks.len()).map(rank).collect();
+        self.values = Mat::from_fn(self.values.nrows(), kept.len(), |j, c| self.values[(j, kept[c])]);
     }
 
     /// S R⁻¹ and Y Rᵀ, frame by frame.

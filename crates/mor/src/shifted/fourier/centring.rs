@@ -53,7 +53,7 @@ pub fn centred(
             wave[axis] = 0;
             let piece = Piece { wave, data: Cow::Borrowed(&group.data), weight: 1.0 };
             normal.begin(&problem, &piece, &amplitudes);
-            normal.solve(&piece);
+            normal.solve(&problem, &piece);
             energy += group.energy;
             for (number, phi) in normal.phi.chunks_exact(4).enumerate() {
                 // |u|², |v|² and Re ū v of u cos + v sin.

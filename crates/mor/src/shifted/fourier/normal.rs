@@ -1,7 +1,7 @@
 //! The least-squares problem of one wave vector.
 use super::amplitudes::Amplitudes;
 use super::problem::{Piece, Problem};
-use monomorphic::{MatMut, MatRef, add_product};
+use monomorphic::{Mat, MatMut, MatRef, add_product};
 
 /// Weight of ‖Φ‖² against the squared error at amplitudes of length one: where the frames cannot be told apart, the smallest modes
 /// are taken.
@@ -11,6 +11,10 @@ pub(super) const DAMPING: f64 = 1e-13;
 pub(super) struct Normal {
     n: usize,
     frames: Vec<usize>,
+    /// Of each frame its first column and how many it has.
+    ranges: Vec<[usize; 2]>,
+    /// Aᵀ A.
+    own: Mat<f64>,
     /// p_k(t_j) of each frame.
     pub(super) phases: Vec<f64>,
     /// B: amplitudes with their phases.
@@ -47,9 +51,14 @@ fn zero(to: &mut Vec<f64>, size: usize) {
 impl Normal {
     pub(super) fn new(problem: &Problem<'_>, a: &Amplitudes) -> Self {
         let (n, rank) = a.values.shape();
+        let mut own = Mat::zeros(rank, rank);
+        add_product(own.as_mut(), a.values.transpose(), a.values.as_ref());
+        let first = a.ranks.iter().scan(0, |sum, r| Some(std::mem::replace(sum, *sum + r)));
         Self {
             n,
             frames: a.frames(),
+            ranges: first.zip(&a.ranks).map(|(first, &rank)| [first, rank]).collect(),
+            own,
             phases: vec![0.0; 2 * n * problem.phases.n_frames()],
             design: vec![0.0; 2 * n * rank],
             products: Vec::new(),
@@ -100,7 +109,7 @@ impl Normal {
     }
 
     /// The best Φ for it, and what it leaves.
-    pub(super) fn solve(&mut self, piece: &Piece<'_>) {
+    pub(super) fn solve(&mut self, problem: &Problem<'_>, piece: &Piece<'_>) {
         let width = 2 * self.frames.len();
         self.residual.clear();
         self.residual.extend_from_slice(&piece.data);
@@ -108,9 +117,7 @@ impl Normal {
         if width == 0 {
             return;
         }
-        zero(&mut self.products, width * width);
-        let design = view(&self.design, self.n);
-        add_product(view_mut(&mut self.products, width), design.transpose(), design);
+        self.multiply(problem.phases.shortest(piece.wave));
         zero(&mut self.matrix, width * width);
         let s = |i: usize, j: usize| self.products[i + j * width];
         for c in (0..width).step_by(2) {
@@ -129,6 +136,27 @@ impl Normal {
         add_product(view_mut(&mut self.residual, self.n), design, negative);
     }
 
+    /// BᵀB below its diagonal. Phases of length one cancel within a frame.
+    fn multiply(&mut self, shortest: bool) {
+        let width = 2 * self.frames.len();
+        zero(&mut self.products, width * width);
+        let design = view(&self.design, self.n);
+        for &[first, count] in &self.ranges {
+            if !shortest {
+                for (r, s) in (first..first + count).flat_map(|s| (s..first + count).map(move |r| (r, s))) {
+                    self.products[2 * r + 2 * s * width] = self.own[(r, s)];
+                }
+            }
+            let from = 2 * if shortest { first } else { first + count };
+            if from < width && count > 0 {
+                let to = view_mut(&mut self.products, width);
+                let to = to.submatrix_mut(from, 2 * first, width - from, 2 * count);
+                let rows = design.subcols(from, width - from);
+                add_product(to, rows.transpose(), design.subcols(2 * first, 2 * count));
+            }
+        }
+    }
+
     fn negate(&mut self) {
         let width = 2 * self.frames.len();
         self.negative.clear();
@@ -139,7 +167,7 @@ impl Normal {
     }
 
     /// Adds −2 `weight` Re p̄ E Φᴴ to the columns of `to`, with these E and Φ as it stands.
-    pub(super) fn add_gradient(&mut self, e: &[f64], weight: f64, to: &mut crate::Mat<f64>) {
+    pub(super) fn add_gradient(&mut self, e: &[f64], weight: f64, to: &mut Mat<f64>) {
         let (n, width) = (self.n, 2 * self.frames.len());
         if width == 0 {
             return;

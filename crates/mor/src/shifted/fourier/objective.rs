@@ -2,7 +2,6 @@
 use super::amplitudes::{Amplitudes, add};
 use super::normal::{DAMPING, Normal, factorise, substitute};
 use super::problem::{Piece, Problem};
-use super::spectrum::Spectrum;
 use crate::Mat;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -22,6 +21,8 @@ pub(super) struct Evaluation {
     /// For every snapshot the products of the fields of all modes, column r, s ≤ r being number r (r + 1)/2 + s: half the second
     /// derivatives at given modes.
     gram: Mat<f64>,
+    /// Φ of one wave vector after the other: real and imaginary parts by turns, a column for each of the data.
+    pub(super) modes: Vec<f64>,
 }
 
 fn squares(x: &[f64]) -> f64 {
@@ -42,6 +43,7 @@ impl Evaluation {
             residual: 0.0,
             gradient: Mat::zeros(n, rank),
             gram: Mat::zeros(n, rank * (rank + 1) / 2),
+            modes: Vec::new(),
         }
     }
 
@@ -53,13 +55,14 @@ impl Evaluation {
             let mut product = vec![0.0; 2 * n];
             for piece in pieces {
                 normal.begin(problem, piece, a);
-                normal.solve(piece);
+                normal.solve(problem, piece);
                 let squared = piece.weight * squares(&normal.residual);
                 sum.residual += squared;
                 sum.value += squared + piece.weight * DAMPING * squares(&normal.phi);
                 let residual = std::mem::take(&mut normal.residual);
                 normal.add_gradient(&residual, piece.weight, &mut sum.gradient);
                 normal.residual = residual;
+                sum.modes.extend_from_slice(&normal.phi);
                 sum.add_gram(&normal, &a.frames(), piece.weight, &mut product);
             }
             sum
@@ -70,6 +73,7 @@ impl Evaluation {
             all.residual += part.residual;
             add(&mut all.gradient, 1.0, &part.gradient);
             add(&mut all.gram, 1.0, &part.gram);
+            all.modes.extend(part.modes);
         });
         all
     }
@@ -125,23 +129,6 @@ impl Evaluation {
     }
 }
 
-/// The best modes of these amplitudes, wave vector by wave vector: real and imaginary parts by turns, a column for each of the data.
-pub(super) fn modes(spectrum: &Spectrum, a: &Amplitudes) -> Vec<Vec<f64>> {
-    let problem = Problem::all(spectrum);
-    let mut all = Vec::new();
-    let of = |pieces: &[Piece<'_>]| {
-        let mut normal = Normal::new(&problem, a);
-        let mut solve = |piece: &Piece<'_>| {
-            normal.begin(&problem, piece, a);
-            normal.solve(piece);
-            normal.phi.clone()
-        };
-        pieces.iter().map(&mut solve).collect::<Vec<_>>()
-    };
-    sum(&problem, of, |part: Vec<_>| all.extend(part));
-    all
-}
-
 /// What is left of the data by given amplitudes, in each frame: approximately its largest left singular vectors, so many for each
 /// frame, by a few power iterations.
 pub(super) fn dominant(problem: &Problem<'_>, a: &Amplitudes, more: &[usize]) -> Mat<f64> {
@@ -156,7 +143,7 @@ pub(super) fn dominant(problem: &Problem<'_>, a: &Amplitudes, more: &[usize]) ->
             let mut sum = Mat::zeros(n, total);
             for piece in pieces {
                 old.begin(problem, piece, a);
-                old.solve(piece);
+                old.solve(problem, piece);
                 new.begin(problem, piece, &trial);
                 new.project(&old.residual);
                 new.add_gradient(&old.residual, piece.weight, &mut sum);

@@ -134,6 +134,11 @@ impl Phases {
         self.n_frames
     }
 
+    /// Is it a wave of two cells along one of the axes? The factors of all others have length one.
+    pub(super) fn shortest(&self, wave: [usize; 3]) -> bool {
+        self.moving.iter().zip(&self.tables).any(|(&a, table)| 2 * wave[a] == table.n)
+    }
+
     /// The factors of one wave vector, frame by frame: real parts at all snapshots, then imaginary parts.
     pub(super) fn of(&self, wave: [usize; 3], out: &mut [f64]) {
         let n = self.n_snapshots;

@@ -31,6 +31,8 @@ pub(super) struct Group {
 pub(super) struct Spectrum {
     pub(super) phases: Phases,
     pub(super) groups: Vec<Group>,
+    /// What the snapshots were divided by.
+    pub(super) scale: f64,
     /// ‖Q‖².
     pub(super) energy: f64,
     /// What of it was left away.
@@ -134,35 +136,44 @@ impl Spectrum {
             return Err(ShiftedError::Shape { what: "noise", expected: [rows, n], found });
         }
         let value = |i: usize, j: usize| snapshots[(i, j)] - noise.map_or(0.0, |e| e[(i, j)]);
-        let mut energy = 0.0;
+        let mut largest = 0.0;
         for j in 0..n {
-            let sum: f64 = (0..rows).map(|i| value(i, j).powi(2)).sum();
-            energy += sum;
-            if let Some(row) =
-                (!sum.is_finite()).then(|| (0..rows).find(|&i| !value(i, j).is_finite())).flatten()
-            {
+            // A sum is not finite if one of its terms is not.
+            let (sum, max) = (0..rows).fold((0.0, 0.0_f64), |(sum, max), i| {
+                let x = value(i, j).abs();
+                (sum + 0.0 * x, max.max(x))
+            });
+            if let Some(row) = (sum != 0.0).then(|| (0..rows).find(|&i| !value(i, j).is_finite())).flatten() {
                 return Err(ShiftedError::NotFinite { snapshot: j, row, value: value(row, j) });
             }
+            largest = f64::max(largest, max);
         }
+        // Squares are neither too large nor too small.
+        let scale = if largest > 0.0 { largest.log2().floor().clamp(-1000.0, 1000.0).exp2() } else { 1.0 };
+        let value = |i: usize, j: usize| value(i, j) / scale;
         let phases = Phases::new(grid, shifts)?;
         let moving = phases.moving.iter().map(|&a| (a, fourier_transforms(grid.cells()[a]))).collect();
         let layout = Layout { cells: grid.cells(), n_rows: rows, moving };
         let others = layout.others();
         let waves = layout.waves();
         let mut blocks: Vec<_> = waves.iter().map(|_| vec![0.0; 2 * n * others.len()]).collect();
+        let mut energy = 0.0;
         for first in (0..n).step_by(BATCH) {
             let batch = first..(first + BATCH).min(n);
             // Two real fields are one complex field.
-            let pairs: Vec<Vec<_>> = batch
+            let pairs: Vec<_> = batch
                 .clone()
+                .into_par_iter()
                 .step_by(2)
                 .map(|j| {
                     let next = |i| if j + 1 < n { value(i, j + 1) } else { 0.0 };
                     let mut z: Vec<_> = (0..rows).map(|i| Complex::new(value(i, j), next(i))).collect();
+                    let squares: f64 = z.iter().map(Complex::norm_sqr).sum();
                     layout.transform(false, &mut z);
-                    z
+                    (z, squares)
                 })
                 .collect();
+            energy += pairs.iter().map(|(_, squares)| squares).sum::<f64>();
             for (block, &wave) in blocks.iter_mut().zip(&waves) {
                 let opposite = layout.opposite(wave);
                 let weight = if wave == opposite { 0.5 } else { 0.5_f64.sqrt() };
@@ -170,7 +181,7 @@ impl Spectrum {
                 for (column, &other) in block.chunks_exact_mut(2 * n).zip(&others) {
                     let (re, im) = column.split_at_mut(n);
                     let to = re[batch.clone()].chunks_mut(2).zip(im[batch.clone()].chunks_mut(2));
-                    for ((re, im), z) in to.zip(&pairs) {
+                    for ((re, im), (z, _)) in to.zip(&pairs) {
                         let (a, b) = (z[other + here] * weight, z[other + there].conj() * weight);
                         (re[0], im[0]) = (a.re + b.re, a.im + b.im);
                         if re.len() > 1 {
@@ -194,7 +205,7 @@ impl Spectrum {
             .collect();
         let dropped = groups.iter().map(|g| g.1).sum();
         let groups = groups.into_iter().map(|g| g.0).filter(|g: &Group| !g.data.is_empty()).collect();
-        Ok(Self { phases, groups, energy, dropped, n_snapshots: n, layout })
+        Ok(Self { phases, groups, scale, energy, dropped, n_snapshots: n, layout })
     }
 
     /// Unknowns of a snapshot.
@@ -207,16 +218,23 @@ impl Spectrum {
     }
 
     /// Fields from their coefficients: for each column of each group's data those of all fields, real and imaginary parts by turns.
-    pub(super) fn fields(&self, n_fields: usize, coefficients: Vec<Vec<f64>>) -> Mat<f64> {
+    pub(super) fn fields(&self, n_fields: usize, mut coefficients: &[f64]) -> Mat<f64> {
         let mut out = Mat::zeros(self.layout.n_rows, n_fields);
+        let mut of_groups = Vec::with_capacity(self.groups.len());
+        for group in &self.groups {
+            let (of_group, others) =
+                coefficients.split_at(2 * n_fields * (group.data.len() / (2 * self.n_snapshots)));
+            of_groups.push(of_group);
+            coefficients = others;
+        }
         let full: Vec<_> = self
             .groups
             .par_iter()
-            .zip(coefficients)
+            .zip(of_groups)
             .map(|(group, phi)| {
-                let Some(basis) = &group.basis else { return phi };
+                let Some(basis) = &group.basis else { return phi.to_vec() };
                 let (vr, vi) = basis.split_at_row(basis.nrows() / 2);
-                let phi = MatRef::from_column_major_slice(&phi, 2 * n_fields, vr.nrows());
+                let phi = MatRef::from_column_major_slice(phi, 2 * n_fields, vr.nrows());
                 let [mut x, mut y] = [(); 2].map(|()| Mat::<f64>::zeros(2 * n_fields, vr.ncols()));
                 add_product(x.as_mut(), phi, vr);
                 add_product(y.as_mut(), phi, vi);

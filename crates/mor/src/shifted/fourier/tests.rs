@@ -183,6 +183,12 @@ fn it_goes_on_from_a_start_and_without_the_noise() {
     let on = als.solve(&grid, &motions, q.as_ref(), Some(&d), Some(noise.as_ref()), &mut |_| true).unwrap();
     let e = error(&grid, &motions, &(&q - &noise), &on);
     assert!(e < 1e-5 && on.ranks() == [3, 3], "{e:.2e}");
+    // A bad start costs time only.
+    let mut bad = coarse;
+    bad.frames[0].coefficients[(0, 3)] = f64::NAN;
+    let good =
+        als.solve(&grid, &motions, q.as_ref(), Some(&bad), Some(noise.as_ref()), &mut |_| true).unwrap();
+    assert!(error(&grid, &motions, &(&q - &noise), &good) < 1e-5);
 }
 
 #[test]
@@ -206,6 +212,23 @@ fn a_sample_is_fitted_first_and_all_in_the_end() {
 }
 
 #[test]
+fn units_do_not_matter() {
+    let (grid, motions, q) = two_discs([30, 20], 40, 3.0);
+    let one = solve(&Als::new([2, 1]), &grid, &motions, &q);
+    for factor in [2.0_f64.powi(900), 2.0_f64.powi(-900)] {
+        let d = solve(
+            &Als::new([2, 1]),
+            &grid,
+            &motions,
+            &Mat::from_fn(q.nrows(), 40, |i, j| factor * q[(i, j)]),
+        );
+        assert_eq!(d.history, one.history);
+        assert!(d.frames[0].modes == one.frames[0].modes);
+        assert_eq!(d.frames[1].singular_values[0], factor * one.frames[1].singular_values[0]);
+    }
+}
+
+#[test]
 fn threads_do_not_matter() {
     let (grid, motions, q) = two_discs([30, 20], 40, 3.0);
     let [a, b] = [1, 3].map(|threads| {
@@ -223,7 +246,7 @@ fn nothing_and_constants_and_one_snapshot() {
     let grid = Grid::new([12, 8], [1.0; 2]).unwrap();
     let motions = Motions::by(2, 5, |k, j| Motion::translation(Vector::new((k * j) as f64, 0.0, 0.0)));
     let d = solve(&Als::new([2, 1]), &grid, &motions, &Mat::zeros(96, 5));
-    assert_eq!((d.ranks(), d.stopped), (vec![0, 0], StopReason::Tolerance));
+    assert_eq!((d.ranks(), d.stopped, d.history.len()), (vec![0, 0], StopReason::Tolerance, 1));
     let q = Mat::from_fn(96, 5, |_, _| 3.0);
     let d = solve(&Als::new([2, 1]), &grid, &motions, &q);
     assert!(error(&grid, &motions, &q, &d) < 1e-8);

@@ -110,6 +110,9 @@ impl Timings {
     }
 }
 
+/// A body force per mass \[m/s²\], of the time \[s\].
+type Drive = Box<dyn Fn(f64) -> Vector + Send + Sync>;
+
 /// A flow `A` and what is immersed in it (`P`; `()` for nothing).
 pub struct Simulation<const D: usize, P = (), A = Projection<D>> {
     /// The flow.
@@ -117,6 +120,7 @@ pub struct Simulation<const D: usize, P = (), A = Projection<D>> {
     /// What is immersed.
     pub particles: P,
     balance: WeightBalance,
+    drive: Option<Drive>,
     force: Vector,
     timings: Timings,
 }
@@ -128,7 +132,16 @@ impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Simulation<D, P, A> {
     /// [`CouplingError`] when the two do not fit ([`Immersed::check`]).
     pub fn new(flow: A, particles: P, balance: WeightBalance) -> Result<Self, CouplingError> {
         particles.check(&flow)?;
-        Ok(Self { flow, particles, balance, force: Vector::zeros(), timings: Timings::default() })
+        let (drive, force) = (None, Vector::zeros());
+        Ok(Self { flow, particles, balance, drive, force, timings: Timings::default() })
+    }
+
+    /// The same driven by a body force per mass \[m/s²\] besides, the same everywhere: `force(t)` of the time \[s\], in the middle of each step. Bodies feel it as they feel
+    /// the mean pressure gradient it stands for.
+    #[must_use]
+    pub fn with_force(mut self, force: impl Fn(f64) -> Vector + Send + Sync + 'static) -> Self {
+        self.drive = Some(Box::new(force));
+        self
     }
 
     /// One step of length `dt` \[s\].
@@ -136,7 +149,7 @@ impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Simulation<D, P, A> {
     /// # Errors
     /// [`CouplingError`] when flow or bodies cannot go on.
     pub fn step(&mut self, dt: f64) -> Result<(), CouplingError> {
-        let Self { flow, particles, timings, .. } = self;
+        let Self { flow, particles, drive, timings, .. } = self;
         particles.begin(flow)?;
         self.force = match self.balance {
             WeightBalance::None => Vector::zeros(),
@@ -150,6 +163,9 @@ impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Simulation<D, P, A> {
                     - flow.statistics().volume_flow / (volume * dt)
             }
         };
+        if let Some(drive) = drive {
+            self.force += drive(flow.time() + 0.5 * dt);
+        }
         let force = std::array::from_fn(|a| self.force[a]);
         timings.measure(Module::Advance, || flow.predict(dt, force))?;
         particles.couple(flow, dt, timings)?;

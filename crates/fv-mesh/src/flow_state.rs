@@ -250,15 +250,6 @@ macro_rules! show_state {
         pub fn pressure(&self) -> &$crate::Field<D> {
             &self.state.pressure
         }
-    };
-}
-/// What the unsteady ones show of their clock.
-macro_rules! show_clock {
-    () => {
-        /// The velocity, for an immersed boundary to change between the parts of a step.
-        pub fn velocity_mut(&mut self) -> &mut $crate::Velocity<D> {
-            &mut self.state.velocity
-        }
         /// The mean of the velocity component `c` at the two faces of every cell, row after row.
         pub fn centred_velocity(&self, c: usize) -> impl Iterator<Item = f64> + '_ {
             let $crate::flow_state::FlowState { grid, velocity, pressure, .. } = &self.state;
@@ -268,6 +259,15 @@ macro_rules! show_clock {
                 let o = pressure.row_start(r);
                 (o..o + n).map(move |i| 0.5 * (u[i] + u[i + s]))
             })
+        }
+    };
+}
+/// What the unsteady ones show of their clock.
+macro_rules! show_clock {
+    () => {
+        /// The velocity, for an immersed boundary to change between the parts of a step.
+        pub fn velocity_mut(&mut self) -> &mut $crate::Velocity<D> {
+            &mut self.state.velocity
         }
         /// Courant number dt Σ_a max(|u_a|/h_a) of a step of length `dt`, what moves at the sides included.
         pub fn courant(&self, dt: f64) -> f64 {

@@ -1,0 +1,261 @@
+//! From a setup to what the libraries run.
+use crate::cast::Cast;
+use crate::setup::{Algorithm, Bodies, ContactLawChoice, ForcingChoice, InflowSetup, Motion, Setup};
+use crate::still::Still;
+use dem::placing::{PlacingError, Region};
+use dem::{Chen, ContactLaw, DemError, Entrant, Inflow, Lubricated, Population, RigidBodies};
+use fv_mesh::{CartesianGrid, Diffusion, FlowError, Piso, PisoParams, Projection, Side, Simple, SimpleParams, TimeScheme};
+use ibm::{Hfdib, IbmError, SmoothFilm, SmoothForcing, cut_walls};
+use interfaces::{Freedom, Periods, Twist};
+
+/// Why a scene cannot be put together.
+#[derive(Debug, thiserror::Error)]
+pub enum BuildError {
+    /// The flow.
+    #[error(transparent)]
+    Flow(#[from] FlowError),
+    /// The bodies.
+    #[error(transparent)]
+    Bodies(#[from] DemError),
+    /// Where bodies come in.
+    #[error(transparent)]
+    Placing(#[from] PlacingError),
+    /// Bodies on the grid.
+    #[error(transparent)]
+    Immersed(#[from] IbmError),
+    /// Both together.
+    #[error(transparent)]
+    Coupling(#[from] coupling::CouplingError),
+    /// A formula without a value.
+    #[error("{what} is {value} at ({}); the formula needs a finite value all over the box", at.map(|x| format!("{x:.6}")).join(", "))]
+    Formula {
+        /// Of what.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// Where \[m\].
+        at: [f64; 3],
+    },
+}
+
+impl Setup {
+    fn grid<const D: usize>(&self) -> Result<CartesianGrid<D>, FlowError> {
+        CartesianGrid::from_axes(std::array::from_fn(|a| self.axes[a].clone()))
+    }
+    fn all_sides<const D: usize>(&self) -> [[Side; 2]; D] {
+        std::array::from_fn(|a| self.sides[a].clone())
+    }
+
+    /// The velocity at time 0, if one is given.
+    fn initial<const D: usize>(&self, grid: &CartesianGrid<D>) -> Result<Option<impl Fn([f64; D]) -> [f64; D] + '_>, BuildError> {
+        let Some(u) = &self.initial else { return Ok(None) };
+        let value = move |x: [f64; D]| {
+            let x: [f64; 3] = std::array::from_fn(|a| x.get(a).copied().unwrap_or(0.0));
+            std::array::from_fn(|c| u[c].at(&x))
+        };
+        for index in 0..grid.n_cells() {
+            let x = grid.centre(grid.cell(index));
+            let velocity: [f64; D] = value(x);
+            if let Some(value) = velocity.into_iter().find(|u| !u.is_finite()) {
+                let at = std::array::from_fn(|a| x.get(a).copied().unwrap_or(0.0));
+                return Err(BuildError::Formula { what: "the initial velocity", value, at });
+            }
+        }
+        Ok(Some(value))
+    }
+
+    /// Nothing enters with a speed that is not finite, to begin with.
+    fn check_force(&self) -> Result<(), BuildError> {
+        for (t, force) in self.force.iter().flat_map(|f| [0.0, self.end].map(|t| (t, f))) {
+            if let Some(value) = force.iter().map(|f| f.at(&[t])).find(|f| !f.is_finite()) {
+                return Err(BuildError::Formula { what: "the body force", value, at: [t, 0.0, 0.0] });
+            }
+        }
+        Ok(())
+    }
+
+    /// The projection algorithm, without bodies.
+    pub(crate) fn projection<const D: usize>(&self) -> Result<Projection<D>, BuildError> {
+        self.check_force()?;
+        let grid = self.grid()?;
+        // Bodies want explicit diffusion.
+        let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
+        let diffusion = self.flow.diffusion.unwrap_or(if bodies { Diffusion::Explicit } else { Diffusion::Auto });
+        let mut flow = Projection::new(grid.clone(), self.all_sides(), self.fluid)?
+            .with_convection(self.flow.convection)
+            .with_diffusion(diffusion)
+            .with_pressure_solver(self.flow.pressure)?;
+        if let Some(u) = self.initial(&grid)? {
+            flow.set_velocity(u);
+        }
+        Ok(flow)
+    }
+
+    /// The projection algorithm with bodies at rest as walls.
+    pub(crate) fn walled<const D: usize>(&self) -> Result<(Projection<D>, Still), BuildError> {
+        let mut flow = self.projection()?;
+        let list = &self.bodies.list;
+        let still = Still::new(list.iter().map(|b| (b.shape.clone(), b.pose, b.material.density)).collect());
+        if !list.is_empty() {
+            let walls = cut_walls(flow.velocity(), &still)?;
+            flow.set_walls(Some(walls))?;
+        }
+        Ok((flow, still))
+    }
+
+    /// PISO by Euler's scheme in time, as the paper has it.
+    pub(crate) fn piso<const D: usize>(&self) -> Result<Piso<D>, BuildError> {
+        self.check_force()?;
+        let grid = self.grid()?;
+        let params = PisoParams { time_scheme: TimeScheme::Euler, ..PisoParams::default() };
+        let mut flow =
+            Piso::new(grid.clone(), self.all_sides(), self.fluid)?.with_convection(self.flow.convection).with_params(params)?;
+        if let Some(u) = self.initial(&grid)? {
+            flow.set_velocity(u);
+        }
+        Ok(flow)
+    }
+
+    /// The steady algorithm.
+    pub(crate) fn simple<const D: usize>(&self) -> Result<Simple<D>, BuildError> {
+        self.check_force()?;
+        let grid = self.grid()?;
+        let mut flow = Simple::new(grid.clone(), self.all_sides(), self.fluid)?
+            .with_convection(self.flow.convection)
+            .with_params(SimpleParams::default())?;
+        if let Some(u) = self.initial(&grid)? {
+            flow.set_velocity(u);
+        }
+        if let Some(force) = &self.force {
+            flow.set_force(std::array::from_fn(|a| force[a].at(&[self.end])));
+        }
+        Ok(flow)
+    }
+
+    /// The bodies under a law of contact.
+    pub(crate) fn cast<L: ContactLaw>(&self, law: L) -> Result<Cast<L>, BuildError> {
+        let period = |a: usize| {
+            let periodic = self.sides.get(a).is_some_and(|pair| matches!(pair[0], Side::Periodic));
+            periodic.then(|| self.axes[a].length())
+        };
+        let mut bodies = RigidBodies::with_law(Periods::new([0, 1, 2].map(period)), law);
+        let Bodies { list, inflows, exits, walls, wall_material, overlaps, .. } = &self.bodies;
+        for wall in walls {
+            bodies.add_wall(*wall, *wall_material)?;
+        }
+        let mut scripts = Vec::new();
+        for (number, body) in list.iter().enumerate() {
+            let (freedom, twist) = match &body.motion {
+                Motion::Free(freedom) => (*freedom, body.twist),
+                Motion::Fixed => (Freedom::NONE, Twist::default()),
+                motion @ Motion::Prescribed { .. } => {
+                    scripts.push((number, motion.clone()));
+                    // Over a millionth of the run.
+                    (Freedom::NONE, motion.velocity(0.0, 1e-6 * self.end))
+                }
+            };
+            let b = bodies.add(body.shape.clone(), body.material, body.pose, twist, freedom)?;
+            bodies.set_tether(b, body.tether)?;
+        }
+        if !overlaps && L::TOUCHES {
+            bodies.check_overlaps()?;
+        }
+        let mut population = Population::new(bodies);
+        for exit in exits {
+            population = population.with_exit(*exit);
+        }
+        for inflow in inflows {
+            population = population.with_inflow(self.inflow(inflow)?);
+        }
+        Ok(Cast::new(population, inflows.len(), scripts))
+    }
+
+    fn inflow(&self, setup: &InflowSetup) -> Result<Inflow, PlacingError> {
+        let spans = |a: usize| {
+            self.sides.get(a).is_some_and(|pair| matches!(pair[0], Side::Periodic))
+                && setup.region.min[a] == self.axes[a].lower()
+                && setup.region.max[a] == self.axes[a].upper()
+        };
+        let region = Region::cuboid(setup.region, [0, 1, 2].map(spans))?;
+        let freedom = if self.dim() == 2 { Freedom::PLANAR } else { Freedom::FREE };
+        let (shapes, material, twist) = (setup.shapes.clone(), setup.material, setup.twist);
+        let inflow = Inflow::new(region, setup.rate, move |serial| Entrant {
+            shape: shapes[serial as usize % shapes.len()].clone(),
+            material,
+            twist,
+            freedom,
+        })?;
+        let inflow = inflow.with_start(setup.start)?.with_gap(setup.gap)?.with_seed(setup.seed);
+        let inflow = inflow.with_orientations(setup.orientations);
+        Ok(match setup.number {
+            Some(number) => inflow.with_number(number),
+            None => inflow,
+        })
+    }
+
+    /// The paper's law as the scene wants it.
+    pub(crate) fn chen(&self) -> Chen {
+        Chen::default().with_length_factor(self.bodies.length_factor).with_adhesion(self.bodies.adhesion)
+    }
+    /// The same with films of this roughness.
+    pub(crate) fn lubricated(&self, roughness: f64) -> Result<Lubricated<Chen>, BuildError> {
+        // Cells around bodies are equal: the narrowest of all.
+        let spacing = self.axes.iter().map(fv_mesh::Axis::narrowest).fold(f64::INFINITY, f64::min);
+        let viscosity = self.fluid.viscosity * self.fluid.density;
+        Ok(Lubricated::new(self.chen(), viscosity, SmoothFilm::new(spacing)?)?.with_roughness(roughness)?)
+    }
+    pub(crate) fn smooth(&self) -> SmoothForcing {
+        let coupling = &self.bodies.coupling;
+        let mut forcing = SmoothForcing::new(self.fluid.density);
+        if let Some(kernel) = coupling.kernel {
+            forcing = forcing.with_kernel(kernel);
+        }
+        if let Some(passes) = coupling.passes {
+            forcing = forcing.with_passes(passes);
+        }
+        forcing
+    }
+    pub(crate) fn hfdib(&self) -> Hfdib {
+        Hfdib::new(self.fluid.density)
+    }
+
+    /// What the scene is made of: which parts are at work, and which are not.
+    pub(crate) fn parts(&self) -> Vec<(&'static str, bool, String)> {
+        let bodies = &self.bodies;
+        let any = !bodies.list.is_empty() || !bodies.inflows.is_empty();
+        let law = match bodies.law {
+            ContactLawChoice::Chen => "chen",
+            ContactLawChoice::Potential => "potential",
+            ContactLawChoice::Rolling => "rolling",
+            ContactLawChoice::None => "none",
+        };
+        let moves = bodies.any_moves();
+        let forcing = match bodies.forcing() {
+            _ if !any => "no bodies",
+            ForcingChoice::CutLinks => "walls at rest by cut links",
+            ForcingChoice::Hfdib => "hybrid fictitious domain–immersed boundary",
+            _ => "smooth direct forcing",
+        };
+        let algorithm = match self.flow.algorithm {
+            Algorithm::Projection => "projection",
+            Algorithm::Piso => "PISO, Euler's scheme",
+            Algorithm::Simple => "SIMPLEC, steady",
+        };
+        let contact = moves && bodies.law != ContactLawChoice::None && bodies.any_free();
+        let why_no_contact = if !any {
+            "no bodies"
+        } else if !bodies.any_free() {
+            "no body is free"
+        } else {
+            "switched off"
+        };
+        vec![
+            ("flow", true, algorithm.into()),
+            ("immersed boundary", any, forcing.into()),
+            ("rigid bodies", moves, if moves { format!("{} at the start", bodies.list.len()) } else { "nothing moves".into() }),
+            ("contact", contact, if contact { format!("law {law}, {} walls", bodies.walls.len()) } else { why_no_contact.into() }),
+            ("lubrication", bodies.lubrication.is_some(), if bodies.lubrication.is_some() { "films below two cells".into() } else { "not asked for".into() }),
+            ("turbulence", false, "no closure".into()),
+        ]
+    }
+}

@@ -1,0 +1,161 @@
+//! The bodies of a scene: free, held, told how to move, coming and going.
+use crate::setup::Motion;
+use dem::placing::PlacingError;
+use dem::{ContactLaw, Origin, Population, RigidBodies, RigidDynamics};
+use interfaces::{
+    Bodies, BodyId, Checkpoint, Dynamics, Freedom, Inertia, Kinematics, Load, Pose, Renumbering, RestartError, Solid,
+    Twist, Vector, Wrench,
+};
+
+/// A [`Population`] some of whose bodies move by formulas.
+pub(crate) struct Cast<L: ContactLaw> {
+    bodies: Population<L>,
+    inflows: usize,
+    /// Who moves by formulas: number at the start, and how.
+    scripts: Vec<(usize, Motion)>,
+    /// Where they are in the list now.
+    places: Vec<Option<BodyId>>,
+    /// Time at the start of the step \[s\].
+    time: f64,
+}
+
+/// Derivatives are differences over this share of a step.
+const SHARE: f64 = 1e-2;
+
+impl Motion {
+    fn shift(&self, t: f64) -> Vector {
+        match self {
+            Self::Prescribed { shift: Some(shift), .. } => Vector::from(shift.each_ref().map(|s| s.at(&[t]))),
+            _ => Vector::zeros(),
+        }
+    }
+    fn angle(&self, t: f64) -> Vector {
+        match self {
+            Self::Prescribed { turn: Some((angle, axis)), .. } => angle.at(&[t]) * **axis,
+            _ => Vector::zeros(),
+        }
+    }
+    /// Mean velocity from `t` to `t + dt`.
+    pub(crate) fn mean(&self, t: f64, dt: f64) -> Twist {
+        let rate = |f: fn(&Self, f64) -> Vector| (f(self, t + dt) - f(self, t)) / dt;
+        Twist { linear: rate(Self::shift), angular: rate(Self::angle) }
+    }
+    /// Velocity at `t`, from differences over a part of `dt` to both sides.
+    pub(crate) fn velocity(&self, t: f64, dt: f64) -> Twist {
+        self.mean(t - SHARE * dt, 2.0 * SHARE * dt)
+    }
+}
+
+impl<L: ContactLaw> Cast<L> {
+    /// Bodies with so many inflows, of whom some (by their number at the start) move by formulas.
+    pub(crate) fn new(bodies: Population<L>, inflows: usize, scripts: Vec<(usize, Motion)>) -> Self {
+        let places = vec![None; scripts.len()];
+        let mut cast = Self { bodies, inflows, scripts, places, time: 0.0 };
+        cast.find();
+        cast
+    }
+    /// How many came in and how many left so far.
+    pub(crate) fn turnover(&self) -> [u64; 2] {
+        [(0..self.inflows).map(|i| self.bodies.entered(i)).sum(), self.bodies.left()]
+    }
+
+    /// Finds those who move by formulas; numbers close up when bodies leave.
+    fn find(&mut self) {
+        if self.scripts.is_empty() {
+            return;
+        }
+        self.places.fill(None);
+        for b in self.bodies.ids() {
+            if let Origin::Start(start) = self.bodies.origin(b)
+                && let Some(place) = self.scripts.iter().position(|(number, _)| *number == start)
+            {
+                self.places[place] = Some(b);
+            }
+        }
+    }
+
+    fn direct(&mut self, twist: impl Fn(&Motion) -> Twist) {
+        for ((_, motion), place) in self.scripts.iter().zip(&self.places) {
+            if let Some(b) = place {
+                self.bodies.set_twist(*b, twist(motion));
+            }
+        }
+    }
+}
+
+impl<L: ContactLaw> Kinematics for Cast<L> {
+    fn n_bodies(&self) -> usize {
+        self.bodies.n_bodies()
+    }
+    fn pose(&self, b: BodyId) -> Pose {
+        self.bodies.pose(b)
+    }
+    fn twist(&self, b: BodyId) -> Twist {
+        self.bodies.twist(b)
+    }
+}
+
+impl<L: ContactLaw> Bodies for Cast<L> {
+    fn solid(&self, b: BodyId) -> &dyn Solid {
+        self.bodies.solid(b)
+    }
+    fn inertia(&self, b: BodyId) -> Inertia {
+        self.bodies.inertia(b)
+    }
+    fn freedom(&self, b: BodyId) -> Freedom {
+        self.bodies.freedom(b)
+    }
+}
+
+impl<L: ContactLaw> RigidDynamics for Cast<L> {
+    type Law = L;
+    fn rigid_bodies(&self) -> &RigidBodies<L> {
+        self.bodies.rigid_bodies()
+    }
+}
+
+impl<L: ContactLaw> Dynamics for Cast<L> {
+    type Error = PlacingError;
+    fn apply(&mut self, b: BodyId, load: Load) {
+        self.bodies.apply(b, load);
+    }
+    /// Those who move by formulas are where these say at the end, up to round-off, and have the velocity there.
+    fn advance(&mut self, dt: f64) -> Result<(), PlacingError> {
+        let time = self.time;
+        self.direct(|motion| motion.mean(time, dt));
+        self.bodies.advance(dt)?;
+        self.direct(|motion| motion.velocity(time + dt, dt));
+        Ok(())
+    }
+    fn contact_impulse(&self, b: BodyId) -> Wrench {
+        self.bodies.contact_impulse(b)
+    }
+    fn set_twist(&mut self, b: BodyId, twist: Twist) {
+        self.bodies.set_twist(b, twist);
+    }
+    fn stable_dt(&self) -> f64 {
+        self.bodies.stable_dt()
+    }
+    fn renew(&mut self, time: f64) -> Result<Option<Renumbering>, PlacingError> {
+        self.time = time;
+        let numbers = self.bodies.renew(time)?;
+        if numbers.is_some() {
+            self.find();
+        }
+        Ok(numbers)
+    }
+}
+
+impl<L: ContactLaw> Checkpoint for Cast<L>
+where
+    Population<L>: Checkpoint,
+{
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        self.bodies.save(sink);
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        self.bodies.restore(source)?;
+        self.find();
+        Ok(())
+    }
+}

@@ -1,0 +1,124 @@
+//! Scenes of flow and bodies from TOML files.
+//!
+//! A scene is read with every value's place kept, checked against one schema (unknown keys, kinds, ranges, formulas: all problems at once, each with its line), put
+//! together from the libraries, and run with progress, pictures, files and saved states. Types are chosen once, before the time loop.
+//!
+//! ```
+//! use scene::Scene;
+//!
+//! let text = r#"
+//!     [grid]
+//!     cells = [16, 16]
+//!     size = [1.0, 1.0]
+//!     [sides]
+//!     x = "wall"
+//!     y_min = "wall"
+//!     y_max = { type = "wall", velocity = [1.0, 0.0] }
+//!     [fluid]
+//!     density = 1.0
+//!     nu = 0.01
+//!     [time]
+//!     end = 1.0
+//! "#;
+//! let cavity = Scene::parse("cavity.toml", text, &["fluid.nu=0.02".into()])?;
+//! let plan = cavity.plan()?;
+//! assert_eq!(plan.cells, [16, 16]);
+//!
+//! let problems = Scene::parse("cavity.toml", &text.replace("nu =", "nue ="), &[]).err().unwrap();
+//! assert!(problems.to_string().contains("did you mean \"nu\""));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+#![deny(missing_docs)]
+
+mod build;
+mod cast;
+mod document;
+mod expression;
+mod log;
+mod options;
+mod plan;
+mod problem;
+mod reader;
+mod result;
+mod run;
+mod schema;
+mod setup;
+mod still;
+mod view;
+mod watch;
+
+pub use build::BuildError;
+pub use options::Options;
+pub use plan::Plan;
+pub use problem::Problems;
+pub use result::{Ending, RunResult};
+pub use run::RunError;
+pub use schema::{json_schema, manual};
+
+use document::Document;
+use setup::Setup;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// A scene, read and checked.
+pub struct Scene {
+    setup: Setup,
+    fingerprint: u64,
+}
+
+/// Why a scene could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    /// The file.
+    #[error("{path}: {source}; give the path of a scene file, scenes/cavity.toml for instance")]
+    Io {
+        /// Its path.
+        path: String,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// What is in it.
+    #[error(transparent)]
+    Problems(#[from] Problems),
+}
+
+/// Keys that may change when a run goes on.
+const LOOSE: [&str; 6] = ["title", "about", "output", "checkpoint", "probes", "time.end"];
+
+impl Scene {
+    /// Reads the file at `path`, with the values that `overrides` set (`fluid.nu=2e-6`).
+    ///
+    /// # Errors
+    /// [`SceneError`] with all that is wrong.
+    pub fn load(path: &Path, overrides: &[String]) -> Result<Self, SceneError> {
+        let name = path.display().to_string();
+        let text = std::fs::read_to_string(path).map_err(|source| SceneError::Io { path: name.clone(), source })?;
+        Ok(Self::parse(&name, &text, overrides)?)
+    }
+
+    /// The scene in `text`, as if it stood in a file called `name`: paths in it begin in that file's folder.
+    ///
+    /// # Errors
+    /// [`Problems`]: all that is wrong.
+    pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Self, Problems> {
+        let document = Document::parse(name, text, overrides)?;
+        let setup = Setup::new(&document, Path::new(name))?;
+        Ok(Self { setup, fingerprint: document.fingerprint(&LOOSE) })
+    }
+
+    /// What running it would mean. Puts it together, which finds what only the libraries know to be wrong.
+    ///
+    /// # Errors
+    /// [`BuildError`] if it cannot be put together.
+    pub fn plan(&self) -> Result<Plan, BuildError> {
+        self.setup.plan()
+    }
+
+    /// Runs it until its end, or until `stop` is set.
+    ///
+    /// # Errors
+    /// [`RunError`]; states saved before it are whole.
+    pub fn run(&self, options: &Options, stop: &AtomicBool) -> Result<RunResult, RunError> {
+        self.setup.run(options, self.fingerprint, stop)
+    }
+}

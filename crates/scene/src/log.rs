@@ -1,0 +1,27 @@
+//! `run.log`.
+use crate::watch::output;
+use coupling::CouplingError;
+use std::fs::{File, OpenOptions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Lines with the seconds since the run began.
+pub(crate) struct Log {
+    path: PathBuf,
+    file: File,
+    start: Instant,
+}
+
+impl Log {
+    /// A new log, or, when a run goes on, the one that is there.
+    pub(crate) fn open(folder: &Path, append: bool) -> Result<Self, CouplingError> {
+        let path = folder.join("run.log");
+        let file = OpenOptions::new().create(true).write(true).append(append).truncate(!append).open(&path);
+        Ok(Self { file: file.map_err(output("making", &path))?, path, start: Instant::now() })
+    }
+    pub(crate) fn line(&mut self, text: &str) -> Result<(), CouplingError> {
+        let seconds = self.start.elapsed().as_secs_f64();
+        writeln!(self.file, "{seconds:10.2} {text}").map_err(output("writing", &self.path))
+    }
+}

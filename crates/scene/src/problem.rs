@@ -1,0 +1,120 @@
+//! What is wrong with a scene, and where.
+use crate::document::Place;
+use std::fmt;
+
+/// One thing that is wrong.
+#[derive(Clone, Debug)]
+pub(crate) struct Problem {
+    /// The key, from the top: `bodies.2.shape.radius`.
+    pub(crate) path: String,
+    pub(crate) place: Place,
+    /// What is wrong and what to do.
+    pub(crate) message: String,
+}
+
+impl Problem {
+    pub(crate) fn new(path: String, place: Place, message: impl Into<String>) -> Self {
+        Self { path, place, message: message.into() }
+    }
+}
+
+/// All that is wrong with a scene: shown as the file's name, line and column, the line itself with the place marked, the key and what to do.
+#[derive(Clone, Debug, thiserror::Error)]
+pub struct Problems {
+    pub(crate) name: String,
+    pub(crate) text: String,
+    pub(crate) overrides: Vec<String>,
+    pub(crate) list: Vec<Problem>,
+}
+
+impl Problems {
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.list.len()
+    }
+    /// Of each, in the order of the file: line (from 1; 0 for an override of the command line), key and message.
+    pub fn iter(&self) -> impl Iterator<Item = (usize, &str, &str)> {
+        self.list.iter().map(|p| {
+            let line = match &p.place {
+                Place::File(range) => self.line(range.start).0,
+                Place::Override(_) => 0,
+            };
+            (line, p.path.as_str(), p.message.as_str())
+        })
+    }
+
+    /// Line and column, from 1, of byte `at`, and the line's text.
+    fn line(&self, at: usize) -> (usize, usize, &str) {
+        let mut at = at.min(self.text.len());
+        // Errors at the end of the file are behind its last line's end.
+        while !self.text.is_char_boundary(at) {
+            at -= 1;
+        }
+        let before = &self.text[..at];
+        let start = before.rfind('\n').map_or(0, |i| i + 1);
+        let end = self.text[at..].find('\n').map_or(self.text.len(), |i| at + i);
+        (before.matches('\n').count() + 1, before[start..].chars().count() + 1, &self.text[start..end])
+    }
+}
+
+/// So many characters of a line are shown.
+const SHOWN: usize = 120;
+
+impl fmt::Display for Problems {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, problem) in self.list.iter().enumerate() {
+            if i > 0 {
+                writeln!(f)?;
+            }
+            match &problem.place {
+                Place::File(range) => {
+                    let (line, column, text) = self.line(range.start);
+                    write!(f, "{}:{line}:{column}: ", self.name)?;
+                    write_message(f, problem)?;
+                    // Long lines are shown around the place.
+                    let skip = column.saturating_sub(SHOWN / 2);
+                    let shown: String = text.chars().skip(skip).take(SHOWN).collect();
+                    let length = self.text.get(range.clone()).map_or(1, |s| {
+                        s.lines().next().map_or(1, |first| first.chars().count())
+                    });
+                    let room = shown.chars().count().saturating_sub(column - 1 - skip).max(1);
+                    let marks = "^".repeat(length.clamp(1, room));
+                    let gutter = line.to_string();
+                    let blank = " ".repeat(gutter.len());
+                    write!(f, "\n {gutter} | {shown}\n {blank} | {}{marks}", " ".repeat(column - 1 - skip))?;
+                }
+                Place::Override(number) => {
+                    let text = self.overrides.get(*number).map_or("", String::as_str);
+                    write!(f, "--set {text}: ")?;
+                    write_message(f, problem)?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn write_message(f: &mut fmt::Formatter<'_>, problem: &Problem) -> fmt::Result {
+    if !problem.path.is_empty() {
+        write!(f, "{}: ", problem.path)?;
+    }
+    f.write_str(&problem.message)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_are_shown() {
+        let source = "[fluid]\nnü = 1e-6 # here\n";
+        let at = source.find("1e-6").unwrap();
+        let list = vec![Problem::new("fluid.nü".into(), Place::File(at..at + 4), "give more")];
+        let problems = Problems { name: "s.toml".into(), text: source.into(), overrides: vec![], list };
+        assert_eq!(
+            problems.to_string(),
+            "s.toml:2:6: fluid.nü: give more\n 2 | nü = 1e-6 # here\n   |      ^^^^"
+        );
+        assert_eq!(problems.iter().next(), Some((2, "fluid.nü", "give more")));
+    }
+}

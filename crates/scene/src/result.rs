@@ -1,0 +1,147 @@
+//! What came out of a run.
+use crate::run::Extremes;
+use crate::setup::Setup;
+use crate::view::View;
+use crate::watch::{Audience, output};
+use coupling::{CouplingError, LedgerReport, Module};
+use example_support::cpu::Elapsed;
+use interfaces::BodyId;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// It came to its end.
+    Done,
+    /// It was stopped and can go on.
+    Stopped,
+    /// The iterations allowed were not enough for a steady flow.
+    NotConverged,
+}
+
+/// What came out of a run.
+#[derive(Clone, Debug)]
+pub struct RunResult {
+    /// How it ended.
+    pub ending: Ending,
+    /// The folder with its files.
+    pub folder: PathBuf,
+    /// What `result.json` holds: the same, bit for bit, whether or not the run was interrupted.
+    pub result: Value,
+    /// What `timings.json` holds.
+    pub timings: Value,
+}
+
+/// A number, or null for what is none.
+fn number(x: f64) -> Value {
+    if x.is_finite() { json!(x) } else { Value::Null }
+}
+
+impl RunResult {
+    pub(crate) fn new(
+        setup: &Setup,
+        view: &mut dyn View,
+        extremes: &Extremes,
+        ledger: Option<&LedgerReport>,
+        audience: &Audience,
+        ending: Ending,
+        folder: &Path,
+    ) -> Self {
+        let flow = view.statistics();
+        let dim = view.dim();
+        let volume: f64 = (0..dim).map(|a| view.axis(a).length()).product();
+        let mean: Vec<f64> = (0..dim).map(|a| flow.volume_flow[a] / volume).collect();
+        let [shortest, longest, courant] = extremes.0;
+        let mut result = json!({
+            "scene": setup.name,
+            "title": setup.title,
+            "complete": ending == Ending::Done,
+            "version": env!("CARGO_PKG_VERSION"),
+            "dimension": dim,
+            "cells": (0..dim).map(|a| view.axis(a).cells()).collect::<Vec<_>>(),
+            "time": view.time(),
+            "steps": view.steps(),
+            "step": { "shortest": number(shortest), "longest": number(longest), "courant": number(courant) },
+            "flow": {
+                "kinetic_energy": number(flow.kinetic_energy),
+                "dissipation": number(flow.dissipation),
+                "divergence": number(flow.divergence),
+                "mean_velocity": mean,
+            },
+        });
+        let names: Vec<&str> = setup.bodies.list.iter().map(|b| b.name.as_str()).collect();
+        let bodies: Vec<Value> = (0..view.bodies().n_bodies())
+            .map(BodyId)
+            .map(|b| {
+                let (pose, twist, serial) = (view.bodies().pose(b), view.bodies().twist(b), view.serial(b));
+                let q = pose.orientation;
+                let triple = |v: interfaces::Vector| [v.x, v.y, v.z];
+                json!({
+                    "body": names.get(serial as usize).map_or_else(|| serial.to_string(), |name| (*name).to_owned()),
+                    "position": triple(pose.position.coords),
+                    "orientation": [q.w, q.i, q.j, q.k],
+                    "velocity": triple(twist.linear),
+                    "spin": triple(twist.angular),
+                })
+            })
+            .collect();
+        if !bodies.is_empty() {
+            let [entered, left] = view.turnover();
+            result["bodies"] = json!(bodies);
+            result["contacts"] = json!(view.contacts());
+            result["turnover"] = json!({ "entered": entered, "left": left });
+        }
+        for watch in &audience.watches {
+            if let Some(value) = watch.results() {
+                result[watch.name()] = value;
+            }
+        }
+        if let Some(l) = ledger {
+            result["ledger"] = json!({
+                "momentum_worst_step": number(l.momentum_step),
+                "momentum_whole_run": number(l.momentum_total),
+                "impulses": number(l.impulses),
+                "energy": l.energy,
+                "work": number(l.work),
+                "dissipation": number(l.dissipation),
+                "contact_work": number(l.contact_work),
+                "brought": number(l.brought),
+                "energy_residual": number(l.energy_residual),
+                "divergence": number(l.divergence),
+            });
+        }
+        Self { ending, folder: folder.into(), result, timings: Value::Null }
+    }
+
+    pub(crate) fn set(&mut self, key: &str, value: Value) {
+        self.result[key] = value;
+    }
+
+    pub(crate) fn with_timings(mut self, elapsed: Elapsed, threads: usize, output: f64, view: &dyn View) -> Self {
+        let modules: serde_json::Map<String, Value> =
+            Module::ALL.iter().map(|m| (m.name().into(), json!(view.timings().seconds(*m)))).collect();
+        self.timings = json!({
+            "wall": elapsed.wall,
+            "cpu": elapsed.cpu,
+            "threads": threads,
+            "output": output,
+            "modules": modules,
+        });
+        self
+    }
+
+    /// Writes `result.json` and `timings.json`.
+    pub(crate) fn write(self) -> Result<Self, CouplingError> {
+        for (name, value) in [("result.json", &self.result), ("timings.json", &self.timings)] {
+            let path = self.folder.join(name);
+            let text = format!("{value:#}\n");
+            // Beside it first: what is there is whole.
+            let beside = self.folder.join(format!("{name}.part"));
+            std::fs::write(&beside, text)
+                .and_then(|()| std::fs::rename(&beside, &path))
+                .map_err(output("writing", &path))?;
+        }
+        Ok(self)
+    }
+}

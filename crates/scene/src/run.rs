@@ -1,0 +1,504 @@
+//! Runs a scene.
+use crate::build::BuildError;
+use crate::cast::Cast;
+use crate::log::Log;
+use crate::options::Options;
+use crate::result::{Ending, RunResult};
+use crate::setup::{Algorithm, ContactLawChoice, ForcingChoice, Setup, StrategyChoice};
+use crate::view::{Flow, Guests, Seen, View};
+use crate::watch::{
+    Audience, AveragesWatch, FieldsWatch, ForcesWatch, ImagesWatch, ProbesWatch, TrajectoriesWatch, Watch, output,
+};
+use coupling::{
+    CheckpointError, CouplingError, Exchange, Explicit, FlowSolver, Immersed, Iterated, Ledger, LedgerReport, Observer,
+    OneSolve, Particles, Schedule, Simulation, StepInfo, Strategy,
+};
+use dem::{ContactLaw, Population, Rolling};
+use example_support::cpu::Stopwatch;
+use example_support::progress::{Progress, Status};
+use fv_mesh::{Projection, Simple};
+use ibm::Forcing;
+use interfaces::{Checkpoint, RestartError};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Why a run ended before its time.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The scene could not be put together.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// A step or a file could not be made.
+    #[error(transparent)]
+    Coupling(#[from] CouplingError),
+    /// The saved state.
+    #[error("{0}; without an interrupted run of this scene in the folder, leave out --resume")]
+    Resume(CheckpointError),
+    /// Another scene was saved there.
+    #[error("the state in {} was saved by another scene, or by this one with other values than time.end and output; run it without --resume", .0.display())]
+    OtherScene(PathBuf),
+    /// Threads.
+    #[error("the threads could not be started: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+impl Setup {
+    /// Runs the scene.
+    pub(crate) fn run(&self, options: &Options, fingerprint: u64, stop: &AtomicBool) -> Result<RunResult, RunError> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
+        pool.install(|| match self.dim() {
+            2 => self.run_in::<2>(options, fingerprint, stop),
+            _ => self.run_in::<3>(options, fingerprint, stop),
+        })
+    }
+
+    /// The one choice of types, before the time loop.
+    fn run_in<const D: usize>(&self, options: &Options, fingerprint: u64, stop: &AtomicBool) -> Result<RunResult, RunError> {
+        let stage = Stage { setup: self, options, fingerprint, stop };
+        let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
+        match self.flow.algorithm {
+            Algorithm::Simple => return stage.steady(self.simple::<D>()?),
+            Algorithm::Piso if bodies => {
+                let particles = self.particles(self.hfdib(), self.cast(self.chen())?).with_strategy(Explicit);
+                return stage.march(self.simulation(self.piso::<D>()?, particles)?, NoBooks);
+            }
+            Algorithm::Piso => {
+                return stage.march(self.simulation(self.piso::<D>()?, crate::still::Still::default())?, NoBooks);
+            }
+            Algorithm::Projection => {}
+        }
+        if !bodies || self.bodies.forcing() == ForcingChoice::CutLinks {
+            let (flow, still) = self.walled::<D>()?;
+            return stage.march(self.simulation(flow, still)?, NoBooks);
+        }
+        match self.bodies.forcing() {
+            ForcingChoice::Hfdib => self.bodies_by::<D, _>(&stage, self.hfdib()),
+            _ => self.bodies_by::<D, _>(&stage, self.smooth()),
+        }
+    }
+
+    fn bodies_by<const D: usize, F: Forcing>(&self, stage: &Stage<'_>, forcing: F) -> Result<RunResult, RunError> {
+        let flow = self.projection::<D>()?;
+        match (self.bodies.law, self.bodies.coupling.strategy, self.bodies.lubrication) {
+            (ContactLawChoice::Chen, StrategyChoice::OneSolve, Some(roughness)) => {
+                stage.bodies(flow, self.particles(forcing, self.cast(self.lubricated(roughness)?)?))
+            }
+            (ContactLawChoice::Chen, StrategyChoice::Iterated, _) => {
+                stage.bodies(flow, self.particles(forcing, self.cast(self.chen())?).with_strategy(Iterated::default()))
+            }
+            (ContactLawChoice::Chen, StrategyChoice::Explicit, _) => {
+                stage.bodies(flow, self.particles(forcing, self.cast(self.chen())?).with_strategy(Explicit))
+            }
+            (ContactLawChoice::Chen, ..) => stage.bodies(flow, self.particles(forcing, self.cast(self.chen())?)),
+            (ContactLawChoice::Potential, ..) => {
+                let law = dem::Potential::default().with_length_factor(self.bodies.length_factor);
+                stage.bodies(flow, self.particles(forcing, self.cast(law)?))
+            }
+            (ContactLawChoice::Rolling, ..) => stage.bodies(flow, self.particles(forcing, self.cast(Rolling(self.chen()))?)),
+            (ContactLawChoice::None, ..) => stage.bodies(flow, self.particles(forcing, self.cast(())?)),
+        }
+    }
+
+    fn particles<F: Forcing, L: ContactLaw>(&self, forcing: F, cast: Cast<L>) -> Particles<F, Cast<L>>
+    where
+        Population<L>: Checkpoint,
+    {
+        let particles = Particles::new(cast, forcing, self.fluid.density, self.gravity);
+        match self.bodies.coupling.virtual_mass {
+            Some(factor) => particles.with_virtual_mass(factor),
+            None => particles,
+        }
+    }
+
+    fn simulation<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>>(
+        &self,
+        flow: A,
+        particles: P,
+    ) -> Result<Simulation<D, P, A>, CouplingError> {
+        let simulation = Simulation::new(flow, particles, self.balance)?;
+        Ok(match self.force.clone() {
+            Some(force) => simulation.with_force(move |t| force.each_ref().map(|f| f.at(&[t])).into()),
+            None => simulation,
+        })
+    }
+}
+
+/// Books that may be kept.
+trait Books<S>: Observer<S> + Checkpoint {
+    fn report(&self) -> Option<&LedgerReport>;
+}
+
+/// No books.
+struct NoBooks;
+impl<S> Observer<S> for NoBooks {}
+impl Checkpoint for NoBooks {
+    fn save(&self, _: &mut dyn FnMut(&str, &[f64])) {}
+    fn restore<'a>(&mut self, _: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        Ok(())
+    }
+}
+impl<S> Books<S> for NoBooks {
+    fn report(&self) -> Option<&LedgerReport> {
+        None
+    }
+}
+impl<S> Books<S> for Ledger
+where
+    Ledger: Observer<S>,
+{
+    fn report(&self) -> Option<&LedgerReport> {
+        Some(Ledger::report(self))
+    }
+}
+
+/// A run that is about to begin.
+struct Stage<'a> {
+    setup: &'a Setup,
+    options: &'a Options,
+    fingerprint: u64,
+    stop: &'a AtomicBool,
+}
+
+/// Name of the saved state in the folder.
+const STATE: &str = "state.bin";
+
+impl Stage<'_> {
+    fn bodies<const D: usize, F, L, S>(
+        &self,
+        flow: Projection<D>,
+        particles: Particles<F, Cast<L>, S>,
+    ) -> Result<RunResult, RunError>
+    where
+        F: Forcing,
+        L: ContactLaw,
+        S: Strategy + Exchange<D, Projection<D>>,
+        Population<L>: Checkpoint,
+    {
+        self.march(self.setup.simulation(flow, particles)?, Ledger::new())
+    }
+
+    fn folder(&self) -> &Path {
+        self.options.out.as_deref().unwrap_or(&self.setup.output.folder)
+    }
+
+    fn audience(&self, resume: Option<f64>) -> Result<Audience, CouplingError> {
+        let (setup, folder) = (self.setup, self.folder());
+        let dim = setup.dim();
+        let names: Vec<String> = setup.bodies.list.iter().map(|b| b.name.clone()).collect();
+        let bodies = !names.is_empty() || !setup.bodies.inflows.is_empty();
+        let moves = setup.bodies.any_moves();
+        let mut watches: Vec<Box<dyn Watch>> = Vec::new();
+        let out = &setup.output;
+        watches.push(Box::new(FieldsWatch::new(folder, [out.fields, out.bodies && moves], resume)?));
+        if out.bodies && moves {
+            watches.push(Box::new(TrajectoriesWatch::new(folder, names.clone(), resume)?));
+        }
+        if let Some(images) = out.images.clone() {
+            watches.push(Box::new(ImagesWatch::new(folder, &setup.title, images)?));
+        }
+        if !setup.probes.is_empty() {
+            watches.push(Box::new(ProbesWatch::new(folder, &setup.probes, dim, resume)?));
+        }
+        if let Some(forces) = setup.forces.filter(|_| bodies) {
+            watches.push(Box::new(ForcesWatch::new(folder, forces, names, setup.fluid.density, resume)?));
+        }
+        if let Some(averages) = setup.averages {
+            watches.push(Box::new(AveragesWatch::new(folder, averages, dim, setup.cells())));
+        }
+        Ok(Audience::new(watches))
+    }
+
+    fn make_folder(&self) -> Result<(), CouplingError> {
+        let folder = self.folder();
+        std::fs::create_dir_all(folder).map_err(output("making the folder", folder))?;
+        if !self.options.resume {
+            // What an earlier run left is not this run's.
+            for old in [STATE, "state.bin.previous", "result.json", "timings.json"] {
+                let _ = std::fs::remove_file(folder.join(old));
+            }
+        }
+        Ok(())
+    }
+
+    /// Steps to the end of the run, or until it is stopped.
+    fn march<const D: usize, P, A, K>(&self, mut simulation: Simulation<D, P, A>, mut books: K) -> Result<RunResult, RunError>
+    where
+        P: Guests + Immersed<D, A>,
+        A: Flow<D> + FlowSolver<D>,
+        K: Books<Simulation<D, P, A>>,
+    {
+        let watch = Stopwatch::start();
+        let setup = self.setup;
+        self.make_folder()?;
+        let state = self.folder().join(STATE);
+        let mut extremes = Extremes::default();
+        let mut resume = None;
+        if self.options.resume {
+            // First the simulation and its time; then what the observers have kept, in files that go on from that time.
+            let mut whole =
+                Whole { simulation: &mut simulation, books: &mut books, extremes: &mut extremes, fingerprint: self.fingerprint, audience: None };
+            coupling::load(&state, &mut whole).map_err(|e| self.not_resumed(e, &state))?;
+            resume = Some(FlowSolver::time(&simulation.flow));
+        }
+        let mut audience = self.audience(resume)?;
+        if resume.is_some() {
+            coupling::load(&state, &mut Kept(&mut audience)).map_err(RunError::Resume)?;
+        }
+        let schedule = Schedule {
+            end: setup.end,
+            intervals: setup.output.snapshots.max(1),
+            dt: setup.dt,
+            courant: setup.courant,
+            ramp: if setup.ramp { Schedule::default().ramp } else { [1.0, 2.0] },
+        };
+        schedule.check()?;
+        let mut log = Log::open(self.folder(), self.options.resume)?;
+        log.line(&format!(
+            "{} {}: {} cells, {} bodies, to t = {} s",
+            if resume.is_some() { "going on with" } else { "running" },
+            setup.name,
+            setup.cells(),
+            setup.bodies.list.len(),
+            setup.end
+        ))?;
+        let begin = FlowSolver::time(&simulation.flow);
+        let mut look = Look {
+            audience,
+            books,
+            extremes,
+            progress: (!self.options.quiet).then(|| Progress::new(begin, setup.end)),
+            log,
+            state: state.clone(),
+            fingerprint: self.fingerprint,
+            save_every: Duration::try_from_secs_f64(setup.save_every).unwrap_or(Duration::MAX),
+            saved: Instant::now(),
+            only_end: setup.output.snapshots == 0,
+            output: 0.0,
+        };
+        let summary = coupling::run(&mut simulation, &schedule, &mut look, self.stop);
+        let summary = match summary {
+            Ok(summary) => summary,
+            Err(error) => {
+                let _ = look.log.line(&format!("ended by an error: {error}"));
+                return Err(error.into());
+            }
+        };
+        if summary.stopped || setup.save_at_end {
+            look.save(&mut simulation)?;
+        }
+        if let Some(progress) = look.progress.take() {
+            progress.finish(summary.steps, if summary.stopped { "stopped" } else { "done" });
+        }
+        let Look { mut audience, books, extremes, mut log, output, .. } = look;
+        let ending = if summary.stopped { Ending::Stopped } else { Ending::Done };
+        let mut seen = see(&mut simulation);
+        if ending == Ending::Done {
+            audience.finish(&mut seen)?;
+        } else {
+            audience.flush()?;
+        }
+        log.line(if summary.stopped { "stopped; --resume goes on" } else { "done" })?;
+        let seconds = audience.seconds + output;
+        let result = RunResult::new(setup, &mut seen, &extremes, books.report(), &audience, ending, self.folder());
+        Ok(result.with_timings(watch.elapsed(), self.options.threads, seconds, &seen).write()?)
+    }
+
+    fn not_resumed(&self, error: CheckpointError, state: &Path) -> RunError {
+        match error {
+            CheckpointError::Mismatch(RestartError::Differs(_)) => RunError::OtherScene(state.into()),
+            error => RunError::Resume(error),
+        }
+    }
+
+    /// Iterates to the steady flow.
+    fn steady<const D: usize>(&self, mut flow: Simple<D>) -> Result<RunResult, RunError> {
+        let watch = Stopwatch::start();
+        let setup = self.setup;
+        self.make_folder()?;
+        let mut audience = self.audience(None)?;
+        let mut log = Log::open(self.folder(), false)?;
+        log.line(&format!("iterating {}: {} cells, to residuals of {:e}", setup.name, setup.cells(), setup.flow.tolerance))?;
+        // Progress is the way of the residual's logarithm.
+        let target = -setup.flow.tolerance.log10();
+        let mut progress = (!self.options.quiet).then(|| Progress::new(0.0, target));
+        let mut ending = Ending::NotConverged;
+        let mut residual = f64::INFINITY;
+        for _ in 0..setup.flow.iterations {
+            if self.stop.load(Ordering::Relaxed) {
+                ending = Ending::Stopped;
+                break;
+            }
+            let info = flow.iterate().map_err(BuildError::from)?;
+            residual = info.largest();
+            if let Some(progress) = &mut progress {
+                progress.tell(info.iterations as u64, (-residual.log10()).clamp(0.0, target), || {
+                    format!("residual {residual:.2e}")
+                });
+            }
+            if info.iterations % 50 == 1 {
+                log.line(&format!("iteration {}: residual {residual:.3e}", info.iterations))?;
+            }
+            if residual <= setup.flow.tolerance {
+                ending = Ending::Done;
+                break;
+            }
+        }
+        if let Some(progress) = progress.take() {
+            let word = match ending {
+                Ending::Done => "converged",
+                Ending::Stopped => "stopped",
+                Ending::NotConverged => "not converged",
+            };
+            progress.finish(flow.iterations() as u64, word);
+        }
+        log.line(&format!("{} iterations, residual {residual:.3e}", flow.iterations()))?;
+        let still = crate::still::Still::default();
+        let mut seen = Seen { flow: &mut flow, guests: &still, timings: coupling::Timings::default() };
+        let info = StepInfo { step: seen.steps(), time: 0.0, dt: 0.0, courant: 0.0 };
+        audience.snapshot(&mut seen, 0, &info)?;
+        audience.finish(&mut seen)?;
+        let extremes = Extremes::default();
+        let seconds = audience.seconds;
+        let mut result = RunResult::new(setup, &mut seen, &extremes, None, &audience, ending, self.folder());
+        result.set("residual", residual.into());
+        Ok(result.with_timings(watch.elapsed(), self.options.threads, seconds, &seen).write()?)
+    }
+}
+
+fn see<const D: usize, P, A>(simulation: &mut Simulation<D, P, A>) -> Seen<'_, D, A, P> {
+    let timings = *simulation.timings();
+    Seen { flow: &mut simulation.flow, guests: &simulation.particles, timings }
+}
+
+/// Shortest and longest step, largest Courant number.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extremes(pub(crate) [f64; 3]);
+
+impl Default for Extremes {
+    fn default() -> Self {
+        Self([f64::INFINITY, 0.0, 0.0])
+    }
+}
+
+/// All that is saved.
+struct Whole<'a, S, K> {
+    simulation: &'a mut S,
+    books: &'a mut K,
+    extremes: &'a mut Extremes,
+    fingerprint: u64,
+    /// Absent while a state is loaded: files go on from the time that has to be known first.
+    audience: Option<&'a Audience>,
+}
+
+/// A number that takes 64 bits as two that doubles hold exactly.
+fn halves(n: u64) -> [f64; 2] {
+    [(n >> 32) as f64, (n & 0xffff_ffff) as f64]
+}
+
+impl<S: Checkpoint, K: Checkpoint> Checkpoint for Whole<'_, S, K> {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        sink("scene", &halves(self.fingerprint));
+        sink("extremes", &self.extremes.0);
+        self.simulation.save(sink);
+        self.books.save(&mut |name, values| sink(&format!("books.{name}"), values));
+        if let Some(audience) = self.audience {
+            audience.save(&mut |name, values| sink(&format!("watch.{name}"), values));
+        }
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        if RestartError::take(source, "scene", 2)? != halves(self.fingerprint) {
+            return Err(RestartError::Differs("the scene".into()));
+        }
+        self.extremes.0.copy_from_slice(RestartError::take(source, "extremes", 3)?);
+        self.simulation.restore(source)?;
+        self.books.restore(&|name| source(&format!("books.{name}")))
+    }
+}
+
+/// What the observers have kept.
+struct Kept<'a>(&'a mut Audience);
+
+impl Checkpoint for Kept<'_> {
+    fn save(&self, _: &mut dyn FnMut(&str, &[f64])) {}
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        self.0.restore(&|name| source(&format!("watch.{name}")))
+    }
+}
+
+/// The observer of the time loop: everyone who looks on, progress, log, saved states.
+struct Look<K> {
+    audience: Audience,
+    books: K,
+    extremes: Extremes,
+    progress: Option<Progress>,
+    log: Log,
+    state: PathBuf,
+    fingerprint: u64,
+    save_every: Duration,
+    saved: Instant,
+    /// No snapshot but the last.
+    only_end: bool,
+    /// Wall seconds spent on states.
+    output: f64,
+}
+
+impl<K: Checkpoint> Look<K> {
+    fn save<S: Checkpoint>(&mut self, simulation: &mut S) -> Result<(), CouplingError> {
+        let start = Instant::now();
+        self.audience.flush()?;
+        let whole = Whole {
+            simulation,
+            books: &mut self.books,
+            extremes: &mut self.extremes,
+            fingerprint: self.fingerprint,
+            audience: Some(&self.audience),
+        };
+        coupling::save(&self.state, &whole).map_err(|e| output("saving the state in", &self.state)(io::Error::other(e)))?;
+        self.saved = Instant::now();
+        self.output += start.elapsed().as_secs_f64();
+        Ok(())
+    }
+}
+
+impl<const D: usize, P, A, K> Observer<Simulation<D, P, A>> for Look<K>
+where
+    P: Guests + Immersed<D, A>,
+    A: Flow<D> + FlowSolver<D>,
+    K: Books<Simulation<D, P, A>>,
+{
+    fn begin(&mut self, simulation: &mut Simulation<D, P, A>) {
+        self.books.begin(simulation);
+    }
+    fn step(&mut self, simulation: &mut Simulation<D, P, A>, info: &StepInfo) -> Result<(), CouplingError> {
+        self.books.step(simulation, info)?;
+        let [low, high, courant] = self.extremes.0;
+        self.extremes.0 = [low.min(info.dt), high.max(info.dt), courant.max(info.courant)];
+        self.audience.step(&mut see(simulation), info)?;
+        if let Some(progress) = &mut self.progress {
+            progress.step(info.step, || Status {
+                time: info.time,
+                dt: info.dt,
+                courant: info.courant,
+                divergence: FlowSolver::statistics(&mut simulation.flow).divergence * info.dt,
+            });
+        }
+        if self.saved.elapsed() >= self.save_every {
+            self.save(simulation)?;
+        }
+        Ok(())
+    }
+    fn snapshot(&mut self, simulation: &mut Simulation<D, P, A>, index: usize, info: &StepInfo) -> Result<(), CouplingError> {
+        if self.only_end && index == 0 {
+            return Ok(());
+        }
+        self.audience.snapshot(&mut see(simulation), index, info)?;
+        let StepInfo { step, time, dt, courant } = *info;
+        let flow = FlowSolver::statistics(&mut simulation.flow);
+        self.log.line(&format!(
+            "t = {time:.6e} s, step {step}, dt {dt:.3e} s, Courant {courant:.3}, kinetic energy {:.6e} J",
+            flow.kinetic_energy
+        ))
+    }
+}

@@ -1,0 +1,94 @@
+//! Time, output, what is measured.
+use super::{Kind, METRES, POINT, Range, Table, optional, required};
+
+const SECONDS: Kind = Kind::Number(Range::Positive, "s");
+
+pub(super) static TIME_TABLE: Table = Table {
+    about: "How long, in which steps. (A steady flow is iterated, whatever stands here.)",
+    keys: &[
+        required("end", SECONDS, "End of the run.", "0.6"),
+        optional("dt", SECONDS, "the largest that is stable at the Courant number", "The step.", "1e-4"),
+        optional("courant", Kind::Number(Range::Above(0.0, 1.5), "1"), "0.1 with bodies that move, else 0.4", "Largest Courant number of an automatic step.", "0.25"),
+        optional("ramp", Kind::Flag, "true with free bodies", "Do steps begin small and grow, as a start from rest wants it?", "false"),
+    ],
+};
+
+pub(super) static OUTPUT: Table = Table {
+    about: "What is written to the folder.",
+    keys: &[
+        optional("folder", Kind::File, "out/NAME", "The folder, from where the program is started.", "\"out/cavity\""),
+        optional("snapshots", Kind::Whole(0, 1_000_000), "50", "Equal intervals of the run with a snapshot at each end; 0 writes the end alone.", "100"),
+        optional("fields", Kind::Flag, "true", "VTK files of λ, velocity and pressure at the snapshots, for ParaView.", "false"),
+        optional("bodies", Kind::Flag, "true", "VTK files of the bodies and `trajectories.csv`.", "false"),
+        optional("images", Kind::Flag, "true", "PNG pictures of plane scenes, or of a slice.", "false"),
+        optional("image_every", Kind::Whole(1, 1_000_000), "1", "A picture at every so many snapshots.", "10"),
+        optional(
+            "quantity",
+            Kind::Word(&[("speed", "|u|"), ("u", "velocity along x"), ("v", "along y"), ("w", "along z"), ("pressure", "pressure"), ("vorticity", "of the plane")]),
+            "speed",
+            "What pictures show.",
+            "\"vorticity\"",
+        ),
+        optional("limits", Kind::List(&Kind::Number(Range::Any, ""), 2, 2), "those of each picture", "Ends of the colour bar, in the quantity's unit.", "[0.0, 0.03]"),
+        optional(
+            "slice",
+            Kind::Table(&SLICE),
+            "normal to z, through the middle",
+            "The slice that pictures of scenes in space show.",
+            "{ normal = \"y\", at = 0.05 }",
+        ),
+    ],
+};
+
+static SLICE: Table = Table {
+    about: "A slice of a scene in space.",
+    keys: &[
+        optional("normal", Kind::Word(&[("x", "x"), ("y", "y"), ("z", "z")]), "z", "The axis it is normal to.", "\"y\""),
+        optional("at", METRES, "the middle of the box", "Where on that axis.", "0.05"),
+    ],
+};
+
+pub(super) static PROBES: Table = Table {
+    about: "Points whose velocity and pressure go to `probes/NAME.csv`.",
+    keys: &[
+        required("name", Kind::Text, "Name of the file.", "\"wake\""),
+        required("points", Kind::List(&POINT, 1, 10_000), "The points.", "[[0.15, 0.2], [0.25, 0.2]]"),
+        optional("every", SECONDS, "every step", "How often.", "0.01"),
+    ],
+};
+
+pub(super) static FORCES: Table = Table {
+    about: "Loads of the fluid on bodies go to `forces.csv` at every step, and their means, amplitudes and frequencies to the results. \
+            With a speed and an area there are coefficients C = 2F/(ρU²A), too.",
+    keys: &[
+        optional("velocity", Kind::Number(Range::Positive, "m/s"), "no coefficients", "Reference speed U.", "0.2"),
+        optional("area", LENGTH_OR_AREA, "no coefficients", "Reference area A (plane scenes: a length).", "0.1"),
+        optional("start", Kind::Number(Range::NotNegative, "s"), "half of the run", "Means and amplitudes are taken from here on.", "5.0"),
+        optional("every", SECONDS, "every step", "How often a line is written; means are of every step.", "0.01"),
+    ],
+};
+
+const LENGTH_OR_AREA: Kind = Kind::Number(Range::Positive, "m²; m");
+
+pub(super) static AVERAGES: Table = Table {
+    about: "Means in time, written at the end of the run (`averages.vti`).",
+    keys: &[
+        optional("start", Kind::Number(Range::NotNegative, "s"), "half of the run", "When to begin.", "10.0"),
+        optional(
+            "profile",
+            Kind::Word(&[("x", "along x"), ("y", "along y"), ("z", "along z"), ("none", "none")]),
+            "none",
+            "Means over the other axes as well, as a table along this one (`profile.csv`).",
+            "\"y\"",
+        ),
+    ],
+};
+
+pub(super) static CHECKPOINT: Table = Table {
+    about: "Saved states. The one before is kept, too.",
+    keys: &[
+        optional("every", SECONDS, "10", "Seconds of the wall clock between two of them.", "60.0"),
+        optional("at_end", Kind::Flag, "true", "One at the end, so that a longer run may go on from there?", "false"),
+    ],
+};
+

@@ -1,0 +1,170 @@
+//! What a scene says, as the libraries take it.
+mod bodies;
+mod factories;
+mod flow;
+mod grid;
+mod measures;
+mod shapes;
+mod sides;
+
+pub(crate) use bodies::{BodySetup, Bodies, ContactLawChoice, CouplingSetup, ForcingChoice, Motion, StrategyChoice};
+pub(crate) use factories::InflowSetup;
+pub(crate) use flow::{Algorithm, FlowSetup};
+pub(crate) use measures::{Averages, Forces, Images, Output, ProbeSetup, Quantity};
+
+use crate::document::{Document, Place};
+use crate::expression::Expression;
+use crate::problem::{Problem, Problems};
+use crate::reader::Reader;
+use crate::schema;
+use coupling::WeightBalance;
+use fv_mesh::{Axis, Fluid, Side, Sides};
+use interfaces::Vector;
+use std::path::{Path, PathBuf};
+
+/// Everything that a scene says.
+pub(crate) struct Setup {
+    /// The scene's name: that of its file.
+    pub(crate) name: String,
+    pub(crate) title: String,
+    /// Two or three.
+    pub(crate) axes: Vec<Axis>,
+    pub(crate) sides: Vec<[Side; 2]>,
+    pub(crate) fluid: Fluid,
+    pub(crate) gravity: Vector,
+    /// Body force per mass, of the time.
+    pub(crate) force: Option<[Expression; 3]>,
+    pub(crate) initial: Option<[Expression; 3]>,
+    pub(crate) flow: FlowSetup,
+    pub(crate) bodies: Bodies,
+    pub(crate) balance: WeightBalance,
+    pub(crate) end: f64,
+    pub(crate) dt: Option<f64>,
+    pub(crate) courant: f64,
+    pub(crate) ramp: bool,
+    pub(crate) output: Output,
+    pub(crate) probes: Vec<ProbeSetup>,
+    pub(crate) forces: Option<Forces>,
+    pub(crate) averages: Option<Averages>,
+    /// Seconds of the wall clock between saved states.
+    pub(crate) save_every: f64,
+    pub(crate) save_at_end: bool,
+}
+
+/// Where the scene is being read.
+pub(crate) struct Context<'a> {
+    /// Folder of the file: paths in it begin there.
+    pub(crate) folder: &'a Path,
+    pub(crate) dim: usize,
+}
+
+impl Context<'_> {
+    pub(crate) fn path(&self, text: &str) -> PathBuf {
+        self.folder.join(text)
+    }
+}
+
+impl Setup {
+    /// Reads a document that has not been checked yet; `path` is its file's.
+    pub(crate) fn new(document: &Document, path: &Path) -> Result<Self, Problems> {
+        schema::check(document)?;
+        let root = Reader::new(&document.root, Place::File(0..0), "");
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let name = path.file_stem().map_or("scene".into(), |stem| stem.to_string_lossy().into_owned());
+        Self::read(&root, folder, name).map_err(|problem| document.problems(vec![problem]))
+    }
+
+    fn read(root: &Reader<'_>, folder: &Path, name: String) -> Result<Self, Problem> {
+        let axes = grid::read(root, folder)?;
+        let dim = axes.len();
+        let context = Context { folder, dim };
+        let sides = sides::read(root, &context)?;
+        let fluid = flow::fluid(root)?;
+        let flow = flow::read(root)?;
+        let gravity = root.vector_of("gravity", dim)?.unwrap_or_default();
+        let bodies = bodies::read(root, &context, &axes, &sides, fluid)?;
+        let force = root.formulas("force", &["t"], dim)?;
+        let initial = match root.table("initial") {
+            Some(table) => table.formulas("velocity", &["x", "y", "z"], dim)?,
+            None => None,
+        };
+        let empty = crate::document::Section::default();
+        let table = |key: &str| root.table(key).unwrap_or(Reader::new(&empty, Place::File(0..0), key));
+        let (time, checkpoint) = (table("time"), table("checkpoint"));
+        let end = time.number("end").unwrap_or(1.0);
+        let moved = bodies.any_moves();
+        let periodic_along = |a: usize| matches!(sides[a][0], Side::Periodic);
+        let balance = match bodies.coupling.balance {
+            Some(balance) => balance,
+            None if moved && (0..dim).any(|a| gravity[a] != 0.0 && periodic_along(a)) => WeightBalance::NetWeight,
+            None => WeightBalance::None,
+        };
+        let setup = Self {
+            title: root.text("title").map_or_else(|| name.clone(), Into::into),
+            output: measures::output(&table("output"), &name, &axes)?,
+            probes: measures::probes(root, &context, &axes, &sides)?,
+            forces: root.table("forces").map(|t| measures::forces(&t, end)),
+            averages: root.table("averages").map(|t| measures::averages(&t, end, dim)).transpose()?,
+            name,
+            fluid,
+            gravity,
+            force,
+            initial,
+            balance,
+            end,
+            dt: time.number("dt"),
+            courant: time.number("courant").unwrap_or(if moved { 0.1 } else { 0.4 }),
+            ramp: time.flag("ramp").unwrap_or(bodies.any_free()),
+            save_every: checkpoint.number("every").unwrap_or(10.0),
+            save_at_end: checkpoint.flag("at_end").unwrap_or(true),
+            axes,
+            sides,
+            flow,
+            bodies,
+        };
+        setup.agrees(root)?;
+        Ok(setup)
+    }
+
+    /// Does all of it go together?
+    fn agrees(&self, root: &Reader<'_>) -> Result<(), Problem> {
+        let dim = self.dim();
+        let check = |key: &str, sides: Result<(), fv_mesh::FlowError>| sides.map_err(|e| root.fail(key, e));
+        match dim {
+            2 => check("sides", Sides::new([self.sides[0].clone(), self.sides[1].clone()]).map(drop))?,
+            _ => check("sides", Sides::new([self.sides[0].clone(), self.sides[1].clone(), self.sides[2].clone()]).map(drop))?,
+        }
+        let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
+        let flow = root.table("flow");
+        let fail = |key: &str, message: &str| match &flow {
+            Some(flow) => flow.fail(key, message),
+            None => root.fail("flow", message),
+        };
+        match self.flow.algorithm {
+            Algorithm::Simple if bodies => {
+                return Err(fail("algorithm", "steady flow with bodies is not offered yet; take \"projection\" and let the run go on until it is steady"));
+            }
+            Algorithm::Simple if !self.probes.is_empty() || self.averages.is_some() => {
+                return Err(fail("algorithm", "a steady flow has no history; leave out probes and averages, or take \"projection\""));
+            }
+            Algorithm::Piso if bodies && self.bodies.forcing() != ForcingChoice::Hfdib => {
+                return Err(fail("algorithm", "\"piso\" goes with coupling.forcing = \"hfdib\" (the paper's algorithm) only; take \"projection\""));
+            }
+            Algorithm::Piso if self.dt.is_none() => {
+                return Err(fail("algorithm", "\"piso\" has no stability limit to choose a step by; give time.dt"));
+            }
+            _ => {}
+        }
+        if dim == 2 && self.bodies.lubrication.is_some() {
+            return Err(root.fail("lubrication", "films are for solids in space; leave this out in a plane scene"));
+        }
+        Ok(())
+    }
+
+    pub(crate) fn dim(&self) -> usize {
+        self.axes.len()
+    }
+    pub(crate) fn cells(&self) -> usize {
+        self.axes.iter().map(Axis::cells).product()
+    }
+}

@@ -1,0 +1,355 @@
+//! Bodies, their contacts and how they are coupled to the flow.
+use super::factories::{self, InflowSetup};
+use super::{Context, shapes};
+use crate::expression::Expression;
+use crate::problem::Problem;
+use crate::reader::Reader;
+use coupling::WeightBalance;
+use dem::{HalfSpace, Material, Shape, Tether};
+use fv_mesh::{Axis, Fluid, Side};
+use ibm::Kernel;
+use interfaces::{Aabb, Freedom, Point, Pose, Twist, Vector};
+use nalgebra::Unit;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// A body at the start.
+#[derive(Clone)]
+pub(crate) struct BodySetup {
+    pub(crate) name: String,
+    pub(crate) shape: Arc<dyn Shape>,
+    pub(crate) material: Material,
+    pub(crate) pose: Pose,
+    pub(crate) twist: Twist,
+    pub(crate) motion: Motion,
+    pub(crate) tether: Option<Tether>,
+}
+
+/// What moves a body.
+#[derive(Clone, Debug)]
+pub(crate) enum Motion {
+    /// The flow, gravity and contacts, as far as it is free.
+    Free(Freedom),
+    Fixed,
+    /// Formulas of the time: displacement, and angle about an axis.
+    Prescribed { shift: Option<[Expression; 3]>, turn: Option<(Expression, Unit<Vector>)> },
+}
+
+/// All about bodies.
+pub(crate) struct Bodies {
+    pub(crate) list: Vec<BodySetup>,
+    pub(crate) inflows: Vec<InflowSetup>,
+    pub(crate) exits: Vec<HalfSpace>,
+    pub(crate) law: ContactLawChoice,
+    pub(crate) length_factor: f64,
+    pub(crate) adhesion: bool,
+    /// May they overlap at the start?
+    pub(crate) overlaps: bool,
+    /// Walls of the box that they touch.
+    pub(crate) walls: Vec<HalfSpace>,
+    pub(crate) wall_material: Material,
+    /// Roughness of the films.
+    pub(crate) lubrication: Option<f64>,
+    pub(crate) coupling: CouplingSetup,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ContactLawChoice {
+    Chen,
+    Potential,
+    Rolling,
+    None,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum StrategyChoice {
+    OneSolve,
+    Iterated,
+    Explicit,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ForcingChoice {
+    Auto,
+    Smooth,
+    Hfdib,
+    CutLinks,
+}
+
+pub(crate) struct CouplingSetup {
+    pub(crate) strategy: StrategyChoice,
+    forcing: ForcingChoice,
+    pub(crate) balance: Option<WeightBalance>,
+    pub(crate) virtual_mass: Option<f64>,
+    pub(crate) passes: Option<usize>,
+    pub(crate) kernel: Option<Kernel>,
+}
+
+impl Bodies {
+    /// Is there a body that moves, or will be?
+    pub(crate) fn any_moves(&self) -> bool {
+        !self.inflows.is_empty() || self.list.iter().any(|b| !matches!(b.motion, Motion::Fixed))
+    }
+    /// Is there a body that the flow moves, or will be?
+    pub(crate) fn any_free(&self) -> bool {
+        !self.inflows.is_empty() || self.list.iter().any(|b| matches!(b.motion, Motion::Free(_)))
+    }
+    /// How the fluid is made to follow them.
+    pub(crate) fn forcing(&self) -> ForcingChoice {
+        match self.coupling.forcing {
+            ForcingChoice::Auto if self.any_moves() => ForcingChoice::Smooth,
+            ForcingChoice::Auto => ForcingChoice::CutLinks,
+            choice => choice,
+        }
+    }
+}
+
+pub(super) fn read(
+    root: &Reader<'_>,
+    context: &Context<'_>,
+    axes: &[Axis],
+    sides: &[[Side; 2]],
+    fluid: Fluid,
+) -> Result<Bodies, Problem> {
+    let materials = Materials::read(root)?;
+    let bounds = bounds(axes);
+    let mut list = Vec::new();
+    for (number, t) in root.tables("bodies").into_iter().enumerate() {
+        list.push(body(&t, context, &materials, number)?);
+    }
+    let periodic = |a: usize| sides.get(a).is_some_and(|pair| matches!(pair[0], Side::Periodic));
+    let place = factories::Place { bounds, periodic: [0, 1, 2].map(periodic) };
+    let inflows = factories::read(root, context, &materials, &place, &mut list)?;
+    let mut names: Vec<&str> = list.iter().map(|b| b.name.as_str()).collect();
+    names.sort_unstable();
+    if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
+        return Err(root.fail("bodies", format!("two bodies are called \"{}\"; give each a name of its own", pair[0])));
+    }
+    let mut exits = Vec::new();
+    for t in root.tables("exits") {
+        let point = t.point_of("point", context.dim)?.unwrap_or_default();
+        let normal = t.vector_of("normal", context.dim)?.unwrap_or_default();
+        let plane = HalfSpace::new(point, normal).map_err(|e| t.fail("normal", e))?;
+        exits.push(plane);
+    }
+    let contact = root.table("contact");
+    let word = |key: &str| contact.as_ref().and_then(|t| t.text(key));
+    let first = list.first().map_or(materials.default, |b| b.material);
+    let wall_material = match word("wall_material") {
+        Some(name) => materials.get(name, contact.as_ref().unwrap_or(root), "wall_material")?,
+        None => first,
+    };
+    let touches = contact.as_ref().and_then(|t| t.flag("walls")).unwrap_or(true);
+    let coupling = coupling(root);
+    let bodies = Bodies {
+        list,
+        inflows,
+        exits,
+        law: match word("law") {
+            Some("potential") => ContactLawChoice::Potential,
+            Some("rolling") => ContactLawChoice::Rolling,
+            Some("none") => ContactLawChoice::None,
+            _ => ContactLawChoice::Chen,
+        },
+        length_factor: contact.as_ref().and_then(|t| t.number("length_factor")).unwrap_or(4.0),
+        adhesion: contact.as_ref().and_then(|t| t.flag("adhesion")).unwrap_or(false),
+        overlaps: contact.as_ref().and_then(|t| t.flag("overlaps")).unwrap_or(false),
+        walls: if touches { walls(axes, sides).map_err(|e| root.fail("sides", e))? } else { Vec::new() },
+        wall_material,
+        lubrication: root.table("lubrication").map(|t| t.number("roughness").unwrap_or(1e-3)),
+        coupling,
+    };
+    agrees(root, &bodies, fluid)?;
+    Ok(bodies)
+}
+
+fn agrees(root: &Reader<'_>, bodies: &Bodies, fluid: Fluid) -> Result<(), Problem> {
+    let coupling = root.table("coupling");
+    let fail = |key: &str, message: String| coupling.as_ref().map_or_else(|| root.fail("coupling", &message), |t| t.fail(key, &message));
+    let forcing = bodies.forcing();
+    if forcing == ForcingChoice::CutLinks && bodies.any_moves() {
+        return Err(fail("forcing", "cut links are for bodies at rest; take \"smooth\", or make every body's motion \"fixed\"".into()));
+    }
+    if forcing == ForcingChoice::CutLinks && !bodies.list.is_empty() && fluid.viscosity == 0.0 {
+        return Err(root.fail("fluid", "walls by cut links need a viscosity; give `nu` above 0"));
+    }
+    let chen = bodies.law == ContactLawChoice::Chen && bodies.lubrication.is_none();
+    if bodies.coupling.strategy != StrategyChoice::OneSolve && !chen {
+        return Err(fail("strategy", "\"iterated\" and \"explicit\" go with the contact law \"chen\" without lubrication only; take \"one-solve\"".into()));
+    }
+    if bodies.lubrication.is_some() && bodies.law != ContactLawChoice::Chen {
+        return Err(root.fail("lubrication", "films go with the contact law \"chen\" only; leave out contact.law or lubrication"));
+    }
+    Ok(())
+}
+
+fn coupling(root: &Reader<'_>) -> CouplingSetup {
+    let t = root.table("coupling");
+    let word = |key: &str| t.as_ref().and_then(|t| t.text(key));
+    CouplingSetup {
+        strategy: match word("strategy") {
+            Some("iterated") => StrategyChoice::Iterated,
+            Some("explicit") => StrategyChoice::Explicit,
+            _ => StrategyChoice::OneSolve,
+        },
+        forcing: match word("forcing") {
+            Some("smooth") => ForcingChoice::Smooth,
+            Some("hfdib") => ForcingChoice::Hfdib,
+            Some("cut-links") => ForcingChoice::CutLinks,
+            _ => ForcingChoice::Auto,
+        },
+        balance: match word("balance") {
+            Some("none") => Some(WeightBalance::None),
+            Some("net-weight") => Some(WeightBalance::NetWeight),
+            Some("zero-flow") => Some(WeightBalance::ZeroFlow),
+            _ => None,
+        },
+        virtual_mass: t.as_ref().and_then(|t| t.number("virtual_mass")),
+        passes: t.as_ref().and_then(|t| t.whole("passes")),
+        kernel: match word("kernel") {
+            Some("yang") => Some(Kernel::Yang),
+            Some("quartic") => Some(Kernel::QuarticSpline),
+            Some("quintic") => Some(Kernel::QuinticSpline),
+            _ => None,
+        },
+    }
+}
+
+/// The box; flat in the plane.
+fn bounds(axes: &[Axis]) -> Aabb {
+    let end = |f: fn(&Axis) -> f64| Point::from([0, 1, 2].map(|a| axes.get(a).map_or(0.0, f)));
+    Aabb { min: end(Axis::lower), max: end(Axis::upper) }
+}
+
+/// The walls of the box, as bodies touch them: sides that are walls or planes of symmetry.
+fn walls(axes: &[Axis], sides: &[[Side; 2]]) -> Result<Vec<HalfSpace>, dem::DemError> {
+    let mut out = Vec::new();
+    for (a, (axis, pair)) in axes.iter().zip(sides).enumerate() {
+        for (side, (at, sign)) in pair.iter().zip([(axis.lower(), 1.0), (axis.upper(), -1.0)]) {
+            if matches!(side, Side::Wall(_) | Side::FreeSlip) {
+                let (mut point, mut normal) = (Point::origin(), Vector::zeros());
+                (point[a], normal[a]) = (at, sign);
+                out.push(HalfSpace::new(point, normal)?);
+            }
+        }
+    }
+    Ok(out)
+}
+
+/// Materials by name.
+pub(super) struct Materials {
+    named: HashMap<String, Material>,
+    default: Material,
+}
+
+impl Materials {
+    fn read(root: &Reader<'_>) -> Result<Self, Problem> {
+        let mut named = HashMap::new();
+        for (name, t) in root.named("materials") {
+            let default = Material::default();
+            let number = |key: &str, default: f64| t.number(key).unwrap_or(default);
+            let material = Material {
+                density: number("density", default.density),
+                youngs_modulus: number("youngs_modulus", default.youngs_modulus),
+                poisson_ratio: number("poisson_ratio", default.poisson_ratio),
+                damping: number("damping", default.damping),
+                restitution: number("restitution", default.restitution),
+                friction: number("friction", default.friction),
+                rolling_friction: number("rolling_friction", default.rolling_friction),
+            };
+            material.check().map_err(|e| t.fail_here(e))?;
+            named.insert(name.to_owned(), material);
+        }
+        Ok(Self { named, default: Material::default() })
+    }
+
+    fn get(&self, name: &str, t: &Reader<'_>, key: &str) -> Result<Material, Problem> {
+        self.named.get(name).copied().ok_or_else(|| {
+            let mut known: Vec<_> = self.named.keys().map(String::as_str).collect();
+            known.sort_unstable();
+            let known = if known.is_empty() { "there are none".into() } else { format!("there are {}", known.join(", ")) };
+            t.fail(key, format!("there is no material \"{name}\" in `materials`; {known}"))
+        })
+    }
+
+    /// The material of the body in `t`.
+    pub(super) fn of(&self, t: &Reader<'_>) -> Result<Material, Problem> {
+        let mut material = match t.text("material") {
+            Some(name) => self.get(name, t, "material")?,
+            None => self.default,
+        };
+        if let Some(density) = t.number("density") {
+            material.density = density;
+        }
+        Ok(material)
+    }
+}
+
+/// What a body is free to do in a scene of so many dimensions.
+pub(super) fn freedom(dim: usize) -> Freedom {
+    if dim == 2 { Freedom::PLANAR } else { Freedom::FREE }
+}
+
+fn body(t: &Reader<'_>, context: &Context<'_>, materials: &Materials, number: usize) -> Result<BodySetup, Problem> {
+    let dim = context.dim;
+    let spin = match (t.number("spin"), t.vector("spin")) {
+        (Some(about_z), _) => Vector::new(0.0, 0.0, about_z),
+        (None, vector) => vector.unwrap_or_default(),
+    };
+    if dim == 2 && (spin.x != 0.0 || spin.y != 0.0) {
+        return Err(t.fail("spin", "bodies of a plane scene turn about z only; give a number"));
+    }
+    let motion = motion(t, dim)?;
+    let twist = Twist { linear: t.vector_of("velocity", dim)?.unwrap_or_default(), angular: spin };
+    if matches!(motion, Motion::Fixed) && twist != Twist::default() {
+        return Err(t.fail("motion", "a body that is fixed has no velocity; give motion \"prescribed\", or leave out velocity and spin"));
+    }
+    let tether = match t.table("tether") {
+        None => None,
+        Some(spring) => Some(Tether {
+            on_body: spring.vector("on_body").unwrap_or_default().into(),
+            anchor: spring.point_of("anchor", dim)?.unwrap_or_default(),
+            stiffness: spring.number("stiffness").unwrap_or(0.0),
+            damping: spring.number("damping").unwrap_or(0.0),
+        }),
+    };
+    Ok(BodySetup {
+        name: t.text("name").map_or_else(|| number.to_string(), Into::into),
+        shape: shapes::shape(t, "shape", context, 1.0)?,
+        material: materials.of(t)?,
+        pose: Pose {
+            position: t.point_of("position", dim)?.unwrap_or_default(),
+            orientation: shapes::orientation(t)?,
+        },
+        twist,
+        motion,
+        tether,
+    })
+}
+
+fn motion(t: &Reader<'_>, dim: usize) -> Result<Motion, Problem> {
+    let Some((kind, motion)) = t.choice("motion", "type") else { return Ok(Motion::Free(freedom(dim))) };
+    Ok(match kind {
+        "fixed" => Motion::Fixed,
+        "axes" => {
+            let all = freedom(dim);
+            let both = |a: [bool; 3], b: [bool; 3]| std::array::from_fn(|i| a[i] && b[i]);
+            let linear = both(motion.flags("linear").unwrap_or_default(), all.linear);
+            let angular = both(motion.flags("angular").unwrap_or_default(), all.angular);
+            Motion::Free(Freedom { linear, angular })
+        }
+        "prescribed" => {
+            let shift = motion.formulas("shift", &["t"], dim)?;
+            let axis = shapes::axis(&motion, "axis")?;
+            if dim == 2 && (axis.x != 0.0 || axis.y != 0.0) {
+                return Err(motion.fail("axis", "bodies of a plane scene turn about z only; leave this out"));
+            }
+            let turn = motion.formula("angle", &["t"])?.map(|angle| (angle, axis));
+            if shift.is_none() && turn.is_none() {
+                return Err(motion.fail_here("how does it move? Give `shift` or `angle`, or make it \"fixed\""));
+            }
+            Motion::Prescribed { shift, turn }
+        }
+        _ => Motion::Free(freedom(dim)),
+    })
+}

@@ -1,0 +1,71 @@
+//! The fluid and how its flow is computed.
+use crate::problem::Problem;
+use crate::reader::Reader;
+use fv_mesh::poisson::multigrid::MultigridParams;
+use fv_mesh::{Convection, Diffusion, Fluid, PressureSolver};
+
+/// The algorithm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Algorithm {
+    Projection,
+    Piso,
+    Simple,
+}
+
+/// How the flow is computed.
+#[derive(Clone, Debug)]
+pub(crate) struct FlowSetup {
+    pub(crate) algorithm: Algorithm,
+    pub(crate) convection: Convection,
+    pub(crate) diffusion: Option<Diffusion>,
+    pub(crate) pressure: PressureSolver,
+    /// Of a steady flow.
+    pub(crate) tolerance: f64,
+    pub(crate) iterations: usize,
+}
+
+pub(super) fn fluid(root: &Reader<'_>) -> Result<Fluid, Problem> {
+    let Some(t) = root.table("fluid") else { return Err(root.fail("fluid", "the fluid is missing")) };
+    let density = t.number("density").unwrap_or(1.0);
+    let viscosity = match (t.number("nu"), t.number("mu")) {
+        (Some(nu), None) => nu,
+        (None, Some(mu)) => mu / density,
+        (None, None) => return Err(t.fail_here("the viscosity is missing: give `nu` in m²/s or `mu` in Pa s")),
+        (Some(_), Some(_)) => return Err(t.fail("mu", "`nu` is given already; leave out one of the two")),
+    };
+    if !viscosity.is_finite() {
+        return Err(t.fail("mu", format!("{viscosity} m²/s follows for the kinematic viscosity; give a finite one")));
+    }
+    Ok(Fluid { density, viscosity })
+}
+
+pub(super) fn read(root: &Reader<'_>) -> Result<FlowSetup, Problem> {
+    let t = root.table("flow");
+    let word = |key: &str| t.as_ref().and_then(|t| t.text(key));
+    Ok(FlowSetup {
+        algorithm: match word("algorithm") {
+            Some("piso") => Algorithm::Piso,
+            Some("simple") => Algorithm::Simple,
+            _ => Algorithm::Projection,
+        },
+        convection: match word("convection") {
+            Some("upwind") => Convection::Upwind,
+            Some("linear-upwind") => Convection::LinearUpwind,
+            Some("quick") => Convection::Quick,
+            Some("limited") => Convection::Limited,
+            _ => Convection::Central,
+        },
+        diffusion: match word("diffusion") {
+            Some("explicit") => Some(Diffusion::Explicit),
+            Some("implicit") => Some(Diffusion::Implicit),
+            _ => None,
+        },
+        pressure: match word("pressure") {
+            Some("direct") => PressureSolver::Direct,
+            Some("multigrid") => PressureSolver::Multigrid(MultigridParams::default()),
+            _ => PressureSolver::Auto,
+        },
+        tolerance: t.as_ref().and_then(|t| t.number("tolerance")).unwrap_or(1e-6),
+        iterations: t.as_ref().and_then(|t| t.whole("iterations")).unwrap_or(5000),
+    })
+}

@@ -1,0 +1,164 @@
+//! What is written and measured.
+use super::Context;
+use crate::problem::Problem;
+use crate::reader::Reader;
+use fv_mesh::{Axis, Side};
+use std::path::PathBuf;
+
+/// Files of a run.
+#[derive(Clone, Debug)]
+pub(crate) struct Output {
+    pub(crate) folder: PathBuf,
+    /// Intervals of the run; 0: the end alone.
+    pub(crate) snapshots: usize,
+    pub(crate) fields: bool,
+    pub(crate) bodies: bool,
+    pub(crate) images: Option<Images>,
+}
+
+/// Pictures of a run.
+#[derive(Clone, Debug)]
+pub(crate) struct Images {
+    /// One at every so many snapshots.
+    pub(crate) every: usize,
+    pub(crate) quantity: Quantity,
+    pub(crate) limits: Option<[f64; 2]>,
+    /// Axis that the slice is normal to, and where on it \[m\].
+    pub(crate) slice: (usize, f64),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Quantity {
+    Speed,
+    Component(usize),
+    Pressure,
+    Vorticity,
+}
+
+/// Points where the flow is written down.
+#[derive(Clone, Debug)]
+pub(crate) struct ProbeSetup {
+    pub(crate) name: String,
+    pub(crate) points: Vec<[f64; 3]>,
+    pub(crate) every: Option<f64>,
+}
+
+/// How loads are written down.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Forces {
+    /// Speed U and area A of coefficients.
+    pub(crate) reference: Option<(f64, f64)>,
+    pub(crate) start: f64,
+    pub(crate) every: Option<f64>,
+}
+
+/// Means in time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Averages {
+    pub(crate) start: f64,
+    pub(crate) profile: Option<usize>,
+}
+
+pub(super) fn output(t: &Reader<'_>, name: &str, axes: &[Axis]) -> Result<Output, Problem> {
+    let flag = |key: &str| t.flag(key).unwrap_or(true);
+    Ok(Output {
+        folder: t.text("folder").map_or_else(|| PathBuf::from("out").join(name), PathBuf::from),
+        snapshots: t.whole("snapshots").unwrap_or(50),
+        fields: flag("fields"),
+        bodies: flag("bodies"),
+        images: flag("images").then(|| images(t, axes)).transpose()?,
+    })
+}
+
+fn images(t: &Reader<'_>, axes: &[Axis]) -> Result<Images, Problem> {
+    let quantity = match t.text("quantity") {
+        Some("u") => Quantity::Component(0),
+        Some("v") => Quantity::Component(1),
+        Some("w") if axes.len() == 2 => {
+            return Err(t.fail("quantity", "a plane flow has no component w; take u, v or speed"));
+        }
+        Some("w") => Quantity::Component(2),
+        Some("pressure") => Quantity::Pressure,
+        Some("vorticity") => Quantity::Vorticity,
+        _ => Quantity::Speed,
+    };
+    let limits = t.numbers("limits").and_then(|l| Some([*l.first()?, *l.get(1)?]));
+    if limits.is_some_and(|[low, high]| low >= high) {
+        return Err(t.fail("limits", "the second limit has to be above the first"));
+    }
+    let middle = |a: usize| 0.5 * (axes[a].lower() + axes[a].upper());
+    let slice = match (t.table("slice"), axes.len()) {
+        (Some(_), 2) => return Err(t.fail("slice", "a plane scene is its own slice; leave this out")),
+        (None, 2) => (2, 0.0),
+        (None, _) => (2, middle(2)),
+        (Some(slice), _) => {
+            let normal = match slice.text("normal") {
+                Some("x") => 0,
+                Some("y") => 1,
+                _ => 2,
+            };
+            let at = slice.number("at").unwrap_or(middle(normal));
+            if axes[normal].locate(at).is_none() {
+                let (lower, upper) = (axes[normal].lower(), axes[normal].upper());
+                return Err(slice.fail("at", format!("{at} m is outside the box, which reaches from {lower} to {upper} m")));
+            }
+            (normal, at)
+        }
+    };
+    Ok(Images { every: t.whole("image_every").unwrap_or(1), quantity, limits, slice })
+}
+
+pub(super) fn probes(
+    root: &Reader<'_>,
+    context: &Context<'_>,
+    axes: &[Axis],
+    sides: &[[Side; 2]],
+) -> Result<Vec<ProbeSetup>, Problem> {
+    let mut out: Vec<ProbeSetup> = Vec::new();
+    for t in root.tables("probes") {
+        let name = t.text("name").unwrap_or_default().to_owned();
+        let good = !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || "-_. ".contains(c)) && !name.starts_with('.');
+        if !good {
+            return Err(t.fail("name", "this becomes the name of a file; use letters, digits, -, _ and ."));
+        }
+        if out.iter().any(|other| other.name == name) {
+            return Err(t.fail("name", format!("there are probes \"{name}\" already; give another name")));
+        }
+        let mut points = Vec::new();
+        for row in t.rows("points") {
+            if row.len() != context.dim {
+                return Err(t.fail("points", format!("{row:?} is no point of this scene; give {} coordinates", context.dim)));
+            }
+            for (a, &x) in row.iter().enumerate() {
+                let periodic = matches!(sides[a][0], Side::Periodic);
+                if !periodic && axes[a].locate(x).is_none() {
+                    let (lower, upper) = (axes[a].lower(), axes[a].upper());
+                    let message = format!("{row:?} is outside the box, which reaches from {lower} to {upper} m along that axis");
+                    return Err(t.fail("points", message));
+                }
+            }
+            points.push(std::array::from_fn(|a| row.get(a).copied().unwrap_or(0.0)));
+        }
+        out.push(ProbeSetup { name, points, every: t.number("every") });
+    }
+    Ok(out)
+}
+
+pub(super) fn forces(t: &Reader<'_>, end: f64) -> Forces {
+    Forces {
+        reference: t.number("velocity").zip(t.number("area")),
+        start: t.number("start").unwrap_or(0.5 * end),
+        every: t.number("every"),
+    }
+}
+
+pub(super) fn averages(t: &Reader<'_>, end: f64, dim: usize) -> Result<Averages, Problem> {
+    let profile = match t.text("profile") {
+        Some("x") => Some(0),
+        Some("y") => Some(1),
+        Some("z") if dim == 2 => return Err(t.fail("profile", "a plane scene has no axis z; take x or y")),
+        Some("z") => Some(2),
+        _ => None,
+    };
+    Ok(Averages { start: t.number("start").unwrap_or(0.5 * end), profile })
+}

@@ -1,0 +1,75 @@
+//! The sides of the box.
+use super::Context;
+use crate::problem::Problem;
+use crate::reader::Reader;
+use fv_mesh::{Patch, Profile, Side};
+
+/// What happens at the lower and upper side of every axis.
+pub(super) fn read(root: &Reader<'_>, context: &Context<'_>) -> Result<Vec<[Side; 2]>, Problem> {
+    let Some(sides) = root.table("sides") else { return Err(root.fail("sides", "the sides are missing")) };
+    if context.dim == 2
+        && let Some(key) = ["z", "z_min", "z_max"].into_iter().find(|key| sides.has(key))
+    {
+        return Err(sides.fail(key, "a plane scene has no sides along z; give the grid a third axis, or leave this out"));
+    }
+    let pair = |name: &str| -> Result<[Side; 2], Problem> {
+        let mut pair = [const { None }; 2];
+        for (slot, end) in pair.iter_mut().zip(["min", "max"]) {
+            let own = format!("{name}_{end}");
+            *slot = match (sides.has(&own), sides.has(name)) {
+                (true, true) => {
+                    return Err(sides.fail(&own, format!("`{name}` stands for both sides already; leave out one of the two")));
+                }
+                (true, false) => Some(side(&sides, &own, context)?),
+                (false, true) => Some(side(&sides, name, context)?),
+                (false, false) => {
+                    let message = format!("what happens at the side {own}? Give `{own}`, or `{name}` for both sides of the axis");
+                    return Err(sides.fail_here(message));
+                }
+            };
+        }
+        Ok(pair.map(|side| side.unwrap_or(Side::Periodic)))
+    };
+    ["x", "y", "z"][..context.dim].iter().map(|name| pair(name)).collect()
+}
+
+fn side(sides: &Reader<'_>, key: &str, context: &Context<'_>) -> Result<Side, Problem> {
+    let Some((kind, t)) = sides.choice(key, "type") else {
+        return Err(sides.fail(key, "what happens at this side?"));
+    };
+    Ok(match kind {
+        "periodic" => Side::Periodic,
+        "wall" => Side::Wall(t.vector_of("velocity", context.dim)?.unwrap_or_default().into()),
+        "symmetry" => Side::FreeSlip,
+        "inlet" => Side::Inlet(inlet(&t, context)?),
+        "outlet" => Side::ConvectiveOutlet,
+        "pressure" => Side::PressureOutlet(t.number("value").unwrap_or(0.0)),
+        _ => Side::Patches(
+            t.tables("list")
+                .iter()
+                .map(|patch| {
+                    let corner = |key: &str| patch.vector_of(key, context.dim).map(|v| v.unwrap_or_default().into());
+                    Ok(Patch { lower: corner("lower")?, upper: corner("upper")?, side: side(patch, "side", context)? })
+                })
+                .collect::<Result<_, _>>()?,
+        ),
+    })
+}
+
+fn inlet(t: &Reader<'_>, context: &Context<'_>) -> Result<Profile, Problem> {
+    let velocity = t.formulas("velocity", &["x", "y", "z", "t"], context.dim)?;
+    match (velocity, t.number("peak")) {
+        (None, Some(peak)) => Ok(Profile::Parabolic { peak }),
+        (Some(u), None) => {
+            if let [Some(x), Some(y), Some(z)] = u.each_ref().map(|u| u.fixed()) {
+                return Ok(Profile::Uniform([x, y, z]));
+            }
+            Ok(Profile::function(move |x, time| {
+                let variables = [x[0], x[1], x[2], time];
+                u.each_ref().map(|u| u.at(&variables))
+            }))
+        }
+        (Some(_), Some(_)) => Err(t.fail("peak", "the velocity is given already; leave out one of the two")),
+        (None, None) => Err(t.fail_here("what enters? Give `velocity`, or `peak` for a parabola")),
+    }
+}

@@ -1,0 +1,115 @@
+//! Who looks on while a scene runs.
+mod averages;
+mod fields;
+mod forces;
+mod images;
+mod probes;
+mod table;
+mod trajectories;
+
+pub(crate) use averages::AveragesWatch;
+pub(crate) use fields::FieldsWatch;
+pub(crate) use forces::ForcesWatch;
+pub(crate) use images::ImagesWatch;
+pub(crate) use probes::ProbesWatch;
+pub(crate) use trajectories::TrajectoriesWatch;
+
+use crate::view::View;
+use coupling::{CouplingError, StepInfo};
+use ibm::SolidFraction;
+use interfaces::Checkpoint;
+use serde_json::Value;
+use std::path::Path;
+
+/// Someone who looks on. What it keeps from step to step is saved with the run's state.
+pub(crate) trait Watch: Checkpoint {
+    /// A word for states and results.
+    fn name(&self) -> &'static str;
+    /// After every step.
+    fn step(&mut self, view: &mut dyn View, info: &StepInfo) -> Result<(), CouplingError> {
+        let _ = (view, info);
+        Ok(())
+    }
+    /// At the start and the end of every interval; `lambda` is the solid fraction of the cells.
+    fn snapshot(&mut self, view: &mut dyn View, lambda: &[f64], index: usize, info: &StepInfo) -> Result<(), CouplingError> {
+        let _ = (view, lambda, index, info);
+        Ok(())
+    }
+    /// Before a state is saved, and at the end: nothing may wait in memory.
+    fn flush(&mut self) -> Result<(), CouplingError> {
+        Ok(())
+    }
+    /// The run is over: the last files.
+    fn finish(&mut self, view: &mut dyn View) -> Result<(), CouplingError> {
+        let _ = view;
+        Ok(())
+    }
+    /// What goes into the results, if anything.
+    fn results(&self) -> Option<Value> {
+        None
+    }
+}
+
+/// All who look on, and the solid fraction they share.
+pub(crate) struct Audience {
+    pub(crate) watches: Vec<Box<dyn Watch>>,
+    fraction: SolidFraction,
+    lambda: Vec<f64>,
+    /// Wall seconds spent on looking.
+    pub(crate) seconds: f64,
+}
+
+impl Audience {
+    pub(crate) fn new(watches: Vec<Box<dyn Watch>>) -> Self {
+        Self { watches, fraction: SolidFraction::new(), lambda: Vec::new(), seconds: 0.0 }
+    }
+
+    pub(crate) fn step(&mut self, view: &mut dyn View, info: &StepInfo) -> Result<(), CouplingError> {
+        self.watches.iter_mut().try_for_each(|watch| watch.step(view, info))
+    }
+
+    pub(crate) fn snapshot(&mut self, view: &mut dyn View, index: usize, info: &StepInfo) -> Result<(), CouplingError> {
+        let start = std::time::Instant::now();
+        let lattice = view.lattice();
+        self.lambda.clear();
+        self.lambda.resize((0..view.dim()).map(|a| view.axis(a).cells()).product(), 0.0);
+        if view.bodies().n_bodies() > 0 {
+            self.fraction.update(&lattice, view.bodies())?;
+            self.fraction.add_to_dense(&lattice, &mut self.lambda);
+        }
+        let lambda = &self.lambda;
+        let seen = self.watches.iter_mut().try_for_each(|watch| watch.snapshot(view, lambda, index, info));
+        self.seconds += start.elapsed().as_secs_f64();
+        seen
+    }
+
+    pub(crate) fn flush(&mut self) -> Result<(), CouplingError> {
+        self.watches.iter_mut().try_for_each(|watch| watch.flush())
+    }
+
+    pub(crate) fn finish(&mut self, view: &mut dyn View) -> Result<(), CouplingError> {
+        self.watches.iter_mut().try_for_each(|watch| watch.finish(view))?;
+        self.flush()
+    }
+}
+
+impl Checkpoint for Audience {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        for watch in &self.watches {
+            watch.save(&mut |name, values| sink(&format!("{}.{name}", watch.name()), values));
+        }
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), interfaces::RestartError> {
+        for watch in &mut self.watches {
+            let prefix = watch.name();
+            watch.restore(&|name| source(&format!("{prefix}.{name}")))?;
+        }
+        Ok(())
+    }
+}
+
+/// An error of a file.
+pub(crate) fn output(what: impl Into<String>, path: &Path) -> impl FnOnce(std::io::Error) -> CouplingError {
+    let what = format!("{} {} (is the disk full, or the folder not yours to write to?)", what.into(), path.display());
+    move |source| CouplingError::Output { what, source }
+}

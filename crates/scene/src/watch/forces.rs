@@ -1,0 +1,188 @@
+//! Loads on bodies, with means, amplitudes and frequencies.
+use super::table::{Pace, Table};
+use super::trajectories::called;
+use super::Watch;
+use crate::setup::Forces;
+use crate::view::View;
+use coupling::{CouplingError, StepInfo};
+use interfaces::{BodyId, Checkpoint, RestartError};
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// Writes the fluid's loads on every body to `forces.csv` and keeps sums of those that were there from the start.
+pub(crate) struct ForcesWatch {
+    forces: Forces,
+    table: Table,
+    pace: Pace,
+    names: Vec<String>,
+    density: f64,
+    sums: Vec<Sums>,
+}
+
+/// What is kept of one body: sums over time since means began, of fx, fy, fz and the torque's components.
+#[derive(Clone, Copy, Debug)]
+struct Sums {
+    seconds: f64,
+    first: [f64; 6],
+    square: [f64; 6],
+    low: [f64; 6],
+    high: [f64; 6],
+    last: [f64; 6],
+    /// Of the component across the flow (y): the means' crossings upwards — how many, when the first and the last was — and the value
+    /// before; relative to the running mean.
+    crossings: [f64; 4],
+}
+
+const NUMBERS: usize = 6 * 5 + 5;
+
+impl Default for Sums {
+    fn default() -> Self {
+        Self {
+            seconds: 0.0,
+            first: [0.0; 6],
+            square: [0.0; 6],
+            low: [f64::INFINITY; 6],
+            high: [f64::NEG_INFINITY; 6],
+            last: [0.0; 6],
+            crossings: [0.0; 4],
+        }
+    }
+}
+
+impl Sums {
+    fn add(&mut self, load: [f64; 6], time: f64, dt: f64) {
+        self.seconds += dt;
+        for i in 0..6 {
+            self.first[i] += dt * load[i];
+            self.square[i] += dt * load[i] * load[i];
+            self.low[i] = self.low[i].min(load[i]);
+            self.high[i] = self.high[i].max(load[i]);
+        }
+        // Where the lift crosses its mean upwards, found linearly within the step.
+        let now = load[1] - self.first[1] / self.seconds;
+        let before = self.crossings[3];
+        if before < 0.0 && now >= 0.0 {
+            let at = time - dt * now / (now - before);
+            if self.crossings[0] == 0.0 {
+                self.crossings[1] = at;
+            }
+            self.crossings[2] = at;
+            self.crossings[0] += 1.0;
+        }
+        self.crossings[3] = now;
+    }
+    fn numbers(&self) -> [f64; NUMBERS] {
+        let mut out = [0.0; NUMBERS];
+        let parts = [&self.first, &self.square, &self.low, &self.high, &self.last];
+        for (k, part) in parts.into_iter().enumerate() {
+            out[6 * k..6 * k + 6].copy_from_slice(part);
+        }
+        out[30] = self.seconds;
+        out[31..].copy_from_slice(&self.crossings);
+        out
+    }
+    fn of(n: &[f64; NUMBERS]) -> Self {
+        let part = |k: usize| std::array::from_fn(|i| n[6 * k + i]);
+        Self {
+            first: part(0),
+            square: part(1),
+            low: part(2),
+            high: part(3),
+            last: part(4),
+            seconds: n[30],
+            crossings: [n[31], n[32], n[33], n[34]],
+        }
+    }
+    /// Frequency of the lift \[1/s\], if it went to and fro twice at least.
+    fn frequency(&self) -> Option<f64> {
+        let [count, first, last, _] = self.crossings;
+        (count > 2.0 && last > first).then(|| (count - 1.0) / (last - first))
+    }
+}
+
+impl ForcesWatch {
+    pub(crate) fn new(
+        folder: &Path,
+        forces: Forces,
+        names: Vec<String>,
+        density: f64,
+        resume: Option<f64>,
+    ) -> Result<Self, CouplingError> {
+        let header = "# time s; f N and t N m (plane scenes per m of depth): load of the fluid without buoyancy\ntime,body,fx,fy,fz,tx,ty,tz";
+        let table = Table::open(&folder.join("forces.csv"), header, resume)?;
+        let names: Vec<String> = names.into_iter().map(|name| name.replace([',', '\n', '"'], "_")).collect();
+        let sums = vec![Sums::default(); names.len()];
+        Ok(Self { pace: Pace::new(forces.every), forces, table, names, density, sums })
+    }
+}
+
+impl Checkpoint for ForcesWatch {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        sink("sums", &self.sums.iter().flat_map(Sums::numbers).collect::<Vec<_>>());
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        let numbers = RestartError::take(source, "sums", NUMBERS * self.sums.len())?;
+        self.sums = numbers.as_chunks::<NUMBERS>().0.iter().map(Sums::of).collect();
+        Ok(())
+    }
+}
+
+impl Watch for ForcesWatch {
+    fn name(&self) -> &'static str {
+        "forces"
+    }
+    fn step(&mut self, view: &mut dyn View, info: &StepInfo) -> Result<(), CouplingError> {
+        let due = self.pace.due(info.time, info.dt);
+        for b in (0..view.bodies().n_bodies()).map(BodyId) {
+            let [load, _] = view.loads(b, info.dt);
+            let values: [f64; 6] =
+                std::array::from_fn(|i| if i < 3 { load.force[i] } else { load.torque[i - 3] });
+            let serial = view.serial(b);
+            if let Some(sums) = self.sums.get_mut(serial as usize) {
+                sums.last = values;
+                if info.time > self.forces.start {
+                    sums.add(values, info.time, info.dt);
+                }
+            }
+            if due {
+                self.table.row(info.time, Some(&called(&self.names, serial)), values)?;
+            }
+        }
+        Ok(())
+    }
+    fn flush(&mut self) -> Result<(), CouplingError> {
+        self.table.flush()
+    }
+    fn results(&self) -> Option<Value> {
+        let scale = self.forces.reference.map(|(u, a)| 2.0 / (self.density * u * u * a));
+        let of = |sums: &Sums, factor: f64, n: usize| {
+            let column = |f: &dyn Fn(usize) -> f64| (0..n).map(|i| factor * f(i)).collect::<Vec<f64>>();
+            if sums.seconds == 0.0 {
+                return json!({ "last": column(&|i| sums.last[i]) });
+            }
+            let mean = |i: usize| sums.first[i] / sums.seconds;
+            json!({
+                "last": column(&|i| sums.last[i]),
+                "mean": column(&mean),
+                "rms": column(&|i| (sums.square[i] / sums.seconds - mean(i) * mean(i)).max(0.0).sqrt()),
+                "amplitude": column(&|i| 0.5 * (sums.high[i] - sums.low[i])),
+                "lowest": column(&|i| sums.low[i]),
+                "highest": column(&|i| sums.high[i]),
+            })
+        };
+        let body = |(name, sums): (&String, &Sums)| {
+            let mut out = json!({ "body": name, "seconds": sums.seconds, "load": of(sums, 1.0, 6) });
+            if let Some(scale) = scale {
+                out["coefficients"] = of(sums, scale, 3);
+            }
+            if let Some(frequency) = sums.frequency() {
+                out["frequency"] = json!(frequency);
+                if let Some((u, a)) = self.forces.reference {
+                    out["strouhal"] = json!(frequency * a / u);
+                }
+            }
+            out
+        };
+        Some(json!(self.names.iter().zip(&self.sums).map(body).collect::<Vec<Value>>()))
+    }
+}

@@ -1,0 +1,129 @@
+//! Pictures of the fields.
+use super::{Watch, output};
+use crate::setup::{Images, Quantity};
+use crate::view::View;
+use coupling::{CouplingError, StepInfo};
+use example_support::picture::section::{Layer, Section};
+use interfaces::{Checkpoint, RestartError};
+use std::path::{Path, PathBuf};
+
+/// Draws `images/NNNNN.png` at snapshots.
+pub(crate) struct ImagesWatch {
+    folder: PathBuf,
+    title: String,
+    images: Images,
+    fields: [Vec<f64>; 3],
+    values: Vec<f64>,
+    solid: Vec<f64>,
+}
+
+impl ImagesWatch {
+    pub(crate) fn new(folder: &Path, title: &str, images: Images) -> Result<Self, CouplingError> {
+        let folder = folder.join("images");
+        std::fs::create_dir_all(&folder).map_err(output("making", &folder))?;
+        Ok(Self { folder, title: title.into(), images, fields: Default::default(), values: vec![], solid: vec![] })
+    }
+
+    /// Numbers of the slice's cells, across fastest.
+    fn cells(view: &dyn View, (normal, at): (usize, f64)) -> ([usize; 2], Vec<usize>) {
+        let n: [usize; 3] = [0, 1, 2].map(|a| if a < view.dim() { view.axis(a).cells() } else { 1 });
+        let [a, b] = match normal {
+            0 => [1, 2],
+            1 => [0, 2],
+            _ => [0, 1],
+        };
+        let layer = if normal < view.dim() { view.axis(normal).locate(at).unwrap_or(0) } else { 0 };
+        let stride = [1, n[0], n[0] * n[1]];
+        let cells = (0..n[b]).flat_map(|j| (0..n[a]).map(move |i| i * stride[a] + j * stride[b] + layer * stride[normal]));
+        ([a, b], cells.collect())
+    }
+
+    /// Vorticity of the plane at the cells, from central differences of the centred velocity.
+    fn vorticity(view: &dyn View, [a, b]: [usize; 2], u: &[f64], v: &[f64], out: &mut Vec<f64>) {
+        let (x, y) = (view.axis(a), view.axis(b));
+        let (nx, ny) = (x.cells(), y.cells());
+        let slope = |axis: &fv_mesh::Axis, i: usize, n: usize, periodic: bool, at: &dyn Fn(usize) -> f64| {
+            if periodic && n > 2 && axis.is_uniform() {
+                let (before, after) = ((i + n - 1) % n, (i + 1) % n);
+                return (at(after) - at(before)) / (2.0 * axis.mean_width());
+            }
+            let (before, after) = (i.saturating_sub(1), (i + 1).min(n - 1));
+            let room = axis.centre(after) - axis.centre(before);
+            if room > 0.0 { (at(after) - at(before)) / room } else { 0.0 }
+        };
+        out.clear();
+        for j in 0..ny {
+            for i in 0..nx {
+                let dv = slope(x, i, nx, view.periodic(a), &|i| v[j * nx + i]);
+                let du = slope(y, j, ny, view.periodic(b), &|j| u[j * nx + i]);
+                out.push(dv - du);
+            }
+        }
+    }
+}
+
+impl Checkpoint for ImagesWatch {
+    fn save(&self, _: &mut dyn FnMut(&str, &[f64])) {}
+    fn restore<'a>(&mut self, _: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        Ok(())
+    }
+}
+
+impl Watch for ImagesWatch {
+    fn name(&self) -> &'static str {
+        "images"
+    }
+    fn snapshot(&mut self, view: &mut dyn View, lambda: &[f64], index: usize, info: &StepInfo) -> Result<(), CouplingError> {
+        if !index.is_multiple_of(self.images.every) {
+            return Ok(());
+        }
+        let ([a, b], cells) = Self::cells(view, self.images.slice);
+        let slice = |field: &[f64]| -> Vec<f64> { cells.iter().map(|&c| field[c]).collect() };
+        let dim = view.dim();
+        for (c, field) in self.fields.iter_mut().enumerate().take(dim) {
+            view.centred(c, field);
+        }
+        let quantity = self.images.quantity;
+        match quantity {
+            Quantity::Speed => {
+                let squares = |c: usize| self.fields[..dim].iter().map(|u| u[c] * u[c]).sum::<f64>();
+                self.values = cells.iter().map(|&c| squares(c).sqrt()).collect();
+            }
+            Quantity::Component(c) => self.values = slice(&self.fields[c]),
+            Quantity::Pressure => {
+                view.pressure(&mut self.fields[0]);
+                self.values = slice(&self.fields[0]);
+            }
+            Quantity::Vorticity => {
+                let (u, v) = (slice(&self.fields[a]), slice(&self.fields[b]));
+                Self::vorticity(view, [a, b], &u, &v, &mut self.values);
+            }
+        }
+        self.solid = slice(lambda);
+        let signed = !matches!(quantity, Quantity::Speed);
+        let limits = self.images.limits.unwrap_or_else(|| limits(&self.values, &self.solid, signed));
+        let label = match quantity {
+            Quantity::Speed => "speed |u| in m/s",
+            Quantity::Component(0) => "u in m/s",
+            Quantity::Component(1) => "v in m/s",
+            Quantity::Component(_) => "w in m/s",
+            Quantity::Pressure => "pressure in Pa",
+            Quantity::Vorticity => "vorticity in 1/s",
+        };
+        let names = ["x", "y", "z"];
+        let section = Section { across: view.axis(a).faces(), up: view.axis(b).faces(), names: [names[a], names[b]] };
+        let solids = view.bodies().n_bodies() > 0;
+        let layer = Layer { values: &self.values, solid: solids.then_some(&self.solid), limits, label, signed };
+        let path = self.folder.join(format!("{index:05}.png"));
+        let title = format!("{}   t = {:.4} s", self.title, info.time);
+        section.draw(&path, &layer, &title).map_err(output("drawing", &path))
+    }
+}
+
+/// From 0 or symmetric about it, to the largest value in the fluid.
+fn limits(values: &[f64], solid: &[f64], signed: bool) -> [f64; 2] {
+    let fluid = values.iter().zip(solid).filter(|(v, s)| **s < 0.5 && v.is_finite()).map(|(v, _)| v.abs());
+    let most = fluid.fold(0.0, f64::max);
+    let most = if most > 0.0 { most } else { 1.0 };
+    [if signed { -most } else { 0.0 }, most]
+}

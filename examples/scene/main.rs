@@ -1,0 +1,148 @@
+//! Runs a scene file.
+//!
+//! ```text
+//! cargo run --release --example scene -- scenes/cavity.toml
+//! cargo run --release --example scene -- scenes/cavity.toml --check
+//! cargo run --release --example scene -- scenes/two_discs.toml --set fluid.nu=2e-6 --set time.end=0.1 --threads 2
+//! cargo run --release --example scene -- scenes/two_discs.toml --resume
+//! ```
+//!
+//! Ctrl-C stops a run with whole files and a saved state. Exit codes: 0 done, 1 an error of the run, 2 an error of the scene or the command line, 3 not converged,
+//! 130 stopped.
+use clap::Parser;
+use scene::{Ending, Options, RunResult, Scene};
+use serde_json::json;
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Runs a scene of flow and bodies from a TOML file. docs/scene.md lists all keys.
+#[derive(Parser, Debug)]
+#[command(version)]
+struct Cli {
+    /// The scene file.
+    #[arg(required_unless_present_any = ["manual", "schema"])]
+    scene: Option<PathBuf>,
+    /// Sets a value, whatever the file says: --set fluid.nu=2e-6, --set bodies.0.density=1100.
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Checks the scene and tells what would be run: cells, memory, step, cost, what is at work and what is skipped.
+    #[arg(long)]
+    check: bool,
+    /// Goes on from the state that an interrupted run of this scene saved.
+    #[arg(long, conflicts_with = "check")]
+    resume: bool,
+    /// Threads.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: u16,
+    /// No progress and no summary.
+    #[arg(long)]
+    quiet: bool,
+    /// Prints what result.json and timings.json hold instead of the summary.
+    #[arg(long)]
+    json: bool,
+    /// Folder for the files, whatever the scene says.
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Prints the manual of scene files (docs/scene.md).
+    #[arg(long)]
+    manual: bool,
+    /// Prints the schema of scene files as JSON Schema (scenes/schema.json).
+    #[arg(long)]
+    schema: bool,
+}
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    if cli.manual || cli.schema {
+        return print(&if cli.manual { scene::manual() } else { scene::json_schema() });
+    }
+    let scene = match Scene::load(cli.scene.as_deref().unwrap_or("".as_ref()), &cli.set) {
+        Ok(scene) => scene,
+        Err(error) => return fail(2, &error),
+    };
+    if cli.check {
+        return match scene.plan() {
+            Ok(plan) => print(&plan.to_string()),
+            Err(error) => fail(2, &error),
+        };
+    }
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = stop.clone();
+    let handler = ctrlc::set_handler(move || {
+        // A second Ctrl-C ends the program at once.
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    });
+    if let Err(error) = handler {
+        return fail(1, &error);
+    }
+    let options = Options { threads: cli.threads.into(), resume: cli.resume, quiet: cli.quiet, out: cli.out.clone() };
+    match scene.run(&options, &stop) {
+        Ok(result) => {
+            if cli.json {
+                let both = json!({ "result": result.result, "timings": result.timings });
+                print(&format!("{both:#}\n"));
+            } else if !cli.quiet {
+                print(&summary(&result));
+            }
+            match result.ending {
+                Ending::Done => ExitCode::SUCCESS,
+                Ending::NotConverged => ExitCode::from(3),
+                Ending::Stopped => ExitCode::from(130),
+            }
+        }
+        Err(error) => fail(1, &error),
+    }
+}
+
+fn fail(code: u8, error: &dyn std::error::Error) -> ExitCode {
+    let _ = writeln!(std::io::stderr(), "error: {error}");
+    ExitCode::from(code)
+}
+
+/// Nobody may be reading any more: that is no error.
+fn print(text: &str) -> ExitCode {
+    let _ = std::io::stdout().write_all(text.as_bytes());
+    ExitCode::SUCCESS
+}
+
+/// A few lines for people.
+fn summary(result: &RunResult) -> String {
+    let (r, t) = (&result.result, &result.timings);
+    let number = |value: &serde_json::Value| value.as_f64().unwrap_or(f64::NAN);
+    let mut out = format!(
+        "{}: {} steps to t = {:.6} s, {:.1} CPU s ({:.0} % of it for files and pictures)\n",
+        r["title"].as_str().unwrap_or_default(),
+        r["steps"],
+        number(&r["time"]),
+        number(&t["cpu"]),
+        100.0 * number(&t["output"]) / number(&t["wall"]).max(1e-9),
+    );
+    for body in r["forces"].as_array().into_iter().flatten() {
+        let (name, load) = (body["body"].as_str().unwrap_or_default(), &body["load"]);
+        out += &format!("  body {name}: force {:.6e}, {:.6e}, {:.6e}", number(&load["last"][0]), number(&load["last"][1]), number(&load["last"][2]));
+        if let Some(c) = body["coefficients"]["mean"].as_array() {
+            out += &format!("; mean coefficients {:.5}, {:.5}", number(&c[0]), number(&c[1]));
+        }
+        if let Some(strouhal) = body["strouhal"].as_f64() {
+            out += &format!("; Strouhal {strouhal:.4}");
+        }
+        out.push('\n');
+    }
+    if let Some(l) = r.get("ledger") {
+        out += &format!(
+            "  books: momentum {:.1e} of the impulses, energy residual {:.2e} J of {:.2e} J of work\n",
+            number(&l["momentum_whole_run"]),
+            number(&l["energy_residual"]),
+            number(&l["work"]),
+        );
+    }
+    if let Some(residual) = r["residual"].as_f64() {
+        out += &format!("  residual {residual:.2e}\n");
+    }
+    out + &format!("  files in {}\n", result.folder.display())
+}

@@ -26,6 +26,16 @@ pub enum BuildError {
     /// Both together.
     #[error(transparent)]
     Coupling(#[from] coupling::CouplingError),
+    /// The grid is too large for this machine.
+    #[error("{cells:.2e} cells need about {:.1} GB of memory, and {:.1} GB are free; take fewer cells", needed / 1e9, free / 1e9)]
+    Memory {
+        /// Cells of the grid.
+        cells: f64,
+        /// What they need \[bytes\].
+        needed: f64,
+        /// What is there \[bytes\].
+        free: f64,
+    },
     /// A formula without a value.
     #[error("{what} is {value} at ({}); the formula needs a finite value all over the box", at.map(|x| format!("{x:.6}")).join(", "))]
     Formula {
@@ -38,7 +48,24 @@ pub enum BuildError {
     },
 }
 
+/// Memory that may be had \[bytes\]; `None` where the system does not tell.
+fn free_memory() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let kilobytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(1024.0 * kilobytes)
+}
+
+/// Doubles per cell, in the plane and in space: fields, solvers, what is written.
+const DOUBLES: [f64; 2] = [30.0, 40.0];
+
 impl Setup {
+    /// Memory for fields and solvers, roughly \[bytes\].
+    pub(crate) fn memory(&self) -> f64 {
+        let averages = if self.averages.is_some() { 10.0 } else { 0.0 };
+        self.cells() as f64 * (DOUBLES[self.dim() - 2] + averages) * 8.0
+    }
+
     fn grid<const D: usize>(&self) -> Result<CartesianGrid<D>, FlowError> {
         CartesianGrid::from_axes(std::array::from_fn(|a| self.axes[a].clone()))
     }
@@ -64,7 +91,16 @@ impl Setup {
         Ok(Some(value))
     }
 
-    /// Nothing enters with a speed that is not finite, to begin with.
+    /// Is there room for the grid?
+    fn check_memory(&self) -> Result<(), BuildError> {
+        let (cells, needed) = (self.cells() as f64, self.memory());
+        match free_memory() {
+            Some(free) if needed > free => Err(BuildError::Memory { cells, needed, free }),
+            _ => Ok(()),
+        }
+    }
+
+    /// The body force has to have a value at both ends of the run.
     fn check_force(&self) -> Result<(), BuildError> {
         for (t, force) in self.force.iter().flat_map(|f| [0.0, self.end].map(|t| (t, f))) {
             if let Some(value) = force.iter().map(|f| f.at(&[t])).find(|f| !f.is_finite()) {
@@ -76,6 +112,7 @@ impl Setup {
 
     /// The projection algorithm, without bodies.
     pub(crate) fn projection<const D: usize>(&self) -> Result<Projection<D>, BuildError> {
+        self.check_memory()?;
         self.check_force()?;
         let grid = self.grid()?;
         // Bodies want explicit diffusion.
@@ -105,6 +142,7 @@ impl Setup {
 
     /// PISO by Euler's scheme in time, as the paper has it.
     pub(crate) fn piso<const D: usize>(&self) -> Result<Piso<D>, BuildError> {
+        self.check_memory()?;
         self.check_force()?;
         let grid = self.grid()?;
         let params = PisoParams { time_scheme: TimeScheme::Euler, ..PisoParams::default() };
@@ -118,6 +156,7 @@ impl Setup {
 
     /// The steady algorithm.
     pub(crate) fn simple<const D: usize>(&self) -> Result<Simple<D>, BuildError> {
+        self.check_memory()?;
         self.check_force()?;
         let grid = self.grid()?;
         let mut flow = Simple::new(grid.clone(), self.all_sides(), self.fluid)?

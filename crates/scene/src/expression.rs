@@ -1,28 +1,75 @@
 //! Formulas of place and time.
-use exmex::{Express, FlatEx};
+//!
+//! ```text
+//! sum     = product {("+" | "-") product}
+//! product = sign {("*" | "/") sign}
+//! sign    = ["+" | "-"] sign | power
+//! power   = atom ["^" sign]                  so that −x^2 is −(x²) and 2^3^2 is 2⁹
+//! atom    = number | constant | variable | function "(" sum {"," sum} ")" | "(" sum ")"
+//! ```
+//!
+//! (No kept library does this: one reads −x^2 as (−x)² and no 1e-3, one is left alone since 2018, one is under a licence that binds its users.)
+use std::f64::consts::{E, PI};
 use std::sync::Arc;
 
 /// A formula of some variables, ready to be evaluated.
 #[derive(Clone, Debug)]
 pub(crate) struct Expression {
-    kind: Kind,
+    /// What to do, one after the other, on a stack.
+    steps: Arc<[Step]>,
 }
 
-#[derive(Clone, Debug)]
-enum Kind {
-    Constant(f64),
-    /// The formula, and which of the variables it asks for.
-    Formula(Arc<FlatEx<f64>>, Vec<usize>),
+#[derive(Clone, Copy, Debug)]
+enum Step {
+    Number(f64),
+    Variable(usize),
+    Negate,
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+    One(fn(f64) -> f64),
+    Two(fn(f64, f64) -> f64),
 }
 
-/// No formula needs more.
+/// Functions of one number.
+const ONE: [(&str, fn(f64) -> f64); 21] = [
+    ("sin", f64::sin),
+    ("cos", f64::cos),
+    ("tan", f64::tan),
+    ("asin", f64::asin),
+    ("acos", f64::acos),
+    ("atan", f64::atan),
+    ("sinh", f64::sinh),
+    ("cosh", f64::cosh),
+    ("tanh", f64::tanh),
+    ("exp", f64::exp),
+    ("log", f64::ln),
+    ("ln", f64::ln),
+    ("log10", f64::log10),
+    ("sqrt", f64::sqrt),
+    ("cbrt", f64::cbrt),
+    ("abs", f64::abs),
+    ("sign", |x| if x == 0.0 { 0.0 } else { x.signum() }),
+    ("floor", f64::floor),
+    ("ceil", f64::ceil),
+    ("round", f64::round),
+    // 0 before, 1 from 0 on.
+    ("step", |x| f64::from(u8::from(x >= 0.0))),
+];
+/// Functions of two.
+const TWO: [(&str, fn(f64, f64) -> f64); 4] =
+    [("min", f64::min), ("max", f64::max), ("atan2", f64::atan2), ("mod", f64::rem_euclid)];
+const CONSTANTS: [(&str, f64); 4] = [("PI", PI), ("pi", PI), ("E", E), ("e", E)];
+
+/// No formula is longer, none goes deeper.
 const MOST: usize = 2000;
-/// Nor goes deeper into brackets.
-const DEEPEST: usize = 100;
+const DEEPEST: usize = 60;
 
 impl Expression {
     pub(crate) fn constant(value: f64) -> Self {
-        Self { kind: Kind::Constant(value) }
+        Self { steps: Arc::new([Step::Number(value)]) }
     }
 
     /// Understands `text` as a formula of `variables`; the error is the rest of a sentence that begins "the formula …".
@@ -30,79 +77,300 @@ impl Expression {
         if text.chars().count() > MOST {
             return Err(format!("is longer than {MOST} characters"));
         }
-        let deepest = text.chars().scan(0i32, |depth, c| {
-            *depth += i32::from(c == '(') - i32::from(c == ')');
-            Some(*depth)
-        });
-        if deepest.max().unwrap_or(0) > DEEPEST as i32 {
-            return Err(format!("has more than {DEEPEST} brackets within one another"));
+        let mut parser = Parser { rest: text, variables, steps: Vec::new(), depth: 0 };
+        parser.sum()?;
+        parser.blanks();
+        if let Some(c) = parser.rest.chars().next() {
+            return Err(format!("cannot be understood from \"{c}\" on, {} characters before its end", parser.rest.chars().count()));
         }
-        let formula = FlatEx::<f64>::parse(text).map_err(|e| format!("cannot be understood: {}", e.msg()))?;
-        let mut asked = Vec::new();
-        for name in formula.var_names() {
-            match variables.iter().position(|v| v == name) {
-                Some(v) => asked.push(v),
-                None => {
-                    let known = variables.join(", ");
-                    return Err(format!("asks for \"{name}\", which is neither a function nor one of {known}"));
-                }
-            }
-        }
-        if asked.is_empty() {
-            let value = formula.eval(&[]).map_err(|e| format!("has no value: {}", e.msg()))?;
+        let formula = Self { steps: parser.steps.into() };
+        if formula.fixed().is_some() {
+            let value = formula.at(&[]);
             if !value.is_finite() {
                 return Err(format!("is {value}; give one with a finite value"));
             }
             return Ok(Self::constant(value));
         }
-        Ok(Self { kind: Kind::Formula(Arc::new(formula), asked) })
+        Ok(formula)
     }
 
     /// Its value; not a number if it has none there.
     pub(crate) fn at(&self, variables: &[f64]) -> f64 {
-        match &self.kind {
-            Kind::Constant(value) => *value,
-            Kind::Formula(formula, asked) => {
-                let mut values = [0.0; 4];
-                for (value, &v) in values.iter_mut().zip(asked) {
-                    *value = variables.get(v).copied().unwrap_or(f64::NAN);
+        // Every level of brackets and of precedence holds one number at most.
+        let mut stack = [0.0; 4 * (DEEPEST + 1)];
+        let mut top = 0;
+        for step in &*self.steps {
+            match *step {
+                Step::Number(x) => {
+                    stack[top] = x;
+                    top += 1;
                 }
-                formula.eval(&values[..asked.len()]).unwrap_or(f64::NAN)
+                Step::Variable(v) => {
+                    stack[top] = variables.get(v).copied().unwrap_or(f64::NAN);
+                    top += 1;
+                }
+                Step::Negate => stack[top - 1] = -stack[top - 1],
+                Step::One(f) => stack[top - 1] = f(stack[top - 1]),
+                two => {
+                    top -= 1;
+                    let (a, b) = (stack[top - 1], stack[top]);
+                    stack[top - 1] = match two {
+                        Step::Add => a + b,
+                        Step::Subtract => a - b,
+                        Step::Multiply => a * b,
+                        Step::Divide => a / b,
+                        // Squares by products, to the bit.
+                        Step::Power if b == 2.0 => a * a,
+                        Step::Power => a.powf(b),
+                        Step::Two(f) => f(a, b),
+                        _ => f64::NAN,
+                    };
+                }
             }
         }
+        stack[0]
     }
 
     /// Its value if it is the same everywhere.
     pub(crate) fn fixed(&self) -> Option<f64> {
-        match &self.kind {
-            Kind::Constant(value) => Some(*value),
-            Kind::Formula(..) => None,
+        let varies = self.steps.iter().any(|step| matches!(step, Step::Variable(_)));
+        (!varies).then(|| self.at(&[]))
+    }
+}
+
+struct Parser<'a> {
+    rest: &'a str,
+    variables: &'a [&'a str],
+    steps: Vec<Step>,
+    depth: usize,
+}
+
+impl<'a> Parser<'a> {
+    fn blanks(&mut self) {
+        self.rest = self.rest.trim_start();
+    }
+    /// Takes `c` if it is next.
+    fn takes(&mut self, c: char) -> bool {
+        self.blanks();
+        let rest = self.rest.strip_prefix(c);
+        self.rest = rest.unwrap_or(self.rest);
+        rest.is_some()
+    }
+
+    fn sum(&mut self) -> Result<(), String> {
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            return Err(format!("goes deeper than {DEEPEST} brackets or signs within one another"));
         }
+        self.product()?;
+        loop {
+            let step = if self.takes('+') {
+                Step::Add
+            } else if self.takes('-') {
+                Step::Subtract
+            } else {
+                self.depth -= 1;
+                return Ok(());
+            };
+            self.product()?;
+            self.steps.push(step);
+        }
+    }
+
+    fn product(&mut self) -> Result<(), String> {
+        self.sign()?;
+        loop {
+            let step = if self.takes('*') {
+                Step::Multiply
+            } else if self.takes('/') {
+                Step::Divide
+            } else {
+                return Ok(());
+            };
+            self.sign()?;
+            self.steps.push(step);
+        }
+    }
+
+    fn sign(&mut self) -> Result<(), String> {
+        let mut negative = false;
+        loop {
+            if self.takes('-') {
+                negative = !negative;
+            } else if !self.takes('+') {
+                break;
+            }
+        }
+        self.power()?;
+        if negative {
+            self.steps.push(Step::Negate);
+        }
+        Ok(())
+    }
+
+    fn power(&mut self) -> Result<(), String> {
+        self.atom()?;
+        if self.takes('^') {
+            // Powers of powers go deeper.
+            self.depth += 1;
+            if self.depth > DEEPEST {
+                return Err(format!("goes deeper than {DEEPEST} powers of powers"));
+            }
+            self.sign()?;
+            self.depth -= 1;
+            self.steps.push(Step::Power);
+        }
+        Ok(())
+    }
+
+    fn atom(&mut self) -> Result<(), String> {
+        if self.takes('(') {
+            self.sum()?;
+            return if self.takes(')') { Ok(()) } else { Err("lacks a closing bracket".into()) };
+        }
+        let first = self.rest.chars().next().ok_or("ends where a number, a variable or a bracket is needed")?;
+        if first.is_ascii_digit() || first == '.' {
+            return self.number();
+        }
+        let name: &'a str = {
+            let end = self.rest.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(self.rest.len());
+            &self.rest[..end]
+        };
+        if name.is_empty() {
+            return Err(format!("has \"{first}\" where a number, a variable or a bracket is needed"));
+        }
+        self.rest = &self.rest[name.len()..];
+        if let Some(v) = self.variables.iter().position(|variable| *variable == name) {
+            self.steps.push(Step::Variable(v));
+        } else if let Some((_, value)) = CONSTANTS.iter().find(|(constant, _)| *constant == name) {
+            self.steps.push(Step::Number(*value));
+        } else if let Some((_, f)) = ONE.iter().find(|(function, _)| *function == name) {
+            self.arguments(name, 1)?;
+            self.steps.push(Step::One(*f));
+        } else if let Some((_, f)) = TWO.iter().find(|(function, _)| *function == name) {
+            self.arguments(name, 2)?;
+            self.steps.push(Step::Two(*f));
+        } else {
+            let functions: Vec<_> = ONE.iter().map(|(n, _)| *n).chain(TWO.iter().map(|(n, _)| *n)).collect();
+            return Err(format!(
+                "asks for \"{name}\", which is neither a variable ({}), nor PI or E, nor a function ({})",
+                self.variables.join(", "),
+                functions.join(", ")
+            ));
+        }
+        Ok(())
+    }
+
+    fn arguments(&mut self, name: &str, number: usize) -> Result<(), String> {
+        let wants = || format!("has \"{name}\" without its {number} argument{} in brackets", if number > 1 { "s" } else { "" });
+        if !self.takes('(') {
+            return Err(wants());
+        }
+        for i in 0..number {
+            if i > 0 && !self.takes(',') {
+                return Err(wants());
+            }
+            self.sum()?;
+        }
+        if self.takes(')') { Ok(()) } else { Err(wants()) }
+    }
+
+    fn number(&mut self) -> Result<(), String> {
+        let bytes = self.rest.as_bytes();
+        let digits = |mut i: usize| {
+            while bytes.get(i).is_some_and(u8::is_ascii_digit) {
+                i += 1;
+            }
+            i
+        };
+        let mut end = digits(0);
+        if bytes.get(end) == Some(&b'.') {
+            end = digits(end + 1);
+        }
+        if matches!(bytes.get(end), Some(b'e' | b'E')) {
+            let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+            let exponent = digits(end + 1 + sign);
+            if exponent > end + 1 + sign {
+                end = exponent;
+            }
+        }
+        let (text, rest) = self.rest.split_at(end);
+        let value: f64 = text.parse().map_err(|_| format!("has {text:?}, which is no number"))?;
+        self.steps.push(Step::Number(value));
+        self.rest = rest;
+        Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    fn f(text: &str) -> Expression {
+        Expression::new(text, &["x", "y", "z", "t"]).unwrap_or_else(|e| panic!("{text} {e}"))
+    }
 
     #[test]
     fn formulas_are_evaluated() {
-        let f = |text: &str| Expression::new(text, &["x", "y", "z", "t"]).unwrap();
-        assert!((f("1.5*4*y*(0.41-y)/0.41^2").at(&[9.0, 0.205, 0.0, 0.0]) - 1.5).abs() < 1e-15);
-        assert_eq!(f("x - 2*t").at(&[1.0, 0.0, 0.0, 3.0]), -5.0);
-        assert_eq!(f("-x^2").at(&[3.0, 0.0, 0.0, 0.0]), -9.0);
-        assert_eq!(f("min(t, 1)").at(&[0.0, 0.0, 0.0, 0.5]), 0.5);
+        let at = |text: &str| f(text).at(&[3.0, 0.205, 0.0, 0.5]);
+        assert!((at("1.5*4*y*(0.41-y)/0.41^2") - 1.5).abs() < 1e-15);
+        for (text, value) in [
+            ("x - 2*t", 2.0),
+            ("-x^2", -9.0),
+            ("2*(-x^2) + 3 - -x^2", -6.0),
+            ("2 * -x^2", -18.0),
+            ("1e-3*2^-x", 1.25e-4),
+            ("2-3-4", -5.0),
+            ("12/3/2", 2.0),
+            ("2^3^2", 512.0),
+            ("min(t, 1) + max(-x, -1)", -0.5),
+            (" ( +x ) ", 3.0),
+            ("atan2(0, -1) - PI", 0.0),
+            ("mod(-1, x)", 2.0),
+            (".5e1 - 2.E-0", 3.0),
+            ("step(t - 0.5)*sign(z)", 0.0),
+            ("--x", 3.0),
+        ] {
+            assert_eq!(at(text), value, "{text}");
+        }
         assert_eq!(f("2*PI").fixed(), Some(std::f64::consts::TAU));
-        assert!(f("log(x)").at(&[-1.0, 0.0, 0.0, 0.0]).is_nan());
+        assert_eq!(f("2*t").fixed(), None);
+        assert!(f("log(x)").at(&[-1.0]).is_nan());
     }
 
     #[test]
     fn what_is_no_formula_is_told() {
-        let told = |text: &str| Expression::new(text, &["t"]).unwrap_err();
-        assert!(told("2*x").contains("\"x\""));
-        assert!(told("2*(t").contains("cannot be understood"));
-        assert!(told("").contains("understood"));
-        assert!(told("1/0").contains("finite"));
-        assert!(told(&format!("{}t{}", "(".repeat(500), ")".repeat(500))).contains("brackets"));
+        let told = |text: &str| Expression::new(text, &["t"]).err().unwrap_or_else(|| panic!("{text}"));
+        for (text, part) in [
+            ("2*x", "\"x\""),
+            ("2*(t", "closing bracket"),
+            ("", "ends where"),
+            ("t +", "ends where"),
+            ("2t", "from \"t\" on"),
+            ("sin t", "1 argument "),
+            ("min(t)", "2 arguments"),
+            ("1/0", "finite"),
+            ("t # 2", "from \"#\" on"),
+            ("..5", "no number"),
+        ] {
+            assert!(told(text).contains(part), "{text}: {}", told(text));
+        }
+        let deep = |n: usize, open: &str, close: &str| format!("{}t{}", open.repeat(n), close.repeat(n));
+        assert!(told(&deep(500, "(", ")")).contains("deeper"));
+        assert!(told(&deep(300, "2^", "")).contains("deeper"));
+        assert!(told(&deep(3000, "-", "")).contains("longer"));
+        let nested = Expression::new(&deep(50, "1+2*(3^(", "))"), &["t"]);
+        assert!(nested.is_err() || nested.is_ok_and(|f| !f.at(&[1.0]).is_nan()));
+    }
+
+    proptest! {
+        /// Whatever is written, there is an answer, and formulas that are understood have a value.
+        #[test]
+        fn nothing_panics(text in "[-+*/^(), .0-9xytePIsinmaxogr]{0,60}") {
+            if let Ok(formula) = Expression::new(&text, &["x", "y", "z", "t"]) {
+                let _ = formula.at(&[0.1, 0.2, 0.3, 0.4]);
+            }
+        }
     }
 }

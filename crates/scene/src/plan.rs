@@ -34,8 +34,6 @@ const COST: [f64; 2] = [1.2e-8, 3.5e-8];
 const COST_OF_MARKER: f64 = 1.5e-6;
 /// CPU seconds per cell and iteration of the steady algorithm.
 const COST_OF_ITERATION: f64 = 4e-7;
-/// Doubles per cell.
-const DOUBLES: [f64; 2] = [30.0, 40.0];
 
 impl Setup {
     /// Puts the scene together, without running it, and tells what a run would mean.
@@ -84,7 +82,7 @@ impl Setup {
             name: self.name.clone(),
             cells: self.axes.iter().map(Axis::cells).collect(),
             bodies: self.bodies.list.len(),
-            memory: cells * DOUBLES[D - 2] * 8.0,
+            memory: self.memory(),
             dt,
             steps,
             cpu,

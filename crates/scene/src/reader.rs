@@ -27,9 +27,6 @@ impl<'a> Reader<'a> {
     pub(crate) fn fail_here(&self, message: impl ToString) -> Problem {
         Problem::new(self.path.clone(), self.place.clone(), message.to_string())
     }
-    pub(crate) fn path(&self) -> &str {
-        &self.path
-    }
     fn path_of(&self, key: &str) -> String {
         if self.path.is_empty() { key.into() } else { format!("{}.{key}", self.path) }
     }

@@ -11,7 +11,7 @@ use crate::watch::{
 };
 use coupling::{
     CheckpointError, CouplingError, Exchange, Explicit, FlowSolver, Immersed, Iterated, Ledger, LedgerReport, Observer,
-    OneSolve, Particles, Schedule, Simulation, StepInfo, Strategy,
+    Particles, Schedule, Simulation, StepInfo, Strategy,
 };
 use dem::{ContactLaw, Population, Rolling};
 use example_support::cpu::Stopwatch;
@@ -493,12 +493,15 @@ where
         if self.only_end && index == 0 {
             return Ok(());
         }
-        self.audience.snapshot(&mut see(simulation), index, info)?;
+        let mut seen = see(simulation);
+        self.audience.snapshot(&mut seen, index, info)?;
+        let iterations = seen.pressure_iterations();
         let StepInfo { step, time, dt, courant } = *info;
         let flow = FlowSolver::statistics(&mut simulation.flow);
         self.log.line(&format!(
-            "t = {time:.6e} s, step {step}, dt {dt:.3e} s, Courant {courant:.3}, kinetic energy {:.6e} J",
-            flow.kinetic_energy
+            "t = {time:.6e} s, step {step}, dt {dt:.3e} s, Courant {courant:.3}, kinetic energy {:.6e} J{}",
+            flow.kinetic_energy,
+            if iterations > 0 { format!(", {iterations} pressure iterations") } else { String::new() }
         ))
     }
 }

@@ -129,7 +129,7 @@ const POINT: Kind = Kind::List(&METRES, 2, 3);
 /// The whole file.
 pub(crate) static SCENE: Table = Table {
     about: "A scene. Numbers are in SI units. Formulas may use + - * / ^, sin, cos, tan, asin, acos, atan, atan2(y, x), sinh, cosh, tanh, exp, \
-            log, log10, sqrt, cbrt, abs, signum, floor, ceil, round, min(a, b), max(a, b), PI and E.",
+            log, ln, log10, sqrt, cbrt, abs, sign, floor, ceil, round, step (0 before 0, then 1), min(a, b), max(a, b), mod(a, b), PI and E. A formula −x^2 is −(x²).",
     keys: &[
         optional("title", Kind::Text, "the file's name", "What stands above pictures and results.", "\"Cavity\""),
         optional("about", Kind::Text, "nothing", "What the scene is for, with its source.", "\"After Ghia (1982).\""),

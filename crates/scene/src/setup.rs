@@ -7,7 +7,7 @@ mod measures;
 mod shapes;
 mod sides;
 
-pub(crate) use bodies::{BodySetup, Bodies, ContactLawChoice, CouplingSetup, ForcingChoice, Motion, StrategyChoice};
+pub(crate) use bodies::{BodySetup, Bodies, ContactLawChoice, ForcingChoice, Motion, StrategyChoice};
 pub(crate) use factories::InflowSetup;
 pub(crate) use flow::{Algorithm, FlowSetup};
 pub(crate) use measures::{Averages, Forces, Images, Output, ProbeSetup, Quantity};

@@ -4,7 +4,7 @@ use crate::still::Still;
 use coupling::{Particles, Strategy, Timings};
 use dem::{ContactLaw, Population, RigidDynamics};
 use fv_mesh::{
-    Axis, CartesianGrid, CellWriter, Field, FlowStatistics, Fluid, OutputError, Piso, Projection, SampleError, Sampler, Sides, Simple,
+    Axis, CartesianGrid, CellWriter, Field, FlowStatistics, OutputError, Piso, Projection, SampleError, Sampler, Sides, Simple,
     Velocity,
 };
 use ibm::Forcing;
@@ -16,7 +16,6 @@ pub(crate) trait View {
     fn axis(&self, a: usize) -> &Axis;
     fn dim(&self) -> usize;
     fn periodic(&self, a: usize) -> bool;
-    fn density(&self) -> f64;
     fn time(&self) -> f64;
     fn steps(&self) -> u64;
     fn statistics(&mut self) -> FlowStatistics;
@@ -51,7 +50,6 @@ pub(crate) trait View {
 pub(crate) trait Flow<const D: usize> {
     fn grid(&self) -> &CartesianGrid<D>;
     fn sides(&self) -> &Sides<D>;
-    fn fluid(&self) -> Fluid;
     fn velocity(&self) -> &Velocity<D>;
     fn pressure(&self) -> &Field<D>;
     fn centred_velocity(&self, c: usize) -> impl Iterator<Item = f64> + '_;
@@ -72,9 +70,6 @@ macro_rules! flow {
             }
             fn sides(&self) -> &Sides<D> {
                 $flow::sides(self)
-            }
-            fn fluid(&self) -> Fluid {
-                $flow::fluid(self)
             }
             fn velocity(&self) -> &Velocity<D> {
                 $flow::velocity(self)
@@ -186,9 +181,6 @@ impl<const D: usize, A: Flow<D>, P: Guests> View for Seen<'_, D, A, P> {
     }
     fn periodic(&self, a: usize) -> bool {
         self.flow.sides().periodic(a)
-    }
-    fn density(&self) -> f64 {
-        self.flow.fluid().density
     }
     fn time(&self) -> f64 {
         self.flow.time()

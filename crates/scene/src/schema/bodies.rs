@@ -329,13 +329,12 @@ const MOTION_OF_MANY: Key = optional(
     "\"fixed\"",
 );
 
-pub(super) static EXIT: Table = Table {
-    about: "A half-space.",
-    keys: &[
-        required("point", POINT, "A point of its plane.", "[0.0, 1e-3]"),
-        required("normal", Kind::List(&Kind::Number(Range::Any, "1"), 2, 3), "Points out of it, of any length.", "[0.0, 1.0]"),
-    ],
-};
+const PLANE_POINT: Key = required("point", POINT, "A point of its plane.", "[0.0, 1e-3]");
+const PLANE_NORMAL: Key = required("normal", Kind::List(&Kind::Number(Range::Any, "1"), 2, 3), "Points out of it, of any length.", "[0.0, 1.0]");
+
+pub(super) static EXIT: Table = Table { about: "A half-space.", keys: &[PLANE_POINT, PLANE_NORMAL] };
+
+static PLANE: Table = Table { about: "All behind a plane, solid.", keys: &[PLANE_POINT, PLANE_NORMAL] };
 
 pub(super) static CONTACT: Table = Table {
     about: "Contacts of bodies with one another and with walls.",
@@ -353,6 +352,13 @@ pub(super) static CONTACT: Table = Table {
             "\"potential\"",
         ),
         optional("walls", Kind::Flag, "true", "Do bodies touch the walls of the box?", "false"),
+        optional(
+            "planes",
+            Kind::List(&Kind::Table(&PLANE), 0, 100),
+            "none",
+            "Planes that bodies touch besides, and the fluid does not know: a distributor plate, say.",
+            "[{ point = [0.0, 1e-3], normal = [0.0, 1.0] }]",
+        ),
         optional("wall_material", Kind::Text, "that of the first body", "Material of those walls.", "\"steel\""),
         optional("length_factor", Kind::Number(Range::Positive, "1"), "4", "Of the contact length L_c.", "4.0"),
         optional("adhesion", Kind::Flag, "false", "May damping pull (law chen)?", "true"),

@@ -21,7 +21,7 @@ pub(super) static OUTPUT: Table = Table {
         optional("fields", Kind::Flag, "true", "VTK files of λ, velocity and pressure at the snapshots, for ParaView.", "false"),
         optional("bodies", Kind::Flag, "true", "VTK files of the bodies and `trajectories.csv`.", "false"),
         optional("images", Kind::Flag, "true", "PNG pictures of plane scenes, or of a slice.", "false"),
-        optional("image_every", Kind::Whole(1, 1_000_000), "1", "A picture at every so many snapshots.", "10"),
+        optional("image_every", Kind::Whole(1, 1_000_000), "a twentieth of the snapshots", "A picture at every so many snapshots.", "10"),
         optional(
             "quantity",
             Kind::Word(&[("speed", "|u|"), ("u", "velocity along x"), ("v", "along y"), ("w", "along z"), ("pressure", "pressure"), ("vorticity", "of the plane")]),

@@ -125,14 +125,15 @@ pub(super) fn read(
     if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
         return Err(root.fail("bodies", format!("two bodies are called \"{}\"; give each a name of its own", pair[0])));
     }
-    let mut exits = Vec::new();
-    for t in root.tables("exits") {
+    let half_space = |t: &Reader<'_>| {
         let point = t.point_of("point", context.dim)?.unwrap_or_default();
         let normal = t.vector_of("normal", context.dim)?.unwrap_or_default();
-        let plane = HalfSpace::new(point, normal).map_err(|e| t.fail("normal", e))?;
-        exits.push(plane);
-    }
+        HalfSpace::new(point, normal).map_err(|e| t.fail("normal", e))
+    };
+    let exits = root.tables("exits").iter().map(half_space).collect::<Result<_, _>>()?;
     let contact = root.table("contact");
+    let planes = contact.as_ref().map(|t| t.tables("planes")).unwrap_or_default();
+    let planes = planes.iter().map(half_space).collect::<Result<Vec<_>, _>>()?;
     let word = |key: &str| contact.as_ref().and_then(|t| t.text(key));
     let first = list.first().map_or(materials.default, |b| b.material);
     let wall_material = match word("wall_material") {
@@ -154,7 +155,7 @@ pub(super) fn read(
         length_factor: contact.as_ref().and_then(|t| t.number("length_factor")).unwrap_or(4.0),
         adhesion: contact.as_ref().and_then(|t| t.flag("adhesion")).unwrap_or(false),
         overlaps: contact.as_ref().and_then(|t| t.flag("overlaps")).unwrap_or(false),
-        walls: if touches { walls(axes, sides).map_err(|e| root.fail("sides", e))? } else { Vec::new() },
+        walls: [if touches { walls(axes, sides).map_err(|e| root.fail("sides", e))? } else { vec![] }, planes].concat(),
         wall_material,
         lubrication: root.table("lubrication").map(|t| t.number("roughness").unwrap_or(1e-3)),
         coupling,

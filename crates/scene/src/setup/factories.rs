@@ -29,6 +29,8 @@ pub(crate) struct InflowSetup {
     pub(crate) shapes: Vec<Arc<dyn Shape>>,
 }
 
+/// Share of a region that random addition may be asked to fill.
+const MOST_FILLED: f64 = 0.6;
 /// So many shapes stand for a distribution of sizes of an inflow.
 const SIZES: usize = 200;
 
@@ -210,6 +212,17 @@ impl Factory<'_> {
         };
         if factors.is_empty() {
             return Err(t.fail("fraction", "not even one body makes up this share; give a larger one"));
+        }
+        // Random addition jams far below that; to find out takes long.
+        let volume = self.shapes(&[1.0])?[0].inertia(1.0).volume;
+        let filled: f64 = factors.iter().map(|f| volume * f.powi(self.context.dim as i32)).sum();
+        if filled > MOST_FILLED * region.volume() {
+            let message = format!(
+                "{} bodies fill {:.2} of the region, and random places without overlap are found up to about {MOST_FILLED}; give fewer or smaller ones",
+                factors.len(),
+                filled / region.volume()
+            );
+            return Err(t.fail_here(message));
         }
         let shapes = self.shapes(&factors)?;
         let mut placing = RandomAddition::new(region)

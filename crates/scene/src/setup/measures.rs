@@ -61,16 +61,20 @@ pub(crate) struct Averages {
 
 pub(super) fn output(t: &Reader<'_>, name: &str, axes: &[Axis]) -> Result<Output, Problem> {
     let flag = |key: &str| t.flag(key).unwrap_or(true);
+    let snapshots = t.whole("snapshots").unwrap_or(50);
     Ok(Output {
         folder: t.text("folder").map_or_else(|| PathBuf::from("out").join(name), PathBuf::from),
-        snapshots: t.whole("snapshots").unwrap_or(50),
+        snapshots,
         fields: flag("fields"),
         bodies: flag("bodies"),
-        images: flag("images").then(|| images(t, axes)).transpose()?,
+        images: flag("images").then(|| images(t, axes, snapshots)).transpose()?,
     })
 }
 
-fn images(t: &Reader<'_>, axes: &[Axis]) -> Result<Images, Problem> {
+/// So many pictures a run has unless told.
+const PICTURES: usize = 20;
+
+fn images(t: &Reader<'_>, axes: &[Axis], snapshots: usize) -> Result<Images, Problem> {
     let quantity = match t.text("quantity") {
         Some("u") => Quantity::Component(0),
         Some("v") => Quantity::Component(1),
@@ -105,7 +109,7 @@ fn images(t: &Reader<'_>, axes: &[Axis]) -> Result<Images, Problem> {
             (normal, at)
         }
     };
-    Ok(Images { every: t.whole("image_every").unwrap_or(1), quantity, limits, slice })
+    Ok(Images { every: t.whole("image_every").unwrap_or((snapshots / PICTURES).max(1)), quantity, limits, slice })
 }
 
 pub(super) fn probes(

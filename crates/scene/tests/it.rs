@@ -1,0 +1,229 @@
+//! Scenes as their users have them: every file in `scenes/`, spoilt files, interrupted runs, folders that cannot be written to.
+use proptest::prelude::*;
+use proptest::test_runner::{Config, TestCaseError, TestRunner};
+use scene::{Ending, Options, Scene, json_schema, manual};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// Every scene file: path and text.
+fn scenes() -> Vec<(PathBuf, String)> {
+    let mut found: Vec<_> = std::fs::read_dir(root().join("scenes"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
+        .map(|path| (path.clone(), std::fs::read_to_string(path).unwrap()))
+        .collect();
+    found.sort();
+    found
+}
+
+/// The same scene with about a quarter of the cells along each axis: spoilt files are many.
+fn coarse(text: &str) -> String {
+    let shrink = |word: &str| match (word.trim().parse::<usize>(), word.trim().parse::<f64>()) {
+        (Ok(cells), _) => (cells / 4).max(4).to_string(),
+        (_, Ok(width)) => (4.0 * width).to_string(),
+        _ => word.to_owned(),
+    };
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some(at) = ["cells = ", "fine = "].iter().filter_map(|key| rest.find(key).map(|i| i + key.len())).min() {
+        let end = rest[at..].find([']', '}', '\n']).map_or(rest.len(), |i| at + i);
+        // Of a single number, only that.
+        let end = if rest[at..].starts_with('[') { end } else { rest[at..end].find(',').map_or(end, |i| at + i) };
+        out += &rest[..at];
+        let list = rest[at..end].strip_prefix('[');
+        let numbers: Vec<String> = list.unwrap_or(&rest[at..end]).split(',').map(shrink).collect();
+        out += &format!("{}{}", if list.is_some() { "[" } else { "" }, numbers.join(", "));
+        rest = &rest[end..];
+    }
+    out + rest
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("siltflow-scene-{name}-{}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&folder);
+    folder
+}
+
+fn quiet(out: &Path) -> Options {
+    Options { quiet: true, out: Some(out.into()), ..Options::default() }
+}
+
+#[test]
+fn the_manual_and_the_schema_are_those_of_the_code() {
+    let told = "run `cargo run --release --example scene -- --manual > docs/scene.md` and `-- --schema > scenes/schema.json`";
+    assert!(std::fs::read_to_string(root().join("docs/scene.md")).unwrap_or_default() == manual(), "{told}");
+    assert!(std::fs::read_to_string(root().join("scenes/schema.json")).unwrap_or_default() == json_schema(), "{told}");
+}
+
+#[test]
+fn every_scene_is_checked_in_a_second() {
+    let all = scenes();
+    assert!(all.len() >= 3);
+    for (path, _) in all {
+        let start = Instant::now();
+        let scene = Scene::load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let plan = scene.plan().unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        // Ten seconds where other tests run beside it; a second is what it takes alone.
+        assert!(start.elapsed() < Duration::from_secs(10), "{}: {:?}", path.display(), start.elapsed());
+        assert!(plan.steps > 0.0 && plan.cpu > 0.0, "{plan}");
+    }
+}
+
+/// One way to spoil a text.
+#[derive(Clone, Debug)]
+enum Spoil {
+    /// The byte at a share of the text becomes another.
+    Byte(f64, u8),
+    /// A line goes.
+    Drop(f64),
+    /// A line comes twice.
+    Twice(f64),
+    /// What stands behind an equals sign becomes something else.
+    Value(f64, &'static str),
+    /// The name of a key loses its first letter.
+    Key(f64),
+    /// A digit is put into a number.
+    Digit(f64, u8),
+    /// The rest is cut off.
+    Cut(f64),
+}
+
+const VALUES: [&str; 20] = [
+    "0", "-1", "1e300", "nan", "inf", "\"\"", "\"x\"", "[]", "[1, 2, 3, 4]", "{}", "true", "1979-05-27", "\"sin(\"", "\"1/t\"", "[[1]]", "1e-300",
+    "99999999999999999999", "\"periodic\"", "{ type = \"wall\" }", "'''\n'''",
+];
+
+fn spoil() -> impl Strategy<Value = Spoil> {
+    let at = || 0.0..1.0;
+    prop_oneof![
+        (at(), any::<u8>()).prop_map(|(a, b)| Spoil::Byte(a, b)),
+        at().prop_map(Spoil::Drop),
+        at().prop_map(Spoil::Twice),
+        (at(), proptest::sample::select(&VALUES[..])).prop_map(|(a, v)| Spoil::Value(a, v)),
+        (at(), proptest::sample::select(&VALUES[..])).prop_map(|(a, v)| Spoil::Value(a, v)),
+        at().prop_map(Spoil::Key),
+        (at(), b'0'..=b'9').prop_map(|(a, d)| Spoil::Digit(a, d)),
+        at().prop_map(Spoil::Cut),
+    ]
+}
+
+fn spoilt(text: &str, how: &Spoil) -> String {
+    let lines: Vec<&str> = text.lines().collect();
+    let pick = |share: f64, n: usize| ((share * n as f64) as usize).min(n.saturating_sub(1));
+    let on = |share: f64, change: &dyn Fn(&str) -> String, which: &dyn Fn(&str) -> bool| {
+        let fit: Vec<usize> = (0..lines.len()).filter(|&i| which(lines[i])).collect();
+        let chosen = fit.get(pick(share, fit.len())).copied();
+        let line = |(i, line): (usize, &&str)| if Some(i) == chosen { change(line) } else { (*line).to_owned() };
+        lines.iter().enumerate().map(line).collect::<Vec<_>>().join("\n")
+    };
+    let is_key = |line: &str| line.contains('=') && !line.trim_start().starts_with('#');
+    match *how {
+        Spoil::Byte(share, byte) => {
+            let mut bytes = text.as_bytes().to_vec();
+            let at = pick(share, bytes.len());
+            bytes[at] = byte;
+            String::from_utf8_lossy(&bytes).into_owned()
+        }
+        Spoil::Drop(share) => on(share, &|_| String::new(), &|line| !line.trim().is_empty()),
+        Spoil::Twice(share) => on(share, &|line| format!("{line}\n{line}"), &|line| !line.trim().is_empty()),
+        Spoil::Value(share, value) => on(share, &|line| format!("{} = {value}", line.split('=').next().unwrap_or("")), &is_key),
+        Spoil::Key(share) => on(share, &|line| line.chars().skip(1).collect(), &is_key),
+        Spoil::Digit(share, digit) => on(
+            share,
+            &|line| match line.rfind(|c: char| c.is_ascii_digit()) {
+                Some(at) => format!("{}{}{}", &line[..at], digit as char, &line[at..]),
+                None => line.to_owned(),
+            },
+            &is_key,
+        ),
+        Spoil::Cut(share) => {
+            let at = pick(share, text.len());
+            String::from_utf8_lossy(&text.as_bytes()[..at]).into_owned()
+        }
+    }
+}
+
+/// A thousand spoilt files: whatever is wrong is told with its key or line; what is right after all can be planned, and, if it is small,
+/// makes a step. Nothing panics, nothing takes ten seconds.
+#[test]
+fn spoilt_scenes_are_told_about() {
+    let all: Vec<_> = scenes().into_iter().map(|(path, text)| (path, coarse(&text))).collect();
+    for (path, text) in &all {
+        Scene::parse(&path.display().to_string(), text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    }
+    let strategy = (0..all.len(), proptest::collection::vec(spoil(), 1..3));
+    let mut runner = TestRunner::new(Config { cases: 1000, failure_persistence: None, ..Config::default() });
+    let out = folder("spoilt");
+    let stop = AtomicBool::new(false);
+    let result = runner.run(&strategy, |(which, spoils)| {
+        let (path, text) = &all[which];
+        let text = spoils.iter().fold(text.clone(), |text, how| spoilt(&text, how));
+        let start = Instant::now();
+        match Scene::parse(&path.display().to_string(), &text, &[]) {
+            Err(problems) => {
+                prop_assert!(problems.count() > 0);
+                for (line, _, message) in problems.iter() {
+                    prop_assert!(line >= 1 && line <= text.lines().count() + 1, "line {line}: {problems}");
+                    prop_assert!(message.len() > 10, "{message}");
+                }
+                prop_assert!(problems.to_string().contains(".toml:"));
+            }
+            Ok(scene) => match scene.plan() {
+                Err(error) => prop_assert!(error.to_string().len() > 10),
+                Ok(plan) if plan.cells.iter().product::<usize>() < 5000 && plan.bodies < 100 => {
+                    let short = ["time.end=1e-9", "output.snapshots=0", "output.images=false", "output.fields=false", "flow.iterations=2"];
+                    let short = short.map(String::from);
+                    if let Ok(scene) = Scene::parse(&path.display().to_string(), &text, &short)
+                        && let Err(error) = scene.run(&quiet(&out), &stop)
+                    {
+                        prop_assert!(error.to_string().len() > 10);
+                    }
+                }
+                Ok(_) => {}
+            },
+        }
+        let took = start.elapsed();
+        if took > Duration::from_secs(10) {
+            return Err(TestCaseError::fail(format!("{took:?}")));
+        }
+        Ok(())
+    });
+    let _ = std::fs::remove_dir_all(&out);
+    result.unwrap();
+}
+
+#[test]
+fn files_that_cannot_be_written_are_told() {
+    let out = folder("file");
+    std::fs::write(&out, "not a folder").unwrap();
+    let scene = Scene::load(&root().join("scenes/cavity.toml"), &["grid.cells=[8, 8]".into()]).unwrap();
+    let error = scene.run(&quiet(&out), &AtomicBool::new(false)).err().unwrap().to_string();
+    std::fs::remove_file(&out).unwrap();
+    assert!(error.contains("making the folder") && error.contains("siltflow-scene-file"), "{error}");
+}
+
+#[test]
+fn states_of_other_scenes_are_refused() {
+    let out = folder("other");
+    let small = |set: &[&str]| {
+        let mut all = vec!["grid.cells=[8, 8]", "time.end=1", "output.images=false", "output.snapshots=2"];
+        all.extend(set);
+        let all: Vec<String> = all.into_iter().map(String::from).collect();
+        Scene::load(&root().join("scenes/cavity.toml"), &all).unwrap()
+    };
+    let stop = AtomicBool::new(false);
+    assert_eq!(small(&[]).run(&quiet(&out), &stop).unwrap().ending, Ending::Done);
+    let go_on = Options { resume: true, ..quiet(&out) };
+    let error = small(&["fluid.nu=0.5"]).run(&go_on, &stop).err().unwrap().to_string();
+    assert!(error.contains("saved by another scene"), "{error}");
+    // A later end is no other scene.
+    let longer = small(&["time.end=2"]).run(&go_on, &stop).unwrap();
+    assert_eq!(longer.result["time"], 2.0);
+    std::fs::remove_dir_all(&out).unwrap();
+}

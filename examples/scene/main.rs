@@ -5,6 +5,7 @@
 //! cargo run --release --example scene -- scenes/cavity.toml --check
 //! cargo run --release --example scene -- scenes/two_discs.toml --set fluid.nu=2e-6 --set time.end=0.1 --threads 2
 //! cargo run --release --example scene -- scenes/two_discs.toml --resume
+//! cargo run --release --example scene -- scenes/*.toml --quiet         # all of them, with a table at the end
 //! ```
 //!
 //! Ctrl-C stops a run with whole files and a saved state. Exit codes: 0 done, 1 an error of the run, 2 an error of the scene or the command line, 3 not converged,
@@ -13,7 +14,7 @@ use clap::Parser;
 use scene::{Ending, Options, RunResult, Scene};
 use serde_json::json;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,9 +23,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 #[derive(Parser, Debug)]
 #[command(version)]
 struct Cli {
-    /// The scene file.
+    /// The scene files; of several a table is printed at the end.
     #[arg(required_unless_present_any = ["manual", "schema"])]
-    scene: Option<PathBuf>,
+    scenes: Vec<PathBuf>,
     /// Sets a value, whatever the file says: --set fluid.nu=2e-6, --set bodies.0.density=1100.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
@@ -59,16 +60,6 @@ fn main() -> ExitCode {
     if cli.manual || cli.schema {
         return print(&if cli.manual { scene::manual() } else { scene::json_schema() });
     }
-    let scene = match Scene::load(cli.scene.as_deref().unwrap_or("".as_ref()), &cli.set) {
-        Ok(scene) => scene,
-        Err(error) => return fail(2, &error),
-    };
-    if cli.check {
-        return match scene.plan() {
-            Ok(plan) => print(&plan.to_string()),
-            Err(error) => fail(2, &error),
-        };
-    }
     let stop = Arc::new(AtomicBool::new(false));
     let flag = stop.clone();
     let handler = ctrlc::set_handler(move || {
@@ -80,23 +71,77 @@ fn main() -> ExitCode {
     if let Err(error) = handler {
         return fail(1, &error);
     }
-    let options = Options { threads: cli.threads.into(), resume: cli.resume, quiet: cli.quiet, out: cli.out.clone() };
-    match scene.run(&options, &stop) {
-        Ok(result) => {
-            if cli.json {
-                let both = json!({ "result": result.result, "timings": result.timings });
-                print(&format!("{both:#}\n"));
-            } else if !cli.quiet {
-                print(&summary(&result));
+    let several = cli.scenes.len() > 1;
+    let (mut table, mut worst) = (String::new(), 0);
+    for path in &cli.scenes {
+        let code = match one(&cli, path, several, &mut table, &stop) {
+            Ok(code) => code,
+            Err((code, error)) => {
+                fail(code, &*error);
+                code
             }
-            match result.ending {
-                Ending::Done => ExitCode::SUCCESS,
-                Ending::NotConverged => ExitCode::from(3),
-                Ending::Stopped => ExitCode::from(130),
-            }
+        };
+        worst = worst.max(code);
+        if stop.load(Ordering::Relaxed) {
+            break;
         }
-        Err(error) => fail(1, &error),
     }
+    if several && !cli.check {
+        print(&format!("| scene | cells | steps | CPU s | for output | results |\n|---|---|---|---|---|---|\n{table}"));
+    }
+    ExitCode::from(worst)
+}
+
+type Failure = (u8, Box<dyn std::error::Error>);
+
+/// Checks or runs one scene; answers the exit code.
+fn one(cli: &Cli, path: &Path, several: bool, table: &mut String, stop: &AtomicBool) -> Result<u8, Failure> {
+    let scene = Scene::load(path, &cli.set).map_err(|e| (2, e.into()))?;
+    if cli.check {
+        let plan = scene.plan().map_err(|e| (2, e.into()))?;
+        print(&plan.to_string());
+        return Ok(0);
+    }
+    // A folder of its own for each.
+    let out = cli.out.as_ref().map(|out| match path.file_stem() {
+        Some(name) if several => out.join(name),
+        _ => out.clone(),
+    });
+    let options = Options { threads: cli.threads.into(), resume: cli.resume, quiet: cli.quiet, out };
+    let result = scene.run(&options, stop).map_err(|e| (1, e.into()))?;
+    if cli.json {
+        let both = json!({ "result": result.result, "timings": result.timings });
+        print(&format!("{both:#}\n"));
+    } else if !cli.quiet {
+        print(&summary(&result));
+    }
+    *table += &row(&result);
+    Ok(match result.ending {
+        Ending::Done => 0,
+        Ending::NotConverged => 3,
+        Ending::Stopped => 130,
+    })
+}
+
+/// A row of the table.
+fn row(result: &RunResult) -> String {
+    let (r, t) = (&result.result, &result.timings);
+    let number = |value: &serde_json::Value| value.as_f64().unwrap_or(f64::NAN);
+    let cells: Vec<String> = r["cells"].as_array().into_iter().flatten().map(ToString::to_string).collect();
+    let compared: Vec<String> = result
+        .compared
+        .iter()
+        .map(|c| format!("{} {:.5} ({}: {}, {:+.2} %)", c.name, c.found, c.source, c.reference, 100.0 * c.error()))
+        .collect();
+    format!(
+        "| {} | {} | {} | {:.1} | {:.0} % | {} |\n",
+        r["scene"].as_str().unwrap_or_default(),
+        cells.join(" × "),
+        r["steps"],
+        number(&t["cpu"]),
+        100.0 * number(&t["output"]) / number(&t["wall"]).max(1e-9),
+        compared.join("; "),
+    )
 }
 
 fn fail(code: u8, error: &dyn std::error::Error) -> ExitCode {
@@ -122,7 +167,7 @@ fn summary(result: &RunResult) -> String {
         number(&t["cpu"]),
         100.0 * number(&t["output"]) / number(&t["wall"]).max(1e-9),
     );
-    for body in r["forces"].as_array().into_iter().flatten() {
+    for body in r["forces"].as_array().into_iter().flatten().take(12) {
         let (name, load) = (body["body"].as_str().unwrap_or_default(), &body["load"]);
         out += &format!("  body {name}: force {:.6e}, {:.6e}, {:.6e}", number(&load["last"][0]), number(&load["last"][1]), number(&load["last"][2]));
         if let Some(c) = body["coefficients"]["mean"].as_array() {
@@ -140,6 +185,9 @@ fn summary(result: &RunResult) -> String {
             number(&l["energy_residual"]),
             number(&l["work"]),
         );
+    }
+    for c in &result.compared {
+        out += &format!("  {}: {:.6} (reference {}, {:+.2} %; {})\n", c.name, c.found, c.reference, 100.0 * c.error(), c.source);
     }
     if let Some(residual) = r["residual"].as_f64() {
         out += &format!("  residual {residual:.2e}\n");

@@ -13,6 +13,7 @@ mod population;
 mod preset;
 mod removal;
 mod restart;
+mod scenes;
 mod skipping;
 mod snapshots;
 mod strategies;

@@ -51,7 +51,7 @@ pub use build::BuildError;
 pub use options::Options;
 pub use plan::Plan;
 pub use problem::Problems;
-pub use result::{Ending, RunResult};
+pub use result::{Compared, Ending, RunResult};
 pub use run::RunError;
 pub use schema::{json_schema, manual};
 
@@ -83,7 +83,7 @@ pub enum SceneError {
 }
 
 /// Keys that may change when a run goes on.
-const LOOSE: [&str; 6] = ["title", "about", "output", "checkpoint", "probes", "time.end"];
+const LOOSE: [&str; 6] = ["title", "about", "output", "checkpoint", "references", "time.end"];
 
 impl Scene {
     /// Reads the file at `path`, with the values that `overrides` set (`fluid.nu=2e-6`).

@@ -20,6 +20,26 @@ pub enum Ending {
     NotConverged,
 }
 
+/// A result beside what others found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compared {
+    /// What it is.
+    pub name: String,
+    /// Here; not a number if the results do not have it.
+    pub found: f64,
+    /// There.
+    pub reference: f64,
+    /// Who says so.
+    pub source: String,
+}
+
+impl Compared {
+    /// found/reference − 1, or the difference where the reference is 0.
+    pub fn error(&self) -> f64 {
+        if self.reference == 0.0 { self.found } else { self.found / self.reference - 1.0 }
+    }
+}
+
 /// What came out of a run.
 #[derive(Clone, Debug)]
 pub struct RunResult {
@@ -31,6 +51,8 @@ pub struct RunResult {
     pub result: Value,
     /// What `timings.json` holds.
     pub timings: Value,
+    /// Results beside the scene's references.
+    pub compared: Vec<Compared>,
 }
 
 /// A number, or null for what is none.
@@ -111,7 +133,23 @@ impl RunResult {
                 "divergence": number(l.divergence),
             });
         }
-        Self { ending, folder: folder.into(), result, timings: Value::Null }
+        let compared: Vec<Compared> = setup
+            .references
+            .iter()
+            .map(|r| Compared {
+                name: r.name.clone(),
+                found: result.pointer(&r.pointer).and_then(Value::as_f64).unwrap_or(f64::NAN),
+                reference: r.value,
+                source: r.source.clone(),
+            })
+            .collect();
+        if !compared.is_empty() {
+            let row = |c: &Compared| {
+                json!({ "name": c.name, "found": number(c.found), "reference": c.reference, "error": number(c.error()), "source": c.source })
+            };
+            result["references"] = compared.iter().map(row).collect();
+        }
+        Self { ending, folder: folder.into(), result, timings: Value::Null, compared }
     }
 
     pub(crate) fn set(&mut self, key: &str, value: Value) {

@@ -255,15 +255,16 @@ impl Stage<'_> {
         };
         schedule.check()?;
         let mut log = Log::open(self.folder(), self.options.resume)?;
+        let begin = FlowSolver::time(&simulation.flow);
         log.line(&format!(
-            "{} {}: {} cells, {} bodies, to t = {} s",
+            "{} {} from t = {begin:.6e} s, step {}, to {} s: {} cells, {} bodies",
             if resume.is_some() { "going on with" } else { "running" },
             setup.name,
+            FlowSolver::steps(&simulation.flow),
+            setup.end,
             setup.cells(),
             setup.bodies.list.len(),
-            setup.end
         ))?;
-        let begin = FlowSolver::time(&simulation.flow);
         let mut look = Look {
             audience,
             books,

@@ -182,6 +182,13 @@ pub(crate) static SCENE: Table = Table {
         ),
         optional("forces", Kind::Table(&run::FORCES), "none", "Loads on bodies, step by step, with means and amplitudes.", "{ velocity = 0.2, area = 0.1, start = 5.0 }"),
         optional("averages", Kind::Table(&run::AVERAGES), "none", "Means in time of velocity and pressure, and the Reynolds stresses.", "{ start = 10.0 }"),
+        optional(
+            "references",
+            Kind::List(&Kind::Table(&run::REFERENCE), 0, 100),
+            "none",
+            "Numbers that results are set beside.",
+            "[{ name = \"drag\", pointer = \"/forces/0/coefficients/mean/0\", value = 5.5795 }]",
+        ),
         optional("checkpoint", Kind::Table(&run::CHECKPOINT), "all its defaults", "Saved states, from which `--resume` goes on.", "{ every = 60.0 }"),
     ],
 };

@@ -10,7 +10,7 @@ mod sides;
 pub(crate) use bodies::{BodySetup, Bodies, ContactLawChoice, ForcingChoice, Motion, StrategyChoice};
 pub(crate) use factories::InflowSetup;
 pub(crate) use flow::{Algorithm, FlowSetup};
-pub(crate) use measures::{Averages, Forces, Images, Output, ProbeSetup, Quantity};
+pub(crate) use measures::{Averages, Forces, Images, Output, ProbeSetup, Quantity, Reference};
 
 use crate::document::{Document, Place};
 use crate::expression::Expression;
@@ -46,6 +46,7 @@ pub(crate) struct Setup {
     pub(crate) probes: Vec<ProbeSetup>,
     pub(crate) forces: Option<Forces>,
     pub(crate) averages: Option<Averages>,
+    pub(crate) references: Vec<Reference>,
     /// Seconds of the wall clock between saved states.
     pub(crate) save_every: f64,
     pub(crate) save_at_end: bool,
@@ -105,6 +106,7 @@ impl Setup {
             probes: measures::probes(root, &context, &axes, &sides)?,
             forces: root.table("forces").map(|t| measures::forces(&t, end)),
             averages: root.table("averages").map(|t| measures::averages(&t, end, dim)).transpose()?,
+            references: measures::references(root)?,
             name,
             fluid,
             gravity,

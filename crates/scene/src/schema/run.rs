@@ -92,3 +92,13 @@ pub(super) static CHECKPOINT: Table = Table {
     ],
 };
 
+
+pub(super) static REFERENCE: Table = Table {
+    about: "A number of the results that others have measured or computed.",
+    keys: &[
+        required("name", Kind::Text, "What it is.", "\"drag coefficient\""),
+        required("pointer", Kind::Text, "Where it stands in `result.json`: a JSON pointer.", "\"/forces/0/coefficients/mean/0\""),
+        required("value", Kind::Number(Range::Any, ""), "What it is there, in SI units.", "5.57953523384"),
+        optional("source", Kind::Text, "none", "Who says so.", "\"Schäfer & Turek 1996\""),
+    ],
+};

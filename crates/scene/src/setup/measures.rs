@@ -59,6 +59,29 @@ pub(crate) struct Averages {
     pub(crate) profile: Option<usize>,
 }
 
+/// A number of the results and what it is elsewhere.
+#[derive(Clone, Debug)]
+pub(crate) struct Reference {
+    pub(crate) name: String,
+    pub(crate) pointer: String,
+    pub(crate) value: f64,
+    pub(crate) source: String,
+}
+
+pub(super) fn references(root: &Reader<'_>) -> Result<Vec<Reference>, Problem> {
+    let text = |t: &Reader<'_>, key: &str| t.text(key).unwrap_or_default().to_owned();
+    root.tables("references")
+        .iter()
+        .map(|t| {
+            let pointer = text(t, "pointer");
+            if !pointer.starts_with('/') {
+                return Err(t.fail("pointer", "a JSON pointer begins with a slash: /forces/0/coefficients/mean/0"));
+            }
+            Ok(Reference { name: text(t, "name"), pointer, value: t.number("value").unwrap_or(0.0), source: text(t, "source") })
+        })
+        .collect()
+}
+
 pub(super) fn output(t: &Reader<'_>, name: &str, axes: &[Axis]) -> Result<Output, Problem> {
     let flag = |key: &str| t.flag(key).unwrap_or(true);
     let snapshots = t.whole("snapshots").unwrap_or(50);

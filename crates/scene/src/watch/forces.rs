@@ -93,10 +93,12 @@ impl Sums {
             crossings: [n[31], n[32], n[33], n[34]],
         }
     }
-    /// Frequency of the lift \[1/s\], if it went to and fro twice at least.
+    /// Frequency of the lift \[1/s\], if it went to and fro twice at least, and by more than round-off.
     fn frequency(&self) -> Option<f64> {
         let [count, first, last, _] = self.crossings;
-        (count > 2.0 && last > first).then(|| (count - 1.0) / (last - first))
+        let largest = self.high.iter().zip(&self.low).map(|(h, l)| h.abs().max(l.abs())).fold(0.0, f64::max);
+        let swings = self.high[1] - self.low[1] > 1e-6 * largest;
+        (swings && count > 2.0 && last > first).then(|| (count - 1.0) / (last - first))
     }
 }
 

@@ -4,13 +4,16 @@ use super::Watch;
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
 use interfaces::{BodyId, Checkpoint, RestartError};
+use serde_json::{Value, json};
 use std::path::Path;
 
-/// Writes a line per body and snapshot to `trajectories.csv`.
+/// Writes a line per body and snapshot to `trajectories.csv`, and keeps the largest speed of those that were there from the start.
 pub(crate) struct TrajectoriesWatch {
     table: Table,
     /// Names of the bodies at the start.
     names: Vec<String>,
+    /// Of each the largest speed, and when it had it.
+    fastest: Vec<[f64; 2]>,
 }
 
 const HEADER: &str = "\
@@ -25,14 +28,19 @@ pub(crate) fn called(names: &[String], serial: u64) -> String {
 
 impl TrajectoriesWatch {
     pub(crate) fn new(folder: &Path, names: Vec<String>, resume: Option<f64>) -> Result<Self, CouplingError> {
-        let names = names.into_iter().map(|name| name.replace([',', '\n', '"'], "_")).collect();
-        Ok(Self { table: Table::open(&folder.join("trajectories.csv"), HEADER, resume.filter(|t| *t > 0.0))?, names })
+        let names: Vec<String> = names.into_iter().map(|name| name.replace([',', '\n', '"'], "_")).collect();
+        let table = Table::open(&folder.join("trajectories.csv"), HEADER, resume.filter(|t| *t > 0.0))?;
+        Ok(Self { table, fastest: vec![[0.0; 2]; names.len()], names })
     }
 }
 
 impl Checkpoint for TrajectoriesWatch {
-    fn save(&self, _: &mut dyn FnMut(&str, &[f64])) {}
-    fn restore<'a>(&mut self, _: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        sink("fastest", self.fastest.as_flattened());
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        let saved = RestartError::take(source, "fastest", 2 * self.fastest.len())?;
+        self.fastest.copy_from_slice(saved.as_chunks().0);
         Ok(())
     }
 }
@@ -40,6 +48,19 @@ impl Checkpoint for TrajectoriesWatch {
 impl Watch for TrajectoriesWatch {
     fn name(&self) -> &'static str {
         "trajectories"
+    }
+    fn step(&mut self, view: &mut dyn View, info: &StepInfo) -> Result<(), CouplingError> {
+        for b in (0..view.bodies().n_bodies()).map(BodyId) {
+            let speed = view.bodies().twist(b).linear.norm();
+            if let Some(fastest) = self.fastest.get_mut(view.serial(b) as usize).filter(|f| speed > f[0]) {
+                *fastest = [speed, info.time];
+            }
+        }
+        Ok(())
+    }
+    fn results(&self) -> Option<Value> {
+        let row = |(name, [speed, time]): (&String, &[f64; 2])| json!({ "body": name, "largest_speed": speed, "at": time });
+        Some(self.names.iter().zip(&self.fastest).map(row).collect())
     }
     fn snapshot(&mut self, view: &mut dyn View, _: &[f64], _: usize, info: &StepInfo) -> Result<(), CouplingError> {
         let dt = if info.dt > 0.0 { info.dt } else { 1.0 };

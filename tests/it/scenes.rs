@@ -1,0 +1,94 @@
+//! Scenes that are killed and go on.
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+/// The example that runs scenes: cargo builds examples before tests.
+fn program() -> PathBuf {
+    let test = std::env::current_exe().unwrap();
+    test.parent().unwrap().parent().unwrap().join("examples/scene")
+}
+
+fn command(scene: &str, set: &[&str], out: &Path) -> Command {
+    let mut command = Command::new(program());
+    command.arg(format!("{}/scenes/{scene}.toml", env!("CARGO_MANIFEST_DIR"))).args(["--quiet", "--out"]).arg(out);
+    // States as often as can be.
+    let common = ["output.snapshots=6", "output.image_every=6", "checkpoint.every=1e-3"];
+    for set in set.iter().chain(&common) {
+        command.args(["--set", set]);
+    }
+    command.stdout(Stdio::null()).stderr(Stdio::piped());
+    command
+}
+
+/// Runs `scene` as a whole, then kills it again and again while it runs and lets it go on: the results are the same, bit for bit, and so are the tables.
+fn killed(scene: &str, set: &[&str]) {
+    let folder = |name: &str| std::env::temp_dir().join(format!("siltflow-{name}-{scene}-{}", std::process::id()));
+    let (whole, pieces) = (folder("whole"), folder("pieces"));
+    for folder in [&whole, &pieces] {
+        let _ = std::fs::remove_dir_all(folder);
+    }
+    let run = command(scene, set, &whole).output().unwrap();
+    assert!(run.status.success(), "{scene}: {}", String::from_utf8_lossy(&run.stderr));
+    let mut kills = 0;
+    let mut wait = 40;
+    loop {
+        let mut command = command(scene, set, &pieces);
+        // Killed before it had saved anything, it begins anew.
+        if pieces.join("state.bin").exists() {
+            command.arg("--resume");
+        }
+        let mut child = command.spawn().unwrap();
+        // Longer each time, so that it comes to its end on slow machines, too.
+        std::thread::sleep(Duration::from_millis(wait));
+        wait += wait / 3;
+        if child.try_wait().unwrap().is_none() {
+            child.kill().unwrap();
+            kills += 1;
+        }
+        let ended = child.wait_with_output().unwrap();
+        if ended.status.success() {
+            break;
+        }
+        assert!(ended.status.code().is_none(), "{scene}: {}", String::from_utf8_lossy(&ended.stderr));
+        assert!(kills < 60, "{scene} does not come to its end");
+    }
+    assert!(kills > 0, "{scene} was too quick to be killed");
+    let mut compared = 0;
+    for name in ["result.json", "trajectories.csv", "forces.csv", "probes/wake.csv", "profile.csv", "averages.vti", "fields/00006.vti", "fields/00002.vti", "images/00006.png"] {
+        if whole.join(name).exists() {
+            let [a, b] = [&whole, &pieces].map(|folder| std::fs::read(folder.join(name)).unwrap_or_default());
+            assert!(a == b, "{scene}: {name} differs after {kills} kills");
+            compared += 1;
+        }
+    }
+    assert!(compared >= 3, "{scene}");
+    for folder in [&whole, &pieces] {
+        std::fs::remove_dir_all(folder).unwrap();
+    }
+}
+
+#[test]
+fn two_discs_that_are_killed_go_on() {
+    killed("two_discs", &["grid.cells=[60, 120]", "time.end=0.05", "forces.start=0.01"]);
+}
+
+#[test]
+fn vortices_that_are_killed_go_on() {
+    killed("taylor_green", &["time.end=5", "averages.profile=y", "averages.start=1"]);
+}
+
+#[test]
+fn bodies_that_come_and_go_and_are_killed_go_on() {
+    killed("raining_discs", &["grid.cells=[72, 144]", "time.end=0.3", "factories.0.rate=60"]);
+}
+
+#[test]
+fn a_cylinder_that_swings_and_is_killed_goes_on() {
+    killed("oscillating_cylinder", &["grid.x.fine=0.1", "grid.y.fine=0.1", "time.dt=0.025", "time.end=10", "forces.start=5"]);
+}
+
+#[test]
+fn polyhedra_that_are_killed_go_on() {
+    killed("sedimenting_polyhedra", &["grid.cells=[32, 32, 64]", "time.end=0.01"]);
+}

@@ -37,6 +37,9 @@ struct Cli {
     /// No model of what the grid does not resolve of the film between sphere and floor.
     #[arg(long)]
     no_lubrication: bool,
+    /// Markers on the surface itself, the kernel's blur made up for by the shear (`SmoothForcing::with_viscosity`).
+    #[arg(long)]
+    surface_markers: bool,
     #[command(flatten)]
     run: RunOptions,
 }
@@ -51,11 +54,15 @@ fn main() -> ExitCode {
 }
 
 fn settle<L: ContactLaw>(cli: &Cli, scene: &SettlingSphere, law: L, stop: &AtomicBool) -> Outcome<Ending> {
-    let mut forcing = SmoothForcing::new(cli.case.fluid().density);
+    let fluid = cli.case.fluid();
+    let mut forcing = SmoothForcing::new(fluid.density);
+    if cli.surface_markers {
+        forcing = forcing.with_viscosity(fluid.viscosity);
+    }
     if let Some(kernel) = cli.run.kernel {
         forcing = forcing.with_kernel(kernel);
     }
-    let setup = format!("{scene:?} {law:?}");
+    let setup = format!("{scene:?} {law:?} {}", cli.surface_markers);
     let mut fall = scene.build(forcing, law)?;
     let out = cli.run.out.clone().unwrap_or_else(|| "out/settling_sphere".into());
     let plan =

@@ -36,6 +36,7 @@ pub fn drag(per_diameter: usize, mut forcing: Box<dyn Forcing>) -> Outcome<f64> 
                 forcing.force(flow.velocity_mut(), &sphere);
                 flow.project(dt)?;
             }
+            forcing.finish(dt);
             flow.finish(dt)?;
         }
         let mean = flow.statistics().volume_flow.x / volume;

@@ -56,6 +56,7 @@ pub fn forced_step<const D: usize>(
         forcing.force(flow.velocity_mut(), bodies);
         flow.project(dt)?;
     }
+    forcing.finish(dt);
     Ok(flow.finish(dt)?)
 }
 

@@ -1,5 +1,6 @@
 //! A sphere that settles in a closed box (ten Cate, Nieuwstad, Derksen & Van den Akker 2002, Phys. Fluids 14, 4012).
 use crate::Outcome;
+use crate::axes::gathered;
 use crate::coupled::{Fall, Slice, View};
 use crate::picture::{Disc, Domain};
 use crate::reference_curve;
@@ -22,6 +23,12 @@ pub const START: f64 = 127.5e-3;
 pub const GRAVITY: f64 = 9.81;
 /// Sphere and floor: soft enough for the contact to cost little, hard enough for the sphere to sink in by far less than a cell.
 const YOUNGS_MODULUS: f64 = 1e6;
+/// Cells by which equal ones reach beyond the sphere: more than any kernel does.
+const MARGIN: f64 = 8.0;
+/// Widths of neighbouring cells elsewhere.
+const GROWTH: f64 = 1.1;
+/// Edge of a picture's pixels \[m\].
+const PIXEL: f64 = 1.25e-3;
 /// Fewer cells across the sphere cannot hold its markers.
 const LEAST_CELLS: usize = 4;
 
@@ -120,9 +127,16 @@ impl SettlingSphere {
         Ok(Lubricated::new(Chen::default(), viscosity, SmoothFilm::new(self.spacing())?)?)
     }
 
-    /// Cells along x, y and z: as nearly cubes as the box allows.
-    pub fn cells(&self) -> [usize; 3] {
-        BOX.map(|l| (l / self.spacing()).round().max(1.0) as usize)
+    /// The box: cubes where the sphere falls, cells that grow by a tenth towards the sides and the top.
+    ///
+    /// # Errors
+    /// None with a sensible number of cells.
+    pub fn grid(&self) -> Outcome<CartesianGrid<3>> {
+        let (h, reach) = (self.spacing(), 0.5 * DIAMETER + MARGIN * self.spacing());
+        let across =
+            |length: f64| gathered(length, h, [0.5 * length - reach, 0.5 * length + reach], GROWTH, 0.0);
+        let upright = gathered(BOX[2], h, [0.0, START + reach], GROWTH, 0.0)?;
+        Ok(CartesianGrid::from_axes([across(BOX[0])?, across(BOX[1])?, upright])?)
     }
 
     /// Sphere, walls and fluid at rest; the sphere meets the floor by `law`.
@@ -137,16 +151,13 @@ impl SettlingSphere {
             )
             .into());
         }
-        let cells = self.cells();
-        // The forcing wants equal cells, and 100 mm need not be a whole number of them: the box may be a little smaller or larger.
-        let lengths = cells.map(|n| n as f64 * self.spacing());
         let fluid = self.case.fluid();
-        let flow = Projection::new(CartesianGrid::new(cells, lengths)?, Side::WALL.everywhere(), fluid)?
+        let flow = Projection::new(self.grid()?, Side::WALL.everywhere(), fluid)?
             .with_diffusion(Diffusion::Explicit);
         let material = Material { density: DENSITY, youngs_modulus: YOUNGS_MODULUS, ..Material::default() };
         let mut bodies = RigidBodies::with_law(Periods::default(), law);
         bodies.add_wall(HalfSpace::new(Point::origin(), Vector::z())?, material)?;
-        let start = Pose::at([0.5 * lengths[0], 0.5 * lengths[1], START]);
+        let start = Pose::at([0.5 * BOX[0], 0.5 * BOX[1], START]);
         bodies.add(Sphere::new(0.5 * DIAMETER)?, material, start, Twist::default(), Freedom::FREE)?;
         let gravity = Vector::new(0.0, 0.0, -GRAVITY);
         let particles = Particles::new(bodies, forcing, fluid.density, gravity);
@@ -155,12 +166,7 @@ impl SettlingSphere {
 
     /// The plane through the sphere's centre, x to the right and z upwards.
     pub fn view<L: ContactLaw>(&self) -> View<3, L> {
-        let [nx, _, nz] = self.cells();
-        let domain = Domain {
-            width: nx as f64 * self.spacing(),
-            height: nz as f64 * self.spacing(),
-            periodic: [false; 2],
-        };
+        let domain = Domain { width: BOX[0], height: BOX[2], periodic: [false; 2] };
         // A little more than the sphere reaches.
         let max_speed = match self.case {
             Case::E1 => 0.04,
@@ -174,11 +180,12 @@ impl SettlingSphere {
 
 fn slice<L: ContactLaw>(fall: &Fall<3, L>) -> Slice {
     let (flow, bodies) = (&fall.flow, &fall.particles.bodies);
-    let (grid, pose) = (flow.grid(), bodies.pose(BodyId(0)));
-    let [nx, _, nz] = grid.cells();
-    let sampler = Sampler::new(grid, flow.sides());
+    let pose = bodies.pose(BodyId(0));
+    let [nx, nz] = [BOX[0], BOX[2]].map(|l| (l / PIXEL).round() as usize);
+    let sampler = Sampler::new(flow.grid(), flow.sides());
     let at = |i: usize| {
-        let x = [grid.axis(0).centre(i % nx), pose.position.y, grid.axis(2).centre(i / nx)];
+        let [x, z] = [i % nx, i / nx].map(|i| (i as f64 + 0.5) * PIXEL);
+        let x = [x, pose.position.y, z];
         sampler.velocity(flow.velocity(), x).map_or(f64::NAN, |u| Vector::from(u).norm())
     };
     let disc = Disc {

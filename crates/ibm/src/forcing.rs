@@ -93,6 +93,11 @@ pub trait Forcing: Send {
     /// A step of `dt` \[s\] is over: what is kept of it for the next is noted here.
     fn finish(&mut self, _dt: f64) {}
 
+    /// What was dissipated in the last step where the forcing blurs the flow, besides what the flow itself shows \[J\].
+    fn hidden_dissipation(&self) -> f64 {
+        0.0
+    }
+
     /// Hands every array of what is kept from step to step to `sink`.
     fn save(&self, _sink: &mut dyn FnMut(&str, &[f64])) {}
 

@@ -308,9 +308,15 @@ impl Forcing for SmoothForcing {
     }
 
     fn finish(&mut self, dt: f64) {
-        if let Some(viscosity) = self.viscosity {
-            self.bodies.iter_mut().filter_map(|m| m.shear.as_mut()).for_each(|s| s.finish(viscosity * dt));
+        let Some(viscosity) = self.viscosity else { return };
+        for Markers { shear, masses, alone, .. } in &mut self.bodies {
+            let rivals = if *alone { 1.0 } else { 2.0 * self.passes as f64 };
+            shear.iter_mut().for_each(|shear| shear.finish(viscosity * dt, masses, rivals));
         }
+    }
+
+    fn hidden_dissipation(&self) -> f64 {
+        self.bodies.iter().filter_map(|m| m.shear.as_ref()).map(|shear| shear.hidden).sum()
     }
 
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {

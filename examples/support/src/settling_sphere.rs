@@ -3,13 +3,15 @@ use crate::Outcome;
 use crate::axes::gathered;
 use crate::coupled::{Fall, Slice, View};
 use crate::picture::{Disc, Domain};
+use crate::prescribed_bodies::{PrescribedBodies, forced_step};
 use crate::reference_curve;
 use clap::ValueEnum;
 use coupling::{Particles, Simulation, WeightBalance};
 use dem::{Chen, ContactLaw, HalfSpace, Lubricated, Material, RigidBodies, Sphere};
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Sampler, Side};
-use ibm::{SmoothFilm, SmoothForcing};
+use ibm::{Forcing, SmoothFilm, SmoothForcing};
 use interfaces::{BodyId, Freedom, Kinematics, Periods, Point, Pose, Twist, Vector};
+use std::f64::consts::PI;
 
 /// Edges of the box \[m\]; gravity acts along −z.
 pub const BOX: [f64; 3] = [0.1, 0.1, 0.16];
@@ -162,6 +164,51 @@ impl SettlingSphere {
         let gravity = Vector::new(0.0, 0.0, -GRAVITY);
         let particles = Particles::new(bodies, forcing, fluid.density, gravity);
         Ok(Simulation::new(flow, particles, WeightBalance::None)?)
+    }
+
+    /// The speed \[m/s\] at which creeping flow bears the sphere's net weight in the middle of the box: no fall there is faster for long, since of all flows with these velocities on sphere and walls
+    /// the creeping one dissipates least (Helmholtz 1868).
+    ///
+    /// # Errors
+    /// Those of grid, flow and forcing.
+    pub fn creeping_speed(&self) -> Outcome<f64> {
+        let (fluid, h) = (self.case.fluid(), self.spacing());
+        let reach = 0.5 * DIAMETER + MARGIN * h;
+        let axis = |a: usize, shift| {
+            gathered(BOX[a], h, [0.5 * BOX[a] - reach, 0.5 * BOX[a] + reach], GROWTH, shift)
+        };
+        let grid = CartesianGrid::from_axes([axis(0, 0.37)?, axis(1, 0.3)?, axis(2, 0.11)?])?;
+        let mut flow =
+            Projection::new(grid, Side::WALL.everywhere(), fluid)?.with_diffusion(Diffusion::Explicit);
+        let mut forcing = SmoothForcing::new(fluid.density).with_viscosity(fluid.viscosity);
+        let at = BOX.map(|l| 0.5 * l);
+        // Reynolds number 1e-6.
+        let speed = 1e-6 * fluid.viscosity / DIAMETER;
+        let mut sphere = PrescribedBodies::default().with(Sphere::new(0.5 * DIAMETER)?, at, 0.0);
+        sphere.put(
+            BodyId(0),
+            Pose::at(at),
+            Twist { linear: Vector::new(0.0, 0.0, -speed), ..Twist::default() },
+        );
+        let (mut drags, mut last) = ([f64::NAN; 3], f64::NAN);
+        loop {
+            let end = flow.time() + DIAMETER * DIAMETER / fluid.viscosity;
+            let mut drag = 0.0;
+            while flow.time() < end {
+                let dt = flow.stable_dt(0.4);
+                forced_step(&mut flow, &mut forcing, &sphere, dt)?;
+                drag = forcing.reaction(BodyId(0)).force.z / dt;
+            }
+            drags = [drags[1], drags[2], drag];
+            // What the slowest mode leaves (Aitken).
+            let [first, second] = [drags[1] - drags[0], drags[2] - drags[1]];
+            let settled = drags[2] - second * second / (second - first);
+            if (settled / last - 1.0).abs() < 1e-4 {
+                let weight = (DENSITY - fluid.density) * PI / 6.0 * DIAMETER.powi(3) * GRAVITY;
+                return Ok(weight * speed / settled);
+            }
+            last = settled;
+        }
     }
 
     /// The plane through the sphere's centre, x to the right and z upwards.

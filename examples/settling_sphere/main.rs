@@ -4,12 +4,12 @@
 //! The speed is held against what was measured (E1, E4), over the whole fall and, apart, where the gap to the floor is below two cells: what the
 //! fluid does there is not resolved but modelled (`Lubricated`); `--no-lubrication` leaves that out, and the sphere bounces.
 //!
-//! Found with 12 cells per diameter: E4 1.6 % below the measured largest speed, E1 5.6 %.
+//! Found with 12 cells per diameter: E4 1.6 % below the measured largest speed; with markers on the surface E4 1.1 % and E1 4.3 %, of which the limit of fine grids leaves 4.1 % (docs/results.md).
 //!
 //! Sample runs:
 //! ```text
 //! cargo run --release --example settling_sphere                                   # E4, 12 cells per diameter
-//! cargo run --release --example settling_sphere -- --case e1
+//! cargo run --release --example settling_sphere -- --case e1 --surface-markers
 //! cargo run --release --example settling_sphere -- --cells-per-diameter 24 --end 1.1 --no-vtk
 //! ```
 mod report;

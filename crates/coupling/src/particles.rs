@@ -328,7 +328,7 @@ where
         self.check_inside(flow)?;
         timings.measure(Module::SolidFraction, || self.forcing.place(flow.velocity(), &self.bodies))?;
         S::exchange(self, flow, dt, timings)?;
-        self.forcing.finish(dt);
+        self.forcing.finish(dt, flow.implicit_diffusion());
         Ok(())
     }
 

@@ -90,8 +90,9 @@ pub trait Forcing: Send {
     /// Adds dt f_ib to the velocity so that it meets the bodies' motion.
     fn force(&mut self, velocity: &mut dyn VelocityField, bodies: &dyn Kinematics);
 
-    /// A step of `dt` \[s\] is over: what is kept of it for the next is noted here.
-    fn finish(&mut self, _dt: f64) {}
+    /// A step of `dt` \[s\] is over: what is kept of it for the next is noted here. `implicit` is the part of the viscous terms along each axis that was taken at the end of the step, before the forcing: 0 of explicit
+    /// ones, ½ by Crank–Nicolson's scheme.
+    fn finish(&mut self, _dt: f64, _implicit: Vector) {}
 
     /// What was dissipated in the last step where the forcing blurs the flow, besides what the flow itself shows \[J\].
     fn hidden_dissipation(&self) -> f64 {

@@ -83,10 +83,9 @@ impl SmoothForcing {
         self
     }
     /// Markers on the surface, in a fluid of this kinematic viscosity ν \[m²/s\]: where there is shear γ = τ/μ, the kernel blurs the kink of the velocity, and the markers read r γ less than there is
-    /// without slip (r = 0.31 to 0.34 cells for [`Kernel::Yang`]). They expect that, from the force τ that they gave in the last 3 h²/ν, so [`finish`](Forcing::finish) has to be called after every step ([`coupling`]'s `Particles` do);
-    /// before the first call it is as if there were no shear. For creeping and slow flow: the shear that lives shorter than that, or in less than a cell, is not made up for.
-    ///
-    /// [`coupling`]: https://docs.rs/coupling
+    /// without slip (r = 0.31 to 0.34 cells for [`Kernel::Yang`]). They expect that, from the force τ that they gave in the last 3 h²/ν (six times as long where bodies share fluid), so [`finish`](Forcing::finish) has to be called after every step
+    /// (`coupling::Particles` do); before the first call it is as if there were no shear. Shear that lives shorter than that is not made up for: a body that starts is larger by r. The tables of
+    /// [`SmoothFilm`](crate::SmoothFilm) are not made for it.
     #[must_use]
     pub fn with_viscosity(mut self, viscosity: f64) -> Self {
         self.viscosity = Some(viscosity);
@@ -307,11 +306,11 @@ impl Forcing for SmoothForcing {
         }
     }
 
-    fn finish(&mut self, dt: f64) {
+    fn finish(&mut self, dt: f64, implicit: Vector) {
         let Some(viscosity) = self.viscosity else { return };
         for Markers { shear, masses, alone, .. } in &mut self.bodies {
             let rivals = if *alone { 1.0 } else { 2.0 * self.passes as f64 };
-            shear.iter_mut().for_each(|shear| shear.finish(viscosity * dt, masses, rivals));
+            shear.iter_mut().for_each(|shear| shear.finish(viscosity * dt, implicit, (masses, rivals)));
         }
     }
 

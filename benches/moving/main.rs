@@ -4,6 +4,7 @@ mod shear;
 
 use example_support::cpu::Stopwatch;
 use example_support::moved_body::{Noise, Swinging, passing, turning};
+use example_support::settling_sphere::{Case, SettlingSphere};
 use example_support::{Outcome, periodic_cube, run_cases};
 use siltflow::flow::Diffusion;
 use siltflow::ibm::{Forcing, Hfdib, Kernel, SmoothForcing};
@@ -21,6 +22,7 @@ fn main() -> Outcome<()> {
         ("sphere", passing_3d),
         ("turning", turning_sphere),
         ("cube", sphere_in_cube),
+        ("box", creeping_in_a_box),
         ("shear", shear::sphere_in_shear),
         ("jeffery", shear::jeffery_orbit),
     ])
@@ -34,6 +36,9 @@ const WAYS: [Way; 4] = [
     ("smooth, quintic", || Box::new(SmoothForcing::new(1.0).with_kernel(Kernel::QuinticSpline))),
     ("hfdib", || Box::new(Hfdib::new(1.0))),
 ];
+
+/// Where the viscosity is 1.
+const ON_SURFACE: Way = ("surface, Yang", || Box::new(SmoothForcing::new(1.0).with_viscosity(1.0)));
 
 fn measured() -> Outcome<Vec<[f64; 2]>> {
     let row = |line: &str| -> Outcome<[f64; 2]> {
@@ -136,7 +141,7 @@ fn turning_sphere() -> Outcome<()> {
         "\nSphere that turns in creeping flow: torque over 8πμR³Ω, with explicit and with implicit diffusion"
     );
     println!("{:>16} {:>6} {:>9} {:>9} {:>8}", "forcing", "per D", "explicit", "implicit", "CPU s");
-    for (name, forcing) in WAYS {
+    for (name, forcing) in WAYS.into_iter().chain([ON_SURFACE]) {
         for per_diameter in [8, 12] {
             let watch = Stopwatch::start();
             let torque = |diffusion| turning(per_diameter, forcing(), diffusion);
@@ -156,13 +161,26 @@ fn sphere_in_cube() -> Outcome<()> {
         "\nFixed sphere in a periodic cube of 4 D, creeping flow: drag over 6πμRU, {exact:.4} by Hasimoto"
     );
     println!("{:>16} {:>6} {:>9} {:>8} {:>8}", "forcing", "per D", "drag", "off", "CPU s");
-    for (name, forcing) in WAYS {
+    for (name, forcing) in WAYS.into_iter().chain([ON_SURFACE]) {
         for per_diameter in [6, 8, 12] {
             let watch = Stopwatch::start();
             let drag = periodic_cube::drag(per_diameter, forcing())?;
             let (off, cpu) = (100.0 * (drag / exact - 1.0), watch.elapsed().cpu);
             println!("{name:>16} {per_diameter:>6} {drag:>9.4} {off:>7.2}% {cpu:>8.1}");
         }
+    }
+    Ok(())
+}
+
+fn creeping_in_a_box() -> Outcome<()> {
+    println!(
+        "\nSphere of ten Cate et al. (2002), E1, in creeping flow in the middle of its box: speed under its net weight"
+    );
+    println!("{:>6} {:>12} {:>8}", "per D", "speed mm/s", "CPU s");
+    for cells_per_diameter in [6, 8, 12] {
+        let watch = Stopwatch::start();
+        let speed = SettlingSphere { case: Case::E1, cells_per_diameter }.creeping_speed()?;
+        println!("{cells_per_diameter:>6} {:>12.3} {:>8.1}", 1e3 * speed, watch.elapsed().cpu);
     }
     Ok(())
 }

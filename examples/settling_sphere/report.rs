@@ -28,7 +28,7 @@ pub(crate) fn tell<L: ContactLaw>(
     let resolved = Distance::between(&velocity, &measured, |t| !near(t));
     let unresolved = Distance::between(&velocity, &measured, near);
     let closest = gap.iter().fold(f64::INFINITY, |least, g| least.min(g.1));
-    let [nx, ny, nz] = scene.cells();
+    let [nx, ny, nz] = scene.grid()?.cells();
     let [density, viscosity] = scene.case.oil();
     let sideways =
         record.motion.bodies.first().map_or(0.0, |states| {

@@ -1,5 +1,6 @@
 //! Bodies that move through the grid. `benches/moving` has more forcings, resolutions and steps.
-use example_support::moved_body::{MovedScene, Noise, Swinging, passing};
+use example_support::moved_body::{MovedScene, Noise, Swinging, passing, turning};
+use example_support::periodic_cube;
 use siltflow::coupling::{Particles, Simulation, WeightBalance};
 use siltflow::dem::{Disc, Material, RigidBodies, Sphere};
 use siltflow::flow::{CartesianGrid, Diffusion, Fluid, Projection, Side};
@@ -42,6 +43,19 @@ fn it_does_not_matter_what_moves() {
     let drag = |moves| mean(&passing::<3>(moves, 3, 10, 0.025, [1.2, 0.02], quiet()).unwrap()[30..]);
     let (moving, still) = (drag(true), drag(false));
     assert!((moving / still - 1.0).abs() < 0.01, "{moving} {still}");
+}
+
+/// Markers on the surface that make up for the kernel's blur: drag of a sphere in a periodic cube and torque on one that turns, 6 cells per diameter. Measured: 1.7 % too large and 0.8 % too small
+/// (markers that lie deeper: 6.3 and 0.4 % too large). With implicit
+/// diffusion, whose steps are ten times as long, the torque is the same within 1 % (deeper markers: 20 % less).
+#[test]
+fn markers_on_the_surface_are_right_for_drag_and_torque() {
+    let forcing = || Box::new(SmoothForcing::new(1.0).with_viscosity(1.0));
+    let drag = periodic_cube::drag(6, forcing()).unwrap() / periodic_cube::hasimoto();
+    let [explicit, implicit] =
+        [Diffusion::Explicit, Diffusion::Implicit].map(|d| turning(6, forcing(), d).unwrap());
+    assert!((drag - 1.0).abs() < 0.025 && (explicit - 1.0).abs() < 0.012, "{drag} {explicit}");
+    assert!((implicit / explicit - 1.0).abs() < 0.015, "{implicit} {explicit}");
 }
 
 /// What enters a box and what the momentum within it gains tell the force on a cylinder that moves in it, as its markers do.

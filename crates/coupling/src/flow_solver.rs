@@ -1,6 +1,6 @@
 //! What is asked of a flow.
 use fv_mesh::{CartesianGrid, Field, FlowError, FlowStatistics, Fluid, Piso, Projection, Sides, Velocity};
-use interfaces::Checkpoint;
+use interfaces::{Checkpoint, Vector};
 
 /// An algorithm for incompressible flow whose step has parts, so that bodies can act in between: `predict`, then as many
 /// [`rounds`](Self::rounds) of forcing and `project` as it asks for, then `finish`.
@@ -62,6 +62,11 @@ pub trait FlowSolver<const D: usize>: Checkpoint {
     fn courant(&self, dt: f64) -> f64;
     /// The longest step \[s\] with Courant number ≤ `courant` that is stable.
     fn stable_dt(&self, courant: f64) -> f64;
+    /// The part θ of the viscous terms along each axis that the predictor of the step under way took at its own end, so that they have not seen what was added to the velocity since: ½ by
+    /// Crank–Nicolson's scheme.
+    fn implicit_diffusion(&self) -> Vector {
+        Vector::zeros()
+    }
     /// The longest step that viscous terms allow \[s\]; infinite if any is stable.
     fn viscous_limit(&self) -> f64 {
         f64::INFINITY
@@ -132,6 +137,10 @@ impl<const D: usize> FlowSolver<D> for Projection<D> {
     }
     fn viscous_limit(&self) -> f64 {
         Projection::viscous_limit(self)
+    }
+    fn implicit_diffusion(&self) -> Vector {
+        let implicit = self.implicit_axes();
+        Vector::from_fn(|a, _| if a < D && implicit[a] { 0.5 } else { 0.0 })
     }
 }
 

@@ -11,7 +11,7 @@ use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Vector};
 /// way between the two (see [`Particles`]). Impulses: net weight, body force, contacts with walls,
 /// what holds bodies that are not free, and what the box's own walls do to the fluid. Energy: E = ½ρ∫_Ω u² + Σ½(1 − ρ/ρ_s)(mU² + ΩIΩ)
 /// against the work of net weight, body force and contacts less the viscous dissipation ρν∫|∇u|²
-/// (trapezoidal in time). What bodies bring that are put into the flow, and take along that are taken out, is no residual. (The fluid that a [`MovingWindow`](crate::MovingWindow) leaves behind is.)
+/// (trapezoidal in time) and what the forcing [hides](ibm::Forcing::hidden_dissipation). What bodies bring that are put into the flow, and take along that are taken out, is no residual. (The fluid that a [`MovingWindow`](crate::MovingWindow) leaves behind is.)
 ///
 /// The books open where a run begins. Those of an interrupted run go on, bit for bit, if they are saved beside the simulation and restored
 /// before the next.
@@ -170,6 +170,7 @@ impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy> Observer<Simulation<D
             contact_work += 0.5 * impulse.torque.dot(&(before.angular + twist.angular));
             sum += impulse.force.norm();
         }
+        let hidden = particles.forcing.hidden_dissipation();
         let impulse = weight + body_force + contacts + walls + held;
         sum += weight.norm() + body_force.norm() + walls.norm() + held.norm();
         let residual = books.momentum - last.momentum - brought.momentum - impulse;
@@ -184,7 +185,7 @@ impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy> Observer<Simulation<D
         r.divergence = r.divergence.max(now.divergence * dt);
         (r.in_transit, r.volume_flow) = (now.in_transit, now.volume_flow);
         r.work += 0.5 * dt * (last.power + books.power);
-        r.dissipation += 0.5 * dt * (last.dissipation + books.dissipation);
+        r.dissipation += 0.5 * dt * (last.dissipation + books.dissipation) + hidden;
         r.contact_work += contact_work;
         r.brought += brought.energy;
         r.energy[1] = books.energy;

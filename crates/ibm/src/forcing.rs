@@ -1,6 +1,6 @@
 //! What every immersed boundary offers.
 use crate::IbmError;
-use interfaces::{Bodies, BodyId, Kinematics, Renumbering, Vector, VelocityField, Wrench};
+use interfaces::{Bodies, BodyId, Kinematics, Renumbering, RestartError, Vector, VelocityField, Wrench};
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
 /// How the fluid that a forcing drags along resists a change of a body's motion: with generalised
@@ -89,6 +89,26 @@ pub trait Forcing: Send {
 
     /// Adds dt f_ib to the velocity so that it meets the bodies' motion.
     fn force(&mut self, velocity: &mut dyn VelocityField, bodies: &dyn Kinematics);
+
+    /// A step of `dt` \[s\] is over: what is kept of it for the next is noted here. `implicit` is the part of the viscous terms along each axis that was taken at the end of the step, before the forcing: 0 of explicit
+    /// ones, ½ by Crank–Nicolson's scheme.
+    fn finish(&mut self, _dt: f64, _implicit: Vector) {}
+
+    /// What was dissipated in the last step where the forcing blurs the flow, besides what the flow itself shows \[J\].
+    fn hidden_dissipation(&self) -> f64 {
+        0.0
+    }
+
+    /// Hands every array of what is kept from step to step to `sink`.
+    fn save(&self, _sink: &mut dyn FnMut(&str, &[f64])) {}
+
+    /// Takes back what was saved; markers are placed anew.
+    ///
+    /// # Errors
+    /// When something is missing.
+    fn restore<'a>(&mut self, _source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        Ok(())
+    }
 
     /// −ρ ∫ f_ib dV dt over all forcing since [`place`](Self::place): the impulse that the fluid
     /// put on body `b` and on the fluid inside it.

@@ -1,6 +1,7 @@
 //! Creeping flow through a cubic array of spheres.
 use crate::Outcome;
 use crate::prescribed_bodies::PrescribedBodies;
+use coupling::FlowSolver;
 use dem::Sphere;
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Side};
 use ibm::Forcing;
@@ -36,6 +37,7 @@ pub fn drag(per_diameter: usize, mut forcing: Box<dyn Forcing>) -> Outcome<f64> 
                 forcing.force(flow.velocity_mut(), &sphere);
                 flow.project(dt)?;
             }
+            forcing.finish(dt, flow.implicit_diffusion());
             flow.finish(dt)?;
         }
         let mean = flow.statistics().volume_flow.x / volume;

@@ -1,5 +1,6 @@
 //! Bodies that are where they are told to be and move as they are told.
 use crate::Outcome;
+use coupling::FlowSolver;
 use fv_mesh::Projection;
 use ibm::Forcing;
 use interfaces::{
@@ -56,6 +57,7 @@ pub fn forced_step<const D: usize>(
         forcing.force(flow.velocity_mut(), bodies);
         flow.project(dt)?;
     }
+    forcing.finish(dt, flow.implicit_diffusion());
     Ok(flow.finish(dt)?)
 }
 

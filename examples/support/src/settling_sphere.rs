@@ -1,14 +1,17 @@
 //! A sphere that settles in a closed box (ten Cate, Nieuwstad, Derksen & Van den Akker 2002, Phys. Fluids 14, 4012).
 use crate::Outcome;
+use crate::axes::gathered;
 use crate::coupled::{Fall, Slice, View};
 use crate::picture::{Disc, Domain};
+use crate::prescribed_bodies::{PrescribedBodies, forced_step};
 use crate::reference_curve;
 use clap::ValueEnum;
 use coupling::{Particles, Simulation, WeightBalance};
 use dem::{Chen, ContactLaw, HalfSpace, Lubricated, Material, RigidBodies, Sphere};
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Sampler, Side};
-use ibm::{SmoothFilm, SmoothForcing};
+use ibm::{Forcing, SmoothFilm, SmoothForcing};
 use interfaces::{BodyId, Freedom, Kinematics, Periods, Point, Pose, Twist, Vector};
+use std::f64::consts::PI;
 
 /// Edges of the box \[m\]; gravity acts along −z.
 pub const BOX: [f64; 3] = [0.1, 0.1, 0.16];
@@ -22,6 +25,12 @@ pub const START: f64 = 127.5e-3;
 pub const GRAVITY: f64 = 9.81;
 /// Sphere and floor: soft enough for the contact to cost little, hard enough for the sphere to sink in by far less than a cell.
 const YOUNGS_MODULUS: f64 = 1e6;
+/// Cells by which equal ones reach beyond the sphere: more than any kernel does.
+const MARGIN: f64 = 8.0;
+/// Widths of neighbouring cells elsewhere.
+const GROWTH: f64 = 1.1;
+/// Edge of a picture's pixels \[m\].
+const PIXEL: f64 = 1.25e-3;
 /// Fewer cells across the sphere cannot hold its markers.
 const LEAST_CELLS: usize = 4;
 
@@ -120,9 +129,16 @@ impl SettlingSphere {
         Ok(Lubricated::new(Chen::default(), viscosity, SmoothFilm::new(self.spacing())?)?)
     }
 
-    /// Cells along x, y and z: as nearly cubes as the box allows.
-    pub fn cells(&self) -> [usize; 3] {
-        BOX.map(|l| (l / self.spacing()).round().max(1.0) as usize)
+    /// The box: cubes where the sphere falls, cells that grow by a tenth towards the sides and the top.
+    ///
+    /// # Errors
+    /// None with a sensible number of cells.
+    pub fn grid(&self) -> Outcome<CartesianGrid<3>> {
+        let (h, reach) = (self.spacing(), 0.5 * DIAMETER + MARGIN * self.spacing());
+        let across =
+            |length: f64| gathered(length, h, [0.5 * length - reach, 0.5 * length + reach], GROWTH, 0.0);
+        let upright = gathered(BOX[2], h, [0.0, START + reach], GROWTH, 0.0)?;
+        Ok(CartesianGrid::from_axes([across(BOX[0])?, across(BOX[1])?, upright])?)
     }
 
     /// Sphere, walls and fluid at rest; the sphere meets the floor by `law`.
@@ -137,30 +153,67 @@ impl SettlingSphere {
             )
             .into());
         }
-        let cells = self.cells();
-        // The forcing wants equal cells, and 100 mm need not be a whole number of them: the box may be a little smaller or larger.
-        let lengths = cells.map(|n| n as f64 * self.spacing());
         let fluid = self.case.fluid();
-        let flow = Projection::new(CartesianGrid::new(cells, lengths)?, Side::WALL.everywhere(), fluid)?
+        let flow = Projection::new(self.grid()?, Side::WALL.everywhere(), fluid)?
             .with_diffusion(Diffusion::Explicit);
         let material = Material { density: DENSITY, youngs_modulus: YOUNGS_MODULUS, ..Material::default() };
         let mut bodies = RigidBodies::with_law(Periods::default(), law);
         bodies.add_wall(HalfSpace::new(Point::origin(), Vector::z())?, material)?;
-        let start = Pose::at([0.5 * lengths[0], 0.5 * lengths[1], START]);
+        let start = Pose::at([0.5 * BOX[0], 0.5 * BOX[1], START]);
         bodies.add(Sphere::new(0.5 * DIAMETER)?, material, start, Twist::default(), Freedom::FREE)?;
         let gravity = Vector::new(0.0, 0.0, -GRAVITY);
         let particles = Particles::new(bodies, forcing, fluid.density, gravity);
         Ok(Simulation::new(flow, particles, WeightBalance::None)?)
     }
 
+    /// The speed \[m/s\] at which creeping flow bears the sphere's net weight in the middle of the box: no fall there is faster for long, since of all flows with these velocities on sphere and walls
+    /// the creeping one dissipates least (Helmholtz 1868).
+    ///
+    /// # Errors
+    /// Those of grid, flow and forcing.
+    pub fn creeping_speed(&self) -> Outcome<f64> {
+        let (fluid, h) = (self.case.fluid(), self.spacing());
+        let reach = 0.5 * DIAMETER + MARGIN * h;
+        let axis = |a: usize, shift| {
+            gathered(BOX[a], h, [0.5 * BOX[a] - reach, 0.5 * BOX[a] + reach], GROWTH, shift)
+        };
+        let grid = CartesianGrid::from_axes([axis(0, 0.37)?, axis(1, 0.3)?, axis(2, 0.11)?])?;
+        let mut flow =
+            Projection::new(grid, Side::WALL.everywhere(), fluid)?.with_diffusion(Diffusion::Explicit);
+        let mut forcing = SmoothForcing::new(fluid.density).with_viscosity(fluid.viscosity);
+        let at = BOX.map(|l| 0.5 * l);
+        // Reynolds number 1e-6.
+        let speed = 1e-6 * fluid.viscosity / DIAMETER;
+        let mut sphere = PrescribedBodies::default().with(Sphere::new(0.5 * DIAMETER)?, at, 0.0);
+        sphere.put(
+            BodyId(0),
+            Pose::at(at),
+            Twist { linear: Vector::new(0.0, 0.0, -speed), ..Twist::default() },
+        );
+        let (mut drags, mut last) = ([f64::NAN; 3], f64::NAN);
+        loop {
+            let end = flow.time() + DIAMETER * DIAMETER / fluid.viscosity;
+            let mut drag = 0.0;
+            while flow.time() < end {
+                let dt = flow.stable_dt(0.4);
+                forced_step(&mut flow, &mut forcing, &sphere, dt)?;
+                drag = forcing.reaction(BodyId(0)).force.z / dt;
+            }
+            drags = [drags[1], drags[2], drag];
+            // What the slowest mode leaves (Aitken).
+            let [first, second] = [drags[1] - drags[0], drags[2] - drags[1]];
+            let settled = drags[2] - second * second / (second - first);
+            if (settled / last - 1.0).abs() < 1e-4 {
+                let weight = (DENSITY - fluid.density) * PI / 6.0 * DIAMETER.powi(3) * GRAVITY;
+                return Ok(weight * speed / settled);
+            }
+            last = settled;
+        }
+    }
+
     /// The plane through the sphere's centre, x to the right and z upwards.
     pub fn view<L: ContactLaw>(&self) -> View<3, L> {
-        let [nx, _, nz] = self.cells();
-        let domain = Domain {
-            width: nx as f64 * self.spacing(),
-            height: nz as f64 * self.spacing(),
-            periodic: [false; 2],
-        };
+        let domain = Domain { width: BOX[0], height: BOX[2], periodic: [false; 2] };
         // A little more than the sphere reaches.
         let max_speed = match self.case {
             Case::E1 => 0.04,
@@ -174,11 +227,12 @@ impl SettlingSphere {
 
 fn slice<L: ContactLaw>(fall: &Fall<3, L>) -> Slice {
     let (flow, bodies) = (&fall.flow, &fall.particles.bodies);
-    let (grid, pose) = (flow.grid(), bodies.pose(BodyId(0)));
-    let [nx, _, nz] = grid.cells();
-    let sampler = Sampler::new(grid, flow.sides());
+    let pose = bodies.pose(BodyId(0));
+    let [nx, nz] = [BOX[0], BOX[2]].map(|l| (l / PIXEL).round() as usize);
+    let sampler = Sampler::new(flow.grid(), flow.sides());
     let at = |i: usize| {
-        let x = [grid.axis(0).centre(i % nx), pose.position.y, grid.axis(2).centre(i / nx)];
+        let [x, z] = [i % nx, i / nx].map(|i| (i as f64 + 0.5) * PIXEL);
+        let x = [x, pose.position.y, z];
         sampler.velocity(flow.velocity(), x).map_or(f64::NAN, |u| Vector::from(u).norm())
     };
     let disc = Disc {

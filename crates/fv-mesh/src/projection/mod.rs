@@ -326,6 +326,11 @@ impl<const D: usize> Projection<D> {
         self.diffusion.limit(self.sources.eddy_most(), &[false; D])
     }
 
+    /// The axes along which viscous terms were implicit (Crank–Nicolson) in the last predictor.
+    pub fn implicit_axes(&self) -> [bool; D] {
+        self.diffusion.last
+    }
+
     /// The longest step \[s\] with Courant number ≤ `courant`; a tenth inside the viscous limit where diffusion is
     /// explicit, at most ten times that limit where it may be implicit.
     pub fn stable_dt(&self, courant: f64) -> f64 {

@@ -192,17 +192,20 @@ fn uniform_cell(
     let mut cell = 1.0;
     for axis in 0..velocity.dim() {
         let [mut least, mut most] = [f64::INFINITY, 0.0_f64];
+        let mut narrowest = f64::INFINITY;
         for c in 0..velocity.dim() {
             let nodes = &velocity.lattice(c).axes[axis];
             let [_, here] = nodes.spacings(bounds.min[axis], bounds.max[axis]);
             let reach = kernel.reach() * here;
             let [low, high] = nodes.spacings(bounds.min[axis] - reach, bounds.max[axis] + reach);
             (least, most) = (least.min(low), most.max(high));
+            narrowest = narrowest.min(nodes.spacings(nodes.place(0), nodes.place(nodes.len() as isize - 1))[0]);
         }
         if most - least > UNEQUAL * most {
             return Err(IbmError::Stretched { body, axis, least, most });
         }
-        cell *= least;
+        // Where the narrowest cells are it is the same number wherever the body is, to the last bit: a run that goes on makes the same markers.
+        cell *= if least - narrowest <= UNEQUAL * narrowest { narrowest } else { least };
     }
     Ok(cell)
 }

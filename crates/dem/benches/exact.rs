@@ -34,6 +34,42 @@ fn rock(n: Vector) -> f64 {
     1.0 + 0.12 * (5.0 * n.x + 1.0).sin() * (4.0 * n.y).cos() + 0.1 * (6.0 * n.z + 2.0 * n.x).sin()
 }
 
+/// Numbers between 0 and 1 (Knuth's linear congruence).
+struct Draw(u64);
+
+impl Draw {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+    fn turn(&mut self) -> Rotation {
+        Rotation::from_scaled_axis(Vector::from_fn(|_, _| 6.0 * self.next() - 3.0))
+    }
+}
+
+/// Pairs of poses in which two bodies share this part of the smaller one: the second comes along a random line until they do.
+fn poses(a: &dyn Shape, b: &dyn Shape, share: f64) -> Vec<[Pose; 2]> {
+    let (mut draw, mut solver) = (Draw(7), OverlapSolver::new());
+    let wanted = share * a.inertia(1.0).volume.min(b.inertia(1.0).volume);
+    let mut place = |_| {
+        let (along, turns) = (draw.turn() * Vector::x(), [draw.turn(), draw.turn()]);
+        let at = |d: f64| {
+            [(0.0, turns[0]), (d, turns[1])]
+                .map(|(d, orientation)| Pose { position: Point::from(d * along), orientation })
+        };
+        let (mut near, mut far) = (0.0, a.bounding_radius() + b.bounding_radius());
+        for _ in 0..30 {
+            let middle = 0.5 * (near + far);
+            let [p, q] = at(middle);
+            let patches = solver.solve(a, &p, b, &q).expect("an overlap");
+            let volume: f64 = patches.iter().map(|o| o.volume).sum();
+            *(if volume > wanted { &mut near } else { &mut far }) = middle;
+        }
+        at(near)
+    };
+    (0..64).map(&mut place).collect()
+}
+
 fn main() {
     let mut solver = OverlapSolver::new();
     let word = std::env::args().skip(1).find(|word| !word.starts_with("--"));
@@ -89,6 +125,25 @@ fn main() {
                 &mesh,
                 at((direction * 1.8).into(), turn),
             );
+        }
+    }
+    // Poses that the branch predictor cannot learn.
+    for (kind, radius) in [("round", (|_| 1.0) as fn(Vector) -> f64), ("rocks", rock)] {
+        let mesh = mesh(3, radius);
+        for share in [0.005, 0.02, 0.09, 0.31, 0.55, 0.79] {
+            let name = format!("{kind}, 1280 triangles, 64 random poses, {} %", 100.0 * share);
+            if word.as_ref().is_some_and(|word| !name.contains(word)) {
+                continue;
+            }
+            let poses = poses(&mesh, &mesh, share);
+            let us = time(|| {
+                for [p, q] in &poses {
+                    std::hint::black_box(
+                        solver.solve(&mesh, p, std::hint::black_box(&mesh), q).expect("an overlap"),
+                    );
+                }
+            });
+            println!("{name:55} {:9.3} µs", us / poses.len() as f64);
         }
     }
 }

@@ -32,7 +32,7 @@ pub use cylinder::Cylinder;
 pub use disc::Disc;
 pub use ellipsoid::Ellipsoid;
 pub use facets::Facets;
-pub(crate) use facets::{Leaf, Patches, WIDTH, bits, moved};
+pub(crate) use facets::{Patches, Places, WIDTH, Words, moved, parts, slack};
 pub use half_space::HalfSpace;
 #[cfg(any(test, feature = "mesh"))]
 pub(crate) use icosphere::icosphere;

@@ -1,10 +1,12 @@
 //! A closed surface of triangles, as overlaps need it.
+mod eight;
 mod leaf;
 mod patches;
 mod tree;
 
-pub(crate) use leaf::{Leaf, moved};
-pub(crate) use patches::{Patches, bits};
+pub(crate) use eight::{Words, parts};
+pub(crate) use leaf::{Leaf, Places, moved, slack};
+pub(crate) use patches::Patches;
 use tree::Node;
 pub(crate) use tree::WIDTH;
 
@@ -95,8 +97,7 @@ impl Facets {
         let bounds = vertices.iter().fold(start, |[low, high], v| [low.inf(v), high.sup(v)]);
         let radius = vertices.iter().map(|v| v.norm()).fold(0.0, f64::max);
         let (shells, shell_of) = (Vec::new(), vec![u32::MAX; vertices.len()]);
-        let triangle = |f: &Face| f.corners.map(|v| vertices[v as usize]);
-        let leaves = faces.chunks(WIDTH).map(|c| Leaf::new(c.iter().map(triangle))).collect();
+        let leaves = faces.chunks(WIDTH).map(|eight| Leaf::new(eight, &vertices, radius)).collect();
         let mut all = Self {
             vertices,
             faces,

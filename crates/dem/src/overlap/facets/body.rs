@@ -1,5 +1,5 @@
 //! One of the two bodies, and the marks that an overlap leaves on it.
-use crate::shapes::{Facets, Leaf, Patches, moved};
+use crate::shapes::{Facets, Patches, Places, moved};
 use interfaces::Vector;
 use nalgebra::Matrix3;
 
@@ -8,7 +8,9 @@ use nalgebra::Matrix3;
 pub(super) struct Marks {
     run: u32,
     patches: Vec<Marked<Patches>>,
-    leaves: Vec<Marked<Leaf>>,
+    leaves: Vec<Marked<Places>>,
+    /// Of a body that is moved, where the corners of these leaves are.
+    places: Vec<Vector>,
     edges: Vec<Marked<Crossed>>,
     /// Of faces that the other body's surface crosses: where they are in `cut`.
     faces: Vec<Marked<u32>>,
@@ -36,6 +38,17 @@ pub(super) struct Cut {
     pub(super) face: u32,
     /// The point of its plane nearest to the reference point, from there.
     pub(super) foot: Vector,
+}
+
+/// The plane of a face that is cut.
+#[derive(Clone, Copy)]
+pub(super) struct Plane {
+    pub(super) face: u32,
+    /// Its number among the cut ones.
+    pub(super) number: u32,
+    pub(super) corner: Vector,
+    /// Not of unit length.
+    pub(super) normal: Vector,
 }
 
 /// What crosses an edge.
@@ -75,6 +88,7 @@ impl Marks {
         fit(&mut self.edges, facets.edges.len());
         fit(&mut self.patches, facets.patches.len());
         fit(&mut self.leaves, facets.leaves.len());
+        fit(&mut self.places, facets.vertices.len());
         self.cut.clear();
         self.found.clear();
         self.known.clear();
@@ -129,37 +143,54 @@ impl Body<'_> {
             &self.facets.patches[n as usize]
         }
     }
-    /// Sees to it that [`leaf`](Self::leaf) can be asked for.
+    /// Sees to it that [`places`](Self::places), and of its vertices [`prepared`](Self::prepared) can be asked for.
     #[inline(always)]
     pub(super) fn prepare_leaf(&mut self, n: u32) {
         let Some((turn, shift)) = &self.moved else { return };
+        let extent = self.extent();
         let own = &mut self.marks.leaves[n as usize];
         if own.run != self.marks.run {
             own.run = self.marks.run;
-            own.value.move_from(&self.facets.leaves[n as usize], turn, shift);
+            let leaf = &self.facets.leaves[n as usize];
+            own.value.move_from(&leaf.places, turn, shift, extent);
+            for v in leaf.vertices() {
+                self.marks.places[*v as usize] = self.place(*v);
+            }
         }
     }
-    /// Eight faces, in the common frame.
+    /// Where eight faces are, in the common frame, in single precision.
     #[inline(always)]
-    pub(super) fn leaf(&self, n: u32) -> &Leaf {
+    pub(super) fn places(&self, n: u32) -> &Places {
         if self.moved.is_some() {
             &self.marks.leaves[n as usize].value
         } else {
-            &self.facets.leaves[n as usize]
+            &self.facets.leaves[n as usize].places
         }
     }
-    /// The number among the cut faces of face `f`, with a corner and the normal.
+    /// Where a vertex of a leaf is that was prepared.
+    #[inline(always)]
+    pub(super) fn prepared(&self, v: u32) -> Vector {
+        let places = if self.moved.is_some() { &self.marks.places } else { &self.facets.vertices };
+        places[v as usize]
+    }
+    /// No coordinate in the common frame exceeds this.
     #[inline]
-    pub(super) fn cut(&mut self, f: u32, corner: Vector, normal: Vector) -> u32 {
+    pub(super) fn extent(&self) -> f64 {
+        self.facets.radius + self.moved.map_or(0.0, |(_, shift)| shift.norm())
+    }
+    /// The plane of face `f`, which is cut, with these corners.
+    #[inline]
+    pub(super) fn cut(&mut self, f: u32, [a, b, c]: &[Vector; 3]) -> Plane {
+        let normal = (b - a).cross(&(c - a));
         let mark = &mut self.marks.faces[f as usize];
         if mark.run != self.marks.run {
             *mark = Marked { run: self.marks.run, value: self.marks.cut.len() as u32 };
             let square = normal.norm_squared();
-            let height = normal.dot(&(corner - self.reference));
+            let height = normal.dot(&(a - self.reference));
             let foot = if square > 0.0 { normal * (height / square) } else { Vector::zeros() };
             self.marks.cut.push(Cut { face: f, foot });
         }
-        mark.value
+        Plane { face: f, number: mark.value, corner: *a, normal }
     }
     /// The foot of a face that is cut.
     #[inline]

@@ -1,5 +1,5 @@
 //! Where the edges of one body pass through the faces of the other.
-use super::body::{Body, Crossed};
+use super::body::{Body, Crossed, Plane};
 use interfaces::Vector;
 
 /// An edge of one body in a face of the other.
@@ -61,32 +61,25 @@ impl Crossings {
         })
     }
 
-    /// The number of the crossing of an edge of `own` with a `face` of the other body, which has a `corner` and a `normal`.
+    /// The number of the crossing of an edge of `own` with a face of the other body.
     #[inline]
-    pub(super) fn get(
-        &mut self,
-        own: &mut Body<'_>,
-        edge: &Straddling,
-        face: u32,
-        corner: Vector,
-        normal: Vector,
-    ) -> u32 {
+    pub(super) fn get(&mut self, own: &mut Body<'_>, edge: &Straddling, other: &Plane) -> u32 {
         let mut crossed = own.crossed(edge.edge);
-        let known = self.of(crossed).find(|(_, c)| c.face == face).map(|(number, _)| number);
+        let known = self.of(crossed).find(|(_, c)| c.face == other.face).map(|(number, _)| number);
         if let Some(number) = known {
             return number;
         }
         let number = self.all.len() as u32;
         let leaves = edge.leaves;
         let (from, to) = if leaves { (edge.behind, edge.ahead) } else { (edge.ahead, edge.behind) };
-        let (start, end) = (normal.dot(&(from - corner)), normal.dot(&(to - corner)));
+        let (start, end) = (other.normal.dot(&(from - other.corner)), other.normal.dot(&(to - other.corner)));
         let along = start / (start - end);
         // Both ends in the plane, but for round-off: anywhere.
         let along = if along.is_finite() { along.clamp(0.0, 1.0) } else { 0.5 };
         let arm = (from - own.reference) + (to - from) * along;
         let next = std::mem::replace(&mut crossed.first, number);
         let of_first = own.moved.is_some();
-        self.all.push(Crossing { edge: edge.edge, face, next, of_first, leaves, along, arm });
+        self.all.push(Crossing { edge: edge.edge, face: other.face, next, of_first, leaves, along, arm });
         crossed.net += if leaves { -1 } else { 1 };
         own.cross(edge.edge, crossed);
         number

@@ -1,7 +1,9 @@
 //! Boxes along the faces that they hold.
 use super::WIDTH;
+use super::eight::{Singles, cross, dot, minus, parts};
 use interfaces::Vector;
-use nalgebra::{Matrix3, SymmetricEigen};
+use nalgebra::Matrix3;
+use pulp::Simd;
 
 /// Eight boxes, each around a part of a surface and turned with it: where faces are nearly flat, a box is thin, and stays so however
 /// the body turns (Gottschalk, Lin & Manocha 1996, "OBBTree").
@@ -21,6 +23,8 @@ pub(crate) struct Patches {
     pub(crate) children: [u32; WIDTH],
     /// Which of the boxes there are, a bit each.
     filled: u32,
+    /// What places may be off by.
+    slack: f32,
 }
 
 type Lanes = [f32; WIDTH];
@@ -40,6 +44,7 @@ impl Default for Patches {
             halves: zero,
             children: [u32::MAX; WIDTH],
             filled: 0,
+            slack: 0.0,
         }
     }
 }
@@ -53,6 +58,7 @@ pub(crate) struct Patch {
     normal: [f32; 3],
     thick: f32,
     half: [f32; 3],
+    slack: f32,
 }
 
 impl Patches {
@@ -65,12 +71,7 @@ impl Patches {
     ) {
         let corners = || triangles.clone().flatten();
         let axes = axes(triangles.clone());
-        let ends = |n: &Vector| {
-            corners()
-                .map(|x| x.dot(n))
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
-        };
-        let ends = axes.each_ref().map(ends);
+        let ends = axes.each_ref().map(|axis| reach(corners(), axis));
         let half = ends.map(|[low, high]| 0.5 * (high - low));
         let centre: Vector = axes.iter().zip(ends).map(|(n, [low, high])| n * (0.5 * (low + high))).sum();
         for a in 0..3 {
@@ -83,17 +84,18 @@ impl Patches {
         self.thick[slot] = half[2] as f32 + SLACK * largest + f32::MIN_POSITIVE;
         self.children[slot] = child;
         self.filled |= 1 << slot;
-        self.set_halves(SLACK * largest);
+        self.slack = self.slack.max(SLACK * largest);
+        self.set_halves();
     }
 
     #[inline(always)]
-    fn set_halves(&mut self, slack: f32) {
+    fn set_halves(&mut self) {
         for a in 0..3 {
             for i in 0..WIDTH {
                 self.halves[a][i] = self.long[a][i].abs()
                     + self.wide[a][i].abs()
                     + self.normals[a][i].abs() * self.thick[i]
-                    + slack;
+                    + self.slack;
             }
         }
     }
@@ -117,7 +119,8 @@ impl Patches {
                 self.normals[a][i] = along(&own.normals);
             }
         }
-        self.set_halves(slack);
+        self.slack = own.slack + slack;
+        self.set_halves();
     }
 
     /// One of the boxes.
@@ -131,36 +134,44 @@ impl Patches {
             normal: of(&self.normals),
             thick: self.thick[slot],
             half: of(&self.halves),
+            slack: self.slack,
         }
     }
 
-    /// Which of the boxes may meet another one, a bit each: those that no axis and no face along the surface parts.
+    /// Which of the boxes may meet another one, a bit each: those that no axis, no face along the surface and no stretch of the line
+    /// in which two flat ones would cross parts.
     #[inline(always)]
-    pub(crate) fn meeting(&self, other: &Patch) -> u32 {
-        let mut apart = [f32::NEG_INFINITY; WIDTH];
-        for i in 0..WIDTH {
-            let of = |lanes: &[Lanes; 3]| [lanes[0][i], lanes[1][i], lanes[2][i]];
-            let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-            let (c, n) = (of(&self.centres), of(&self.normals));
-            let t = [c[0] - other.centre[0], c[1] - other.centre[1], c[2] - other.centre[2]];
-            let (thick, tilt) = (self.thick[i], dot(n, other.normal).abs());
-            let mut gap = more(
-                dot(n, t).abs()
-                    - dot(n, other.long).abs()
-                    - dot(n, other.wide).abs()
-                    - (tilt * other.thick + thick),
-                dot(other.normal, t).abs()
-                    - dot(other.normal, of(&self.long)).abs()
-                    - dot(other.normal, of(&self.wide)).abs()
-                    - (tilt * thick + other.thick),
-            );
+    pub(crate) fn meeting<S: Simd>(&self, simd: S, other: &Patch) -> u32 {
+        let mut bits = 0;
+        for part in parts::<S>() {
+            let (n, m) =
+                (Singles::load_all(simd, &self.normals, part), Singles::splat_all(simd, other.normal));
+            let t =
+                minus(Singles::load_all(simd, &self.centres, part), Singles::splat_all(simd, other.centre));
+            let own = [Singles::load_all(simd, &self.long, part), Singles::load_all(simd, &self.wide, part)];
+            let others = [Singles::splat_all(simd, other.long), Singles::splat_all(simd, other.wide)];
+            let (thick, others_thick) =
+                (Singles::load(simd, &self.thick, part), Singles::splat(simd, other.thick));
+            let tilt = dot(n, m).abs();
+            let mut apart = dot(n, t).abs().above(over(n, others) + tilt.mul_add(others_thick, thick))
+                | dot(m, t).abs().above(over(m, own) + tilt.mul_add(thick, others_thick));
             for a in 0..3 {
-                gap = more(gap, t[a].abs() - (self.halves[a][i] + other.half[a]));
+                let reach = Singles::load(simd, &self.halves[a], part) + Singles::splat(simd, other.half[a]);
+                apart = apart | t[a].abs().above(reach);
             }
-            apart[i] = gap;
+            let v = cross(n, m);
+            let slack = Singles::splat(simd, self.slack + other.slack);
+            apart = apart | dot(v, t).abs().above(over(v, own) + over(v, others) + slack);
+            bits |= apart.lacking(part);
         }
-        bits(apart) & self.filled
+        bits & self.filled
     }
+}
+
+/// How far two half edges reach along an axis.
+#[inline(always)]
+fn over<S: Simd>(axis: [Singles<S>; 3], half: [[Singles<S>; 3]; 2]) -> Singles<S> {
+    dot(axis, half[0]).abs() + dot(axis, half[1]).abs()
 }
 
 impl Patch {
@@ -171,51 +182,45 @@ impl Patch {
     }
 }
 
-/// Which of these gaps are not positive, a bit each; what is no number counts as none.
-#[inline(always)]
-pub(crate) fn bits(gaps: Lanes) -> u32 {
-    // In memory: told what becomes of them, the compiler would work lanes out one by one.
-    let gaps = std::hint::black_box(gaps);
-    let mut bits = [0_u8; WIDTH];
-    for i in 0..WIDTH {
-        bits[i] = u8::from(gaps[i] > 0.0);
-    }
-    // Byte i, 0 or 1, comes to bit 56 + i.
-    let gathered = u64::from_le_bytes(bits).wrapping_mul(0x0102_0408_1020_4080) >> 56;
-    !gathered as u32 & 0xff
-}
+/// Directions within the surface that are tried for a box.
+const DIRECTIONS: usize = 16;
 
-/// The greater one; `a` if either is no number.
-#[inline(always)]
-fn more(a: f32, b: f32) -> f32 {
-    if b > a { b } else { a }
-}
-
-/// Three directions: the longest one within the surface, that across it, and the mean normal.
+/// Three directions: those along and across the smallest rectangle within the surface, and the mean normal.
 fn axes(triangles: impl Iterator<Item = [Vector; 3]> + Clone) -> [Vector; 3] {
-    let areas = triangles.clone().map(|[a, b, c]| (b - a).cross(&(c - a)));
+    let [u, v, normal] = within(mean_normal(triangles.clone()));
+    let mut best = (f64::INFINITY, [u, v]);
+    for k in 0..DIRECTIONS {
+        let (sin, cos) = (std::f64::consts::FRAC_PI_2 * k as f64 / DIRECTIONS as f64).sin_cos();
+        let axes = [cos * u + sin * v, cos * v - sin * u];
+        let [length, width] = axes.each_ref().map(|axis| {
+            let [low, high] = reach(triangles.clone().flatten(), axis);
+            high - low
+        });
+        if length * width < best.0 {
+            best = (length * width, axes);
+        }
+    }
+    let [long, wide] = best.1;
+    [long, wide, normal]
+}
+
+/// The mean of the normals of triangles, of unit length.
+pub(super) fn mean_normal(triangles: impl Iterator<Item = [Vector; 3]>) -> Vector {
+    let areas = triangles.map(|[a, b, c]| (b - a).cross(&(c - a)));
     let normal = areas.sum::<Vector>().try_normalize(0.0).filter(|n| n.iter().all(|x| x.is_finite()));
-    let normal = normal.unwrap_or(Vector::z());
-    let corners = || triangles.clone().flatten();
-    let (sum, number) = corners().fold((Vector::zeros(), 0.0), |(sum, n), x| (sum + x, n + 1.0));
-    let mean = sum / number;
-    let within = |x: Vector| {
-        let x = x - mean;
-        x - normal * normal.dot(&x)
-    };
-    let largest = corners().map(|x| within(x).amax()).fold(0.0, f64::max);
-    let scale = if largest > 0.0 { 1.0 / largest } else { 0.0 };
-    let spread =
-        corners().map(|x| within(x) * scale).fold(Matrix3::zeros(), |sum, x| sum + x * x.transpose());
-    let spread = SymmetricEigen::new(spread);
-    let long = spread.eigenvectors.column(spread.eigenvalues.imax()).into_owned();
-    // At a right angle to the normal, whatever was rounded.
-    let long = (long - normal * normal.dot(&long)).try_normalize(0.5);
-    let long = long.unwrap_or_else(|| {
-        let axis = Vector::ith(normal.iamin(), 1.0);
-        (axis - normal * normal.dot(&axis)).normalize()
-    });
-    [long, normal.cross(&long), normal]
+    normal.unwrap_or(Vector::z())
+}
+
+/// Two directions at a right angle to a `normal`, and that.
+pub(super) fn within(normal: Vector) -> [Vector; 3] {
+    let u = normal.cross(&Vector::ith(normal.iamin(), 1.0)).normalize();
+    [u, normal.cross(&u), normal]
+}
+
+/// The lowest and the highest of some places along an axis.
+pub(super) fn reach(places: impl Iterator<Item = Vector>, axis: &Vector) -> [f64; 2] {
+    let around = |[low, high]: [f64; 2], x: f64| [low.min(x), high.max(x)];
+    places.map(|x| x.dot(axis)).fold([f64::INFINITY, f64::NEG_INFINITY], around)
 }
 
 #[cfg(test)]
@@ -223,6 +228,7 @@ mod tests {
     use super::*;
     use interfaces::Rotation;
     use proptest::prelude::*;
+    use pulp::Scalar;
 
     fn vector(size: f64) -> impl Strategy<Value = Vector> {
         prop::array::uniform3(-size..size).prop_map(Vector::from)
@@ -256,11 +262,11 @@ mod tests {
             let extent = corners.iter().map(|c| c.component_mul(&scale).norm()).fold(0.0, f64::max);
             let mut moved = Patches::default();
             moved.move_from(&own, &turn, &shift, extent);
-            prop_assert_eq!(moved.meeting(&other.patch(j)), 1 << i);
-            prop_assert_eq!(other.meeting(&moved.patch(i)), 1 << j);
+            prop_assert_eq!(moved.meeting(Scalar::new(), &other.patch(j)), 1 << i);
+            prop_assert_eq!(other.meeting(Scalar::new(), &moved.patch(i)), 1 << j);
             // Far away nothing meets, and what is not there never does.
             moved.move_from(&own, &turn, &(shift + place.normalize() * 8.0 * extent), extent);
-            prop_assert_eq!(moved.meeting(&other.patch(j)), 0);
+            prop_assert_eq!(moved.meeting(Scalar::new(), &other.patch(j)), 0);
         }
     }
 
@@ -274,7 +280,7 @@ mod tests {
             patches.set(0, 0, std::iter::once(flat(z)));
             patches
         };
-        assert_eq!(of(0.0).meeting(&of(1e-4).patch(0)), 0);
-        assert_eq!(of(0.0).meeting(&of(1e-7).patch(0)), 1);
+        assert_eq!(of(0.0).meeting(Scalar::new(), &of(1e-4).patch(0)), 0);
+        assert_eq!(of(0.0).meeting(Scalar::new(), &of(1e-7).patch(0)), 1);
     }
 }

@@ -1,5 +1,5 @@
 //! A tree of boxes around triangles, eight by eight.
-use super::patches::Patches;
+use super::patches::{Patches, mean_normal, reach, within};
 use interfaces::Vector;
 
 /// Boxes that a node holds.
@@ -109,14 +109,47 @@ fn grow(
     own as u32
 }
 
-/// Puts the lower faces, along the axis on which their centres are spread most, before number `middle`.
+/// At most so many faces are nearly flat.
+const FLAT: usize = WIDTH * WIDTH;
+/// Directions within the surface in which these may be parted.
+const DIRECTIONS: usize = 8;
+
+/// Puts the lower faces along a direction before number `middle`: of many faces along the axis on which their centres are spread most,
+/// of a few along that which leaves the smallest rectangles along the surface around both parts.
 fn split(vertices: &[Vector], faces: &mut [[u32; 3]], middle: usize) {
-    let centre = |f: &[u32; 3], axis: usize| f.iter().map(|&v| vertices[v as usize][axis]).sum::<f64>();
-    let spread = |axis: usize| {
-        let places = || faces.iter().map(|f| centre(f, axis));
-        places().fold(f64::NEG_INFINITY, f64::max) - places().fold(f64::INFINITY, f64::min)
+    let centre = |f: &[u32; 3]| f.iter().map(|&v| vertices[v as usize]).sum::<Vector>();
+    let part = |faces: &mut [[u32; 3]], along: Vector| {
+        faces.select_nth_unstable_by(middle, |f, g| along.dot(&centre(f)).total_cmp(&along.dot(&centre(g))));
     };
-    let spreads = [spread(0), spread(1), spread(2)];
-    let axis = (1..3).fold(0, |best, a| if spreads[a] > spreads[best] { a } else { best });
-    faces.select_nth_unstable_by(middle, |f, g| centre(f, axis).total_cmp(&centre(g, axis)));
+    if faces.len() > FLAT {
+        let start = (Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY));
+        let (low, high) = faces.iter().map(centre).fold(start, |(l, h), c| (l.inf(&c), h.sup(&c)));
+        part(faces, Vector::ith((high - low).imax(), 1.0));
+        return;
+    }
+    let corners =
+        |faces: &[[u32; 3]]| faces.as_flattened().iter().map(|&v| vertices[v as usize]).collect::<Vec<_>>();
+    let [u, v, _] = within(mean_normal(faces.iter().map(|f| f.map(|v| vertices[v as usize]))));
+    let mut best = (f64::INFINITY, u);
+    for k in 0..DIRECTIONS {
+        let (sin, cos) = (std::f64::consts::PI * k as f64 / DIRECTIONS as f64).sin_cos();
+        let (along, across) = (cos * u + sin * v, cos * v - sin * u);
+        part(faces, along);
+        let (below, above) = faces.split_at(middle);
+        let area: f64 = [below, above]
+            .map(|part| {
+                let corners = corners(part);
+                let length = |axis: &Vector| {
+                    let [low, high] = reach(corners.iter().copied(), axis);
+                    high - low
+                };
+                length(&along) * length(&across)
+            })
+            .iter()
+            .sum();
+        if area < best.0 {
+            best = (area, along);
+        }
+    }
+    part(faces, best.1);
 }

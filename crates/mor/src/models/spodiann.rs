@@ -10,7 +10,7 @@ use crate::shifted::{
     ShiftedError, Shifts,
 };
 use crate::{Mat, MatRef};
-use interfaces::Point;
+use interfaces::{Point, Vector};
 use monomorphic::Qr;
 use std::f64::consts::TAU;
 use std::io;
@@ -34,6 +34,8 @@ pub struct Spodiann {
     interpolation: Interpolation,
     interpolator: Interpolator,
     frames: Vec<Carried>,
+    /// Of the decomposition; in the paths already.
+    offsets: Vec<Vector>,
     paths: Paths,
     inputs: usize,
     rows: usize,
@@ -69,6 +71,7 @@ impl Spodiann {
         let (frames, m) = (&decomposition.frames, points.ncols());
         ModelError::same("frames of the shifts", frames.len(), shifts.n_frames())?;
         ModelError::same("motions of every frame, one for each point", m, shifts.n_snapshots())?;
+        let shifts: &dyn Shifts = &Motions::beside(shifts, &decomposition.offsets);
         let rows = frames.first().map_or(0, |f| f.modes.nrows());
         if rows == 0 || !rows.is_multiple_of(grid.n_cells()) {
             return Err(ShiftedError::Rows { rows, cells: grid.n_cells() }.into());
@@ -91,6 +94,7 @@ impl Spodiann {
             interpolation,
             interpolator: Interpolator::new(grid, interpolation),
             frames: carried,
+            offsets: decomposition.offsets.clone(),
             paths,
             inputs: points.nrows(),
             rows,
@@ -185,6 +189,7 @@ impl Spodiann {
         ModelError::same("rows of the snapshots", self.rows, snapshots.nrows())?;
         ModelError::same("frames of the shifts", self.frames.len(), shifts.n_frames())?;
         ModelError::same("motions of every frame, one for each point", points.ncols(), shifts.n_snapshots())?;
+        let shifts = Motions::beside(shifts, &self.offsets);
         let mut sums = Sums::default();
         let (mut predicted, mut x) = (vec![0.0; self.rows], vec![0.0; self.inputs]);
         for j in 0..points.ncols() {
@@ -244,6 +249,7 @@ impl Spodiann {
             .with_word("interpolation", self.interpolation.name())
             .with("sizes", [self.inputs as f64, self.rows as f64, self.frames.len() as f64])
             .with("errors", [self.projection_error, self.typical])
+            .with("offsets", self.offsets.iter().flat_map(|c| [c.x, c.y, c.z]))
             .with_record("paths", &self.paths.record());
         for (k, frame) in self.frames.iter().enumerate() {
             record = record.with_record(&format!("frame {k}"), &frame.record());
@@ -282,11 +288,13 @@ impl Spodiann {
         if rows == 0 || !rows.is_multiple_of(grid.n_cells()) {
             return Err(record.wrong("sizes", format!("have {rows} rows on {} cells", grid.n_cells())));
         }
+        let offsets = record.numbers_of("offsets", 3 * frames)?;
         let frame = |k: usize| Carried::from_record(&record.record(&format!("frame {k}"))?, rows);
         Ok(Self {
             interpolation,
             interpolator: Interpolator::new(grid, interpolation),
             frames: (0..frames).map(frame).collect::<Result<_, _>>()?,
+            offsets: offsets.as_chunks::<3>().0.iter().map(|c| Vector::from(*c)).collect(),
             paths: Paths::from_record(&record.record("paths")?)?,
             inputs,
             rows,

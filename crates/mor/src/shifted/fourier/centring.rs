@@ -3,7 +3,7 @@ use super::amplitudes::Amplitudes;
 use super::normal::Normal;
 use super::problem::{Piece, Problem};
 use super::spectrum::Spectrum;
-use crate::shifted::{Grid, Motion, Motions, ShiftedError, Shifts};
+use crate::shifted::{Grid, Motions, ShiftedError, Shifts};
 use crate::{Mat, MatRef};
 use interfaces::Vector;
 use std::borrow::Cow;
@@ -30,6 +30,11 @@ pub fn centred(
     snapshots: MatRef<'_, f64>,
 ) -> Result<Motions, ShiftedError> {
     let spectrum = Spectrum::new(grid, shifts, snapshots, None, TOLERANCE)?;
+    Ok(Motions::beside(shifts, &offsets(grid, shifts, &spectrum)))
+}
+
+/// What [`centred`] adds to the shifts of each frame.
+pub(in crate::shifted) fn offsets(grid: &Grid, shifts: &dyn Shifts, spectrum: &Spectrum) -> Vec<Vector> {
     let (n_frames, n) = (shifts.n_frames(), shifts.n_snapshots());
     let mut offsets = vec![Vector::zeros(); n_frames];
     for &axis in &spectrum.phases.moving {
@@ -70,5 +75,5 @@ pub fn centred(
             }
         }
     }
-    Ok(Motions::by(n_frames, n, |k, j| Motion::translation(shifts.motion(k, j).displacement + offsets[k])))
+    offsets
 }

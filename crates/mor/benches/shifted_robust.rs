@@ -114,15 +114,6 @@ fn run(name: &str, case: &Case, seen: &Mat<f64>, pod: ShiftedPod) {
     let op = GridFrames::new(case.grid, Interpolation::Spectral, &case.shifts, case.clean.nrows())
         .expect("frames");
     let error = d.relative_error(&op, case.clean.as_ref());
-    if std::env::var_os("DEBUG").is_some() {
-        let f = d.fields(&op) - &case.clean;
-        let mut v: Vec<(f64, usize)> = (0..f.ncols()).map(|j| (f.col(j).norm_l2(), j)).collect();
-        v.sort_by(|a, b| b.0.total_cmp(&a.0));
-        eprintln!("{:?} of {}", &v[..10], f.norm_l2());
-        let j = v[0].1;
-        let n = d.noise.as_ref().map(|n| n.col_as_slice(j).to_vec()).unwrap_or_default();
-        for i in 0..f.nrows() { if f[(i, j)].abs() > 0.1 * v[0].0 { eprintln!("{i} {:.2e} clean {:.3} seen {:.3} noise {:.3}", f[(i, j)], case.clean[(i, j)], seen[(i, j)], n.get(i).copied().unwrap_or(0.0)); } }
-    }
     println!(
         "{name:32} ranks {:12} error {error:.2e}  {:4} steps {seconds:7.2} s",
         format!("{:?}", d.ranks()),

@@ -39,7 +39,10 @@ fn waves(rng: &mut Pcg64) -> Case {
         p[1] * t + p[2] * t * t
     };
     let value = |i: usize, j: usize| {
-        pulses.iter().map(|p| (-(nearest(i as f64 / m as f64 - p[0] - way(p, j), 1.0) / p[3]).powi(2)).exp()).sum()
+        pulses
+            .iter()
+            .map(|p| (-(nearest(i as f64 / m as f64 - p[0] - way(p, j), 1.0) / p[3]).powi(2)).exp())
+            .sum()
     };
     Case {
         what: format!("{count} waves, {m} × {n}"),
@@ -52,7 +55,8 @@ fn waves(rng: &mut Pcg64) -> Case {
 
 /// `drift` in cells.
 fn discs(rng: &mut Pcg64, drift: f64, full: bool) -> Case {
-    let cells = if full { [150, 300] } else { [2 * rng.random_range(40..60_usize), 2 * rng.random_range(60..100)] };
+    let cells =
+        if full { [150, 300] } else { [2 * rng.random_range(40..60_usize), 2 * rng.random_range(60..100)] };
     let n = if full { 601 } else { rng.random_range(150..300) };
     let [nx, ny] = cells.map(|n| n as f64);
     let radius = rng.random_range(5.0..0.12 * nx);
@@ -149,7 +153,8 @@ fn run(case: &Case, kind: &str, seen: &Mat<f64>, noise: Noise) {
             ControlFlow::Continue(())
         });
         let seconds = start.elapsed().as_secs_f64();
-        let op = GridFrames::new(case.grid, Interpolation::Spectral, &case.shifts, case.clean.nrows()).expect("frames");
+        let op = GridFrames::new(case.grid, Interpolation::Spectral, &case.shifts, case.clean.nrows())
+            .expect("frames");
         match d {
             Ok(d) => println!(
                 "{:44} {kind:20} {} {:10} error {:.2e} {:4} steps {seconds:6.2} s {:.2} GB",

@@ -30,7 +30,10 @@ impl Data<'_> {
         }
     }
     /// Calls `each` with the first row of every block and the block.
-    fn each(&self, mut each: impl FnMut(usize, MatRef<'_, f64>) -> Result<(), PodError>) -> Result<(), PodError> {
+    fn each(
+        &self,
+        mut each: impl FnMut(usize, MatRef<'_, f64>) -> Result<(), PodError>,
+    ) -> Result<(), PodError> {
         let (n, m) = (self.rows(), self.snapshots());
         match self {
             Self::Memory(matrix) => (0..n)

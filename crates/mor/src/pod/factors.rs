@@ -165,8 +165,7 @@ fn randomised(
     let (n, m) = (y.data.rows(), y.data.snapshots());
     let l = (params.limit(n.min(m)) + oversampling).min(n.min(m));
     let mut random = rand_pcg::Pcg64::seed_from_u64(seed);
-    let orthonormal =
-        |a: Mat<f64>| thin_svd(a.as_ref()).map(|svd| svd.0).ok_or_else(|| y.not_converged());
+    let orthonormal = |a: Mat<f64>| thin_svd(a.as_ref()).map(|svd| svd.0).ok_or_else(|| y.not_converged());
     // Sums of uniform numbers: near enough to normal ones.
     let test = Mat::from_fn(m, l, |_, _| (0..4).map(|_| random.random_range(-1.0..1.0)).sum::<f64>());
     let mut q = orthonormal(y.times(true, test.as_ref())?)?;

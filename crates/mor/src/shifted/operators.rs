@@ -115,7 +115,8 @@ impl GridFrames {
             (self.n_rows, self.n_snapshots),
             "not one column per snapshot"
         );
-        let carry = |(snapshot, column): (usize, &mut [f64])| self.carry(frame, snapshot, offset, column, task);
+        let carry =
+            |(snapshot, column): (usize, &mut [f64])| self.carry(frame, snapshot, offset, column, task);
         let columns: Option<Vec<_>> =
             fields.col_iter_mut().map(|c| c.try_as_col_major_mut().map(|c| c.as_slice_mut())).collect();
         let columns = columns.expect("columns of a matrix are contiguous");

@@ -48,7 +48,10 @@ impl ShiftedPod {
                 let residual = problem.residual(&frames);
                 let mut noise = Mat::zeros(residual.nrows(), residual.ncols());
                 wrong.iter().for_each(|&at| noise[at] = residual[at]);
-                return Ok(Decomposition { noise: Some(noise), ..Decomposition::of(frames, watch.take(), stopped) });
+                return Ok(Decomposition {
+                    noise: Some(noise),
+                    ..Decomposition::of(frames, watch.take(), stopped)
+                });
             }
         }
         unreachable!("the last round returns")
@@ -104,4 +107,3 @@ fn entries(field: &Mat<f64>, size: f64) -> Vec<(usize, usize)> {
         |j: usize| (0..field.nrows()).filter(move |&i| field[(i, j)].abs() > size).map(move |i| (i, j));
     (0..field.ncols()).flat_map(column).collect()
 }
-

@@ -31,6 +31,8 @@ const WRONG: f64 = 6.0;
 const WRONG_OF_ONE: f64 = 4.0;
 /// When there are other modes to be found, only what is off by more than this part of the largest value counts as wrong at first.
 const CLEARLY: f64 = 0.1;
+/// With wrong entries, ranks are found for so many times the tolerance: some small ones are not known until the end.
+const UNCERTAIN: f64 = 10.0;
 /// A level is at least this part of the one before.
 const SHRINK: f64 = 0.4;
 /// Fewer entries do not tell a deviation.
@@ -70,11 +72,7 @@ impl Translated<'_> {
     }
 
     /// No entry is wrong.
-    fn dense(
-        &self,
-        start: Option<Vec<Frame>>,
-        watch: &mut Watch<'_>,
-    ) -> Result<Decomposition, ShiftedError> {
+    fn dense(&self, start: Option<Vec<Frame>>, watch: &mut Watch<'_>) -> Result<Decomposition, ShiftedError> {
         let n = self.snapshots.ncols();
         let (spectrum, offsets) = self.spectrum(None)?;
         let (ranks, start) = match &self.pod.ranks {
@@ -90,7 +88,12 @@ impl Translated<'_> {
                     shifts: &Thinned { shifts: &moved, snapshots: &some },
                     snapshots: few.as_ref(),
                 };
-                let (frames, stopped) = part.search(start, &vec![self.pod.max_rank; moved.n_frames()], watch)?;
+                let (frames, stopped) = part.search(
+                    start,
+                    &vec![self.pod.max_rank; moved.n_frames()],
+                    self.pod.rank_tolerance,
+                    watch,
+                )?;
                 let frames: Vec<_> = frames.iter().map(|f| f.between(&some, n)).collect();
                 if stopped == StopReason::Asked {
                     return Ok(Decomposition { offsets, ..Decomposition::of(frames, watch.take(), stopped) });
@@ -105,13 +108,19 @@ impl Translated<'_> {
     }
 
     /// As many modes as are needed but no more than `most`, roughly fitted, in frames that are where they should be.
-    fn search(&self, start: Option<Vec<Frame>>, most: &[usize], watch: &mut Watch<'_>) -> Found {
+    fn search(
+        &self,
+        start: Option<Vec<Frame>>,
+        most: &[usize],
+        tolerance: f64,
+        watch: &mut Watch<'_>,
+    ) -> Found {
         let Some(waves) = Waves::new(&self.pod.grid, self.shifts, self.snapshots.nrows()) else {
             let still = start.unwrap_or_default();
             return Ok((still, StopReason::Stagnation));
         };
         let spectrum = {
-            let (grid, cut) = (&self.pod.grid, self.als(&[], self.pod.rank_tolerance).cut());
+            let (grid, cut) = (&self.pod.grid, self.als(&[], tolerance).cut());
             Spectrum::new(grid, self.shifts, self.snapshots, None, cut)?
         };
         let fit = |frames: &[Frame], tolerance: f64, observer: Observer<'_>| {
@@ -128,7 +137,7 @@ impl Translated<'_> {
             operators: &waves,
             snapshots: transformed.as_ref(),
             ignored: &[],
-            tolerance: self.pod.rank_tolerance,
+            tolerance,
             ranks: &ranks,
             all: false,
             fit: &fit,
@@ -141,54 +150,69 @@ impl Translated<'_> {
         Ok((carried(frames, &|modes| waves.fields(modes)), stopped))
     }
 
-    /// Some entries are wrong. Modes and entries are looked for on some of the snapshots first, if there are many.
+    /// Some entries are wrong. Ranks are looked for on some of the snapshots first, if there are many.
     fn sparse(
         &self,
         start: Option<Vec<Frame>>,
         watch: &mut Watch<'_>,
     ) -> Result<Decomposition, ShiftedError> {
-        let n = self.snapshots.ncols();
-        if start.is_some() || n <= MANY {
-            let robust = self.found_robustly(start, watch)?;
-            return Ok(robust.decomposition(watch));
-        }
-        let (some, few) = thinned(self.snapshots);
-        let thinned = Thinned { shifts: self.shifts, snapshots: &some };
-        let part = Translated { pod: self.pod, shifts: &thinned, snapshots: few.as_ref() };
-        let robust = part.found_robustly(None, watch)?;
-        let frames: Vec<_> = robust.frames.iter().map(|f| f.between(&some, n)).collect();
-        if robust.stopped == StopReason::Asked {
-            return Ok(Robust { frames, noise: None, ..robust }.decomposition(watch));
-        }
-        let ranks: Vec<_> = frames.iter().map(Frame::rank).collect();
-        let robust = self.rounds(Robust { frames, ..robust }, &ranks, watch)?;
-        Ok(robust.decomposition(watch))
+        let (m, n) = self.snapshots.shape();
+        let robust = match &self.pod.ranks {
+            Ranks::Given(ranks) => self.with_ranks(ranks, start, watch)?,
+            Ranks::Found if start.is_some() || n <= MANY => self.with_ranks_found(start, watch)?,
+            Ranks::Found => {
+                let (some, few) = thinned(self.snapshots);
+                let thinned = Thinned { shifts: self.shifts, snapshots: &some };
+                let part = Translated { pod: self.pod, shifts: &thinned, snapshots: few.as_ref() };
+                let found = part.with_ranks_found(None, watch)?;
+                if found.stopped == StopReason::Asked {
+                    let frames = found.frames.iter().map(|f| f.between(&some, n)).collect();
+                    Robust { frames, noise: Some(Mat::zeros(m, n)), ..found }
+                } else {
+                    let ranks: Vec<_> = found.frames.iter().map(Frame::rank).collect();
+                    self.with_ranks(&ranks, None, watch)?
+                }
+            }
+        };
+        let Robust { frames, noise, offsets, stopped } = robust;
+        Ok(Decomposition { noise, offsets, ..Decomposition::of(frames, watch.take(), stopped) })
     }
 
-    /// With the ranks that are given, or those that are needed once the wrong entries are left out.
-    fn found_robustly(
+    /// One mode in each frame first, and more when most wrong entries are known: what is not explained at all would count as wrong. Then again from a
+    /// level at which hardly anything does: what was taken for wrong when the modes were would stay as they had it.
+    fn with_ranks(
         &self,
+        ranks: &[usize],
         start: Option<Vec<Frame>>,
         watch: &mut Watch<'_>,
     ) -> Result<Robust, ShiftedError> {
         let (m, n) = self.snapshots.shape();
-        let n_frames = self.shifts.n_frames();
-        let frames = start.unwrap_or_else(|| vec![Frame::nothing(m, n); n_frames]);
-        let offsets = vec![Vector::zeros(); n_frames];
-        let mut robust = Robust { frames, noise: None, offsets, stopped: StopReason::Steps };
-        // What any mode explains is not wrong: every frame has one at first, and more when most wrong entries are known.
-        let first: Vec<_> = match &self.pod.ranks {
-            Ranks::Given(ranks) => ranks.iter().map(|&r| r.min(1)).collect(),
-            Ranks::Found => robust.frames.iter().map(|f| f.rank().max(1)).collect(),
+        let frames = start.unwrap_or_else(|| vec![Frame::nothing(m, n); ranks.len()]);
+        let offsets = vec![Vector::zeros(); ranks.len()];
+        let start = Robust { frames, noise: None, offsets, stopped: StopReason::Steps };
+        let first: Vec<_> = ranks.iter().map(|&r| r.min(1)).collect();
+        let robust = self.rounds(start, &first, watch)?;
+        match robust.stopped {
+            StopReason::Asked => Ok(robust),
+            _ => self.rounds(robust, ranks, watch),
+        }
+    }
+
+    /// A mode more, or less, at a time, until those needed are there once the wrong entries are left out.
+    fn with_ranks_found(
+        &self,
+        start: Option<Vec<Frame>>,
+        watch: &mut Watch<'_>,
+    ) -> Result<Robust, ShiftedError> {
+        let first = match &start {
+            Some(frames) => frames.iter().map(|f| f.rank().max(1)).collect(),
+            None => vec![1; self.shifts.n_frames()],
         };
-        robust = self.rounds(robust, &first, watch)?;
-        if robust.stopped == StopReason::Asked {
-            return Ok(robust);
-        }
-        if let Ranks::Given(ranks) = &self.pod.ranks {
-            return if *ranks == first { Ok(robust) } else { self.rounds(robust, ranks, watch) };
-        }
+        let mut robust = self.with_ranks(&first, start, watch)?;
         for _ in 0..2 * self.pod.max_rank {
+            if robust.stopped == StopReason::Asked {
+                break;
+            }
             let before: Vec<_> = robust.frames.iter().map(Frame::rank).collect();
             let known = match &robust.noise {
                 Some(noise) => self.snapshots - noise,
@@ -197,7 +221,8 @@ impl Translated<'_> {
             let moved = Motions::beside(self.shifts, &robust.offsets);
             let part = Translated { pod: self.pod, shifts: &moved, snapshots: known.as_ref() };
             let most: Vec<_> = before.iter().map(|r| (r + 1).min(self.pod.max_rank)).collect();
-            (robust.frames, robust.stopped) = part.search(Some(robust.frames), &most, watch)?;
+            (robust.frames, robust.stopped) =
+                part.search(Some(robust.frames), &most, UNCERTAIN * self.pod.rank_tolerance, watch)?;
             let ranks: Vec<_> = robust.frames.iter().map(Frame::rank).collect();
             if robust.stopped == StopReason::Asked || ranks == before {
                 break;
@@ -222,7 +247,7 @@ impl Translated<'_> {
             level = 0.0;
             robust.noise = Some(self.noise(&robust.frames, &robust.offsets, &mut level));
         }
-        for round in 0..ROUNDS {
+        for _ in 0..ROUNDS {
             let (spectrum, offsets) = self.spectrum(robust.noise.as_ref())?;
             let start = started(robust.frames);
             let mut go_on = |p: &Progress| watch.see(p).is_continue();
@@ -236,23 +261,11 @@ impl Translated<'_> {
             }
             let level_before = level;
             robust.noise = Some(self.noise(&robust.frames, &robust.offsets, &mut level));
-            let done = known && (error <= self.pod.tolerance || patience == LONG);
-            if done || round + 1 == ROUNDS {
+            let settled = known && error > SETTLED * before && level > SETTLED * level_before;
+            if known && error <= self.pod.tolerance || settled && patience == LONG {
                 break;
             }
-            if std::env::var_os("DEBUG").is_some() {
-                let n = robust.noise.as_ref().unwrap();
-                let count = n.col_iter().map(|c| c.iter().filter(|x| **x != 0.0).count()).sum::<usize>();
-                eprintln!("round {round} {ranks:?} error {error:.3e} wrong {count} steps {}", d.history.len());
-            }
-            if std::env::var_os("DEBUG").is_some() && self.snapshots.ncols() > 75 {
-                let n = robust.noise.as_ref().unwrap();
-                let mut v: Vec<(usize,usize)> = (0..n.ncols()).map(|j| (n.col_as_slice(j).iter().filter(|x| **x != 0.0).count(), j)).collect();
-                v.sort(); v.reverse();
-                eprintln!("{:?}", &v[..8]);
-            }
-            if known && error > SETTLED * before && level > SETTLED * level_before {
-                // What is left is no wrong entry: as good as it gets.
+            if settled {
                 patience = LONG;
             }
             before = error;
@@ -282,7 +295,8 @@ impl Translated<'_> {
             let column = residual.col_as_slice(j);
             let some = || (j % stride..m).step_by(stride);
             let there = some().filter(|&i| explained(i, j, column[i]) > 0.02 * largest);
-            let of_snapshot = [some().map(|i| column[i].abs()).collect(), there.map(|i| column[i].abs()).collect()];
+            let of_snapshot =
+                [some().map(|i| column[i].abs()).collect(), there.map(|i| column[i].abs()).collect()];
             for (all, sizes) in all.iter_mut().zip::<[Vec<f64>; 2]>(of_snapshot) {
                 all.extend_from_slice(&sizes);
                 if sizes.len() >= FEW {
@@ -298,7 +312,6 @@ impl Translated<'_> {
         };
         let least = (WRONG * all.max(1e-10 * self.snapshots.norm_max())).max(floor);
         *before = least;
-        if std::env::var_os("DEBUG").is_some() { eprintln!("level {least:.3e}"); }
         for (j, level) in levels.into_iter().enumerate() {
             let level = level.max(least);
             residual.col_as_slice_mut(j).iter_mut().filter(|x| x.abs() <= level).for_each(|x| *x = 0.0);
@@ -318,7 +331,9 @@ impl Translated<'_> {
             let count = BATCH.min(n - first);
             let part = waves.thinned(&(first..first + count).collect::<Vec<_>>());
             let mut sum = Mat::zeros(part.n_rows(), count);
-            for (k, (modes, a)) in modes.iter().zip(&coefficients).enumerate().filter(|(_, m)| m.0.ncols() > 0) {
+            for (k, (modes, a)) in
+                modes.iter().zip(&coefficients).enumerate().filter(|(_, m)| m.0.ncols() > 0)
+            {
                 let mut field = super::dense::product(modes.as_ref(), a.subcols(first, count));
                 part.to_lab(k, field.as_mut());
                 sum += &field;
@@ -342,13 +357,6 @@ struct Robust {
     noise: Option<Mat<f64>>,
     offsets: Vec<Vector>,
     stopped: StopReason,
-}
-
-impl Robust {
-    fn decomposition(self, watch: &mut Watch<'_>) -> Decomposition {
-        let Self { frames, noise, offsets, stopped } = self;
-        Decomposition { noise, offsets, ..Decomposition::of(frames, watch.take(), stopped) }
-    }
 }
 
 /// To start from.

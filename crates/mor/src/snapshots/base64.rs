@@ -32,4 +32,3 @@ pub(super) fn decode(text: &[u8]) -> Option<Vec<u8>> {
     }
     if count == 0 { Some(bytes) } else { None }
 }
-

@@ -68,7 +68,9 @@ pub enum SnapshotError {
         there: Vec<String>,
     },
     /// A part of a matrix that it does not have.
-    #[error("rows {rows:?} of snapshots {snapshots:?} were asked for; there are {there:?} rows and snapshots")]
+    #[error(
+        "rows {rows:?} of snapshots {snapshots:?} were asked for; there are {there:?} rows and snapshots"
+    )]
     Outside {
         /// First and one past the last.
         rows: [usize; 2],

@@ -90,7 +90,11 @@ impl NpyArray {
     }
 
     /// An array in memory.
-    pub(super) fn of_bytes(path: &Path, axis: SnapshotAxis, mut file: Vec<u8>) -> Result<Self, SnapshotError> {
+    pub(super) fn of_bytes(
+        path: &Path,
+        axis: SnapshotAxis,
+        mut file: Vec<u8>,
+    ) -> Result<Self, SnapshotError> {
         let (header, start) = Header::read(&mut file.as_slice(), path)?;
         file.drain(..start as usize);
         let length = file.len() as u64;
@@ -256,7 +260,9 @@ impl Header {
         };
         let shape = after("shape")?.strip_prefix('(').and_then(|s| s.split(')').next()).ok_or_else(wrong)?;
         let lengths = shape.split(',').map(str::trim).filter(|s| !s.is_empty());
-        let shape = lengths.map(|s| s.trim_end_matches('L').parse().map_err(|_| wrong())).collect::<Result<_, _>>()?;
+        let shape = lengths
+            .map(|s| s.trim_end_matches('L').parse().map_err(|_| wrong()))
+            .collect::<Result<_, _>>()?;
         Ok(Self { kind, fortran, shape })
     }
 }

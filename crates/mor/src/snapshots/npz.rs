@@ -50,7 +50,8 @@ impl NpzFile {
         let length = file.metadata().map_err(io)?.len();
         let tail = length.min((END_LENGTH + COMMENT) as u64);
         let end = part(&mut file, length - tail, tail).map_err(io)?;
-        let broken = || SnapshotError::format(path, "this is no ZIP archive, or its list of files is cut off");
+        let broken =
+            || SnapshotError::format(path, "this is no ZIP archive, or its list of files is cut off");
         let at = end.windows(4).rposition(|w| w == END).ok_or_else(broken)?;
         let field = |at, size| number(&end, at, size).ok_or_else(broken);
         let (mut size, mut start) = (field(at + 12, 4)?, field(at + 16, 4)?);
@@ -93,7 +94,8 @@ impl NpzFile {
         let broken = |why: String| SnapshotError::format(path, format!("the array `{name}` {why}"));
         let mut file = File::open(path).map_err(io)?;
         let local = part(&mut file, entry.at, 30).map_err(io)?;
-        let (true, Some(a), Some(b)) = (local.starts_with(LOCAL), number(&local, 26, 2), number(&local, 28, 2))
+        let (true, Some(a), Some(b)) =
+            (local.starts_with(LOCAL), number(&local, 26, 2), number(&local, 28, 2))
         else {
             return Err(broken("is not where the list says".into()));
         };
@@ -114,7 +116,9 @@ impl NpzFile {
                 }
                 NpyArray::of_bytes(path, axis, bytes)
             }
-            method => Err(broken(format!("is packed by method {method}; stored (0) and deflated (8) ones are read"))),
+            method => Err(broken(format!(
+                "is packed by method {method}; stored (0) and deflated (8) ones are read"
+            ))),
         }
     }
 }

@@ -14,12 +14,8 @@ pub trait SnapshotSource {
     ///
     /// # Errors
     /// [`SnapshotError`]; [`SnapshotError::Outside`] if there are not so many.
-    fn read(
-        &self,
-        first_row: usize,
-        first_snapshot: usize,
-        to: MatMut<'_, f64>,
-    ) -> Result<(), SnapshotError>;
+    fn read(&self, first_row: usize, first_snapshot: usize, to: MatMut<'_, f64>)
+    -> Result<(), SnapshotError>;
 
     /// All of it.
     ///

@@ -40,7 +40,10 @@ pub struct VtkArray {
 enum Place {
     /// From there on, counted from the first appended byte.
     Appended(u64),
-    Text { base64: bool, text: String },
+    Text {
+        base64: bool,
+        text: String,
+    },
 }
 
 /// The marks between header and data.
@@ -107,7 +110,9 @@ impl VtkFile {
                     self.packed = match &*get("compressor") {
                         "" => false,
                         "vtkZLibDataCompressor" => true,
-                        other => return Err(wrong(format!("its data are packed by {other}; only zlib is read"))),
+                        other => {
+                            return Err(wrong(format!("its data are packed by {other}; only zlib is read")));
+                        }
                     };
                 }
                 "Piece" => pieces += 1,

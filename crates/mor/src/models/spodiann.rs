@@ -138,6 +138,15 @@ impl Spodiann {
         self.paths.motions(x)
     }
 
+    /// The displacement of every frame at x, as the shifts were given: without the [`offsets`](Decomposition::offsets) of the decomposition.
+    ///
+    /// # Errors
+    /// As [`motions`](Self::motions).
+    pub fn places(&self, x: &[f64]) -> Result<Vec<Vector>, ModelError> {
+        let motions = self.motions(x)?;
+        Ok(motions.iter().zip(&self.offsets).map(|(motion, offset)| motion.displacement - offset).collect())
+    }
+
     /// The field at time and parameters x into `out`.
     ///
     /// # Errors
@@ -160,8 +169,8 @@ impl Spodiann {
         Ok(())
     }
 
-    /// An estimate of the relative error at x, without the paths': the decomposition's, and the larger of what the coefficients are off at samples that were held out and
-    /// of how far functions of different order are apart at x; relative to the snapshots' root mean square.
+    /// An estimate of the relative error at x, without the paths': the decomposition's, and what the coefficients are off between samples, told by cross-validation at the samples' own
+    /// spacing, more where functions of different kinds are farther apart than they usually are; relative to the snapshots' root mean square.
     ///
     /// # Errors
     /// As [`predict`](Self::predict).
@@ -170,7 +179,7 @@ impl Spodiann {
         for (frame, motion) in self.frames.iter().zip(self.motions(x)?) {
             let Some(function) = &frame.coefficients else { continue };
             let doubt = function.doubt(&frame.inputs(x, &motion, self.interpolator.grid()))?;
-            squares += (function.error().max(doubt) / self.typical.max(f64::MIN_POSITIVE)).powi(2);
+            squares += (doubt / self.typical.max(f64::MIN_POSITIVE)).powi(2);
         }
         Ok(squares.sqrt())
     }

@@ -39,7 +39,7 @@ pub enum Noise {
 ///
 /// Frames that only move along periodic axes, with [`Interpolation::Spectral`], are fitted in the space of wave vectors by [`Als`](super::fourier::Als) instead, and first brought to
 /// where what they carry is at the centres of cells ([`centred`](super::fourier::centred), [`Decomposition::offsets`]). Wrong entries are found by turns with the modes, those of some of the snapshots first: what is off by
-/// more than six deviations is replaced by what the modes have there.
+/// more than six deviations is replaced by what the modes have there. Only if more than a twentieth of up to a million entries is wrong, the augmented Lagrangian is asked as above.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShiftedPod {
     pub(super) grid: Grid,
@@ -128,7 +128,13 @@ impl ShiftedPod {
         let mut watch = Watch { observer, history: vec![] };
         let waves = Waves::new(&self.grid, shifts, snapshots.nrows());
         match (waves.filter(|_| self.interpolation == Interpolation::Spectral), self.noise) {
-            (Some(_), _) => Translated { pod: self, shifts, snapshots }.solve(start, &mut watch),
+            (Some(_), _) => {
+                let found = Translated { pod: self, shifts, snapshots }.solve(start.clone(), &mut watch)?;
+                if found.stopped == StopReason::Asked || !many_wrong(&found) {
+                    return Ok(found);
+                }
+                self.robust(&operators, snapshots, start, &mut watch)
+            }
             (None, Noise::Sparse) => self.robust(&operators, snapshots, start, &mut watch),
             (None, Noise::Dense) => self.dense(&operators, shifts, snapshots, start, &mut watch),
         }
@@ -257,6 +263,19 @@ impl ShiftedPod {
         search.search(start.map_or_else(|| problem.start(None), Ok)?, &mut |p| watch.see(p))
     }
 }
+
+/// Are so many entries wrong that the convex problem should tell where to start, and is it small enough?
+fn many_wrong(found: &Decomposition) -> bool {
+    let Some(noise) = &found.noise else { return false };
+    let entries = noise.nrows() * noise.ncols();
+    let wrong: usize = noise.col_iter().map(|c| c.iter().filter(|x| **x != 0.0).count()).sum();
+    entries <= CONVEX && wrong as f64 > MANY_WRONG * entries as f64
+}
+
+/// More entries than these take the convex problem too long.
+const CONVEX: usize = 1_000_000;
+/// Up to this part of all, wrong entries and modes are found by turns.
+const MANY_WRONG: f64 = 0.05;
 
 /// Numbers the steps of several iterations through.
 pub(super) struct Watch<'a> {

@@ -245,7 +245,9 @@ impl Translated<'_> {
         let mut level = f64::INFINITY;
         if robust.noise.is_some() {
             level = 0.0;
-            robust.noise = Some(self.noise(&robust.frames, &robust.offsets, &mut level));
+            let mut noise = self.noise(&robust.frames, &robust.offsets, &mut level);
+            release(&mut noise);
+            robust.noise = Some(noise);
         }
         for _ in 0..ROUNDS {
             let (spectrum, offsets) = self.spectrum(robust.noise.as_ref())?;
@@ -345,6 +347,17 @@ impl Translated<'_> {
             }
         }
         residual
+    }
+}
+
+/// A snapshot with clearly more wrong entries than others have is one whose amplitudes are: what was taken for wrong there is to be fitted again.
+fn release(noise: &mut Mat<f64>) {
+    let counts: Vec<usize> = noise.col_iter().map(|c| c.iter().filter(|x| **x != 0.0).count()).collect();
+    let mut order = counts.clone();
+    order.sort_unstable();
+    let usual = order.get(order.len() / 2).map_or(0.0, |&n| n as f64);
+    for (j, _) in counts.iter().enumerate().filter(|(_, n)| **n as f64 > usual + 4.0 * usual.sqrt()) {
+        noise.col_as_slice_mut(j).fill(0.0);
     }
 }
 

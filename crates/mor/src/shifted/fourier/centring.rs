@@ -11,6 +11,8 @@ use std::f64::consts::PI;
 
 /// Waves that hold less than this part of the energy, squared, are not looked at.
 const TOLERANCE: f64 = 1e-6;
+/// Nor are frames moved if the waves of two cells hold more than this part of the energy.
+const EDGES: f64 = 1e-3;
 /// A frame that explains less than this part of the waves of two cells stays where it is.
 const EXPLAINED: f64 = 0.1;
 
@@ -67,6 +69,10 @@ pub(in crate::shifted) fn offsets(grid: &Grid, shifts: &dyn Shifts, spectrum: &S
                 *sines += phi[2].powi(2) + phi[3].powi(2);
                 *both += phi[0] * phi[2] + phi[1] * phi[3];
             }
+        }
+        // Fields that are no edges have much more there.
+        if energy > EDGES * spectrum.energy {
+            continue;
         }
         for (offset, [cosines, sines, both]) in offsets.iter_mut().zip(sums) {
             if 0.5 * n as f64 * (cosines + sines) > EXPLAINED * energy {

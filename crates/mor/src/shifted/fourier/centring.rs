@@ -13,6 +13,8 @@ use std::f64::consts::PI;
 const TOLERANCE: f64 = 1e-6;
 /// Nor are frames moved if the waves of two cells hold more than this part of the energy.
 const EDGES: f64 = 1e-3;
+/// Nor is a frame moved if what is gained is not so many times what one phase does not explain.
+const CLEARLY: f64 = 3.0;
 /// A frame that explains less than this part of the waves of two cells stays where it is.
 const EXPLAINED: f64 = 0.1;
 
@@ -75,7 +77,10 @@ pub(in crate::shifted) fn offsets(grid: &Grid, shifts: &dyn Shifts, spectrum: &S
             continue;
         }
         for (offset, [cosines, sines, both]) in offsets.iter_mut().zip(sums) {
-            if 0.5 * n as f64 * (cosines + sines) > EXPLAINED * energy {
+            // What the best phase explains, and what needs another one.
+            let half = (0.5 * (cosines - sines)).hypot(both);
+            let (best, other) = (0.5 * (cosines + sines) + half, 0.5 * (cosines + sines) - half);
+            if 0.5 * n as f64 * (cosines + sines) > EXPLAINED * energy && best - cosines > CLEARLY * other {
                 // cos θ cos πs + sin θ sin πs = cos (πs − θ)
                 offset[axis] = -0.5 * (2.0 * both).atan2(cosines - sines) / PI * h;
             }

@@ -4,7 +4,7 @@
 //! decomposition (PODIANN). Each run in turn is left out whole, modes and all, and predicted from the other 24.
 //!
 //! ```text
-//! cargo run --release --example parameter_study        # a few minutes; out/parameter_study
+//! cargo run --release --example parameter_study        # some ten CPU seconds; out/parameter_study
 //! ```
 #[path = "../reduced_discs/fall.rs"]
 mod fall;
@@ -35,7 +35,7 @@ struct Cli {
     #[arg(long, default_value_t = 0.2)]
     end: f64,
     /// Intervals between snapshots of a run.
-    #[arg(long, default_value_t = 30)]
+    #[arg(long, default_value_t = 8)]
     intervals: usize,
     /// Densities of the upper disc [kg/m³]: the lowest and the highest of five.
     #[arg(long, value_delimiter = ',', num_args = 2, default_values_t = [1040.0, 1060.0])]
@@ -44,10 +44,10 @@ struct Cli {
     #[arg(long, value_delimiter = ',', num_args = 2, default_values_t = [0.2e-3, 1.0e-3])]
     aside: Vec<f64>,
     /// Modes of each disc for λ.
-    #[arg(long, default_value_t = 5)]
+    #[arg(long, default_value_t = 1)]
     shifted_modes: usize,
     /// Modes for the velocity.
-    #[arg(long, default_value_t = 40)]
+    #[arg(long, default_value_t = 20)]
     modes: usize,
     /// Folder for everything that is written.
     #[arg(long, default_value = "out/parameter_study")]

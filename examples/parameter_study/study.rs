@@ -76,7 +76,7 @@ impl Models {
             used.iter().flat_map(|r| of(&r.fallen)).copied().collect()
         };
 
-        // A spline in time, thin plates in the parameters: what is known everywhere, whichever run is left out.
+        // A spline in time, cubic radial functions in the parameters: what is known everywhere, whichever run is left out.
         let method = ProductParams {
             first: SplineParams::new(Degree::Quintic),
             others: Box::new(RbfParams::new(Kernel::Cubic).with_tail(2)),

@@ -8,5 +8,6 @@ pub mod interpolation;
 pub mod models;
 pub mod pod;
 pub mod shifted;
+pub mod snapshots;
 
 pub use monomorphic::{Mat, MatRef};

@@ -18,9 +18,11 @@ mod error;
 mod factors;
 mod modes;
 mod params;
+mod streaming;
 #[cfg(test)]
 mod tests;
 
 pub use error::PodError;
 pub use modes::Pod;
 pub use params::{PodParams, Rank, SvdMethod};
+pub use streaming::StreamingPod;

@@ -20,12 +20,15 @@ mod operators;
 mod proximal;
 mod rank_search;
 mod residual;
+mod robust;
 mod shifted_pod;
 mod spline;
 mod stencil;
 mod tangent;
 #[cfg(test)]
 mod tests;
+mod thinning;
+mod translated;
 mod turn;
 mod waves;
 

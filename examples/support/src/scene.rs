@@ -38,6 +38,8 @@ pub struct Scene {
     pub densities: Vec<f64>,
     /// Diameter of the discs \[m\].
     pub diameter: f64,
+    /// How far the second disc starts aside of the first \[m\].
+    pub aside: f64,
     /// Walls below and above instead of a periodic box.
     pub floor: bool,
     /// What holds up the discs' net weight in the periodic box.
@@ -57,6 +59,7 @@ impl Default for Scene {
             bodies: 2,
             densities: vec![1060.0, 1030.0],
             diameter: 1e-3,
+            aside: 0.05e-3,
             floor: false,
             balance: WeightBalance::NetWeight,
             freedom: Freedom::PLANAR,
@@ -120,7 +123,7 @@ impl Scene {
     /// Where the discs start: the paper's two, further ones in rows from the top.
     pub fn centres(&self) -> Result<Vec<[f64; 2]>, SceneError> {
         let d = self.diameter;
-        let mut all = vec![[5e-3, 16e-3], [5.05e-3, 13.5e-3]];
+        let mut all = vec![[5e-3, 16e-3], [5e-3 + self.aside, 13.5e-3]];
         let per_row = ((BOX[0] / (2.0 * d)).floor() as usize).min(1000);
         let rows = ((11e-3 / (2.0 * d)).floor() as usize).min(1000);
         for k in 0..if self.bodies > 2 { per_row * rows } else { 0 } {

@@ -1,71 +1,78 @@
 //! Coefficients at any point, and how far they may be off.
 use super::ModelError;
 use crate::interpolation::{
-    Degree, Interpolator, Kernel, Method, RbfParams, Record, RecordError, Samples, SplineParams,
-    VaryingParams, load,
+    Degree, Folds, Interpolator, Method, Record, RecordError, Samples, SplineParams, VaryingParams, best_of,
+    candidates, cross_validate, load,
 };
 
-/// A function, and a second one of lower order, whose distance from it is an estimate of the error.
+/// A function, and a second one, whose distance from it tells where the samples are too few.
 pub(super) struct Coefficients {
     first: Box<dyn Interpolator>,
     second: Box<dyn Interpolator>,
-    /// Root mean square, over samples that were held out, of the first function's error (a norm over all outputs).
+    /// Root mean square error between samples (a norm over all outputs), as cross-validation tells.
     error: f64,
+    /// Root mean square distance of the two functions between samples.
+    distance: f64,
 }
 
-/// Every so many-th sample is held out for a choice.
-const FOLDS: usize = 5;
-
-/// Pairs of methods that suit the samples: splines on grids, radial functions elsewhere, and splines with phases where there are any.
-fn candidates(samples: &Samples, phases: bool) -> Vec<[Box<dyn Method>; 2]> {
+/// Methods that suit the samples: splines in time alone, with phases where there are any; all [`candidates`] with parameters.
+fn methods(samples: &Samples, phases: bool) -> Vec<Box<dyn Method>> {
     if phases {
         let of = |degree| Box::new(VaryingParams { degree, pieces: None }) as Box<dyn Method>;
-        return vec![[of(Degree::Quintic), of(Degree::Cubic)], [of(Degree::Cubic), of(Degree::Linear)]];
+        return [Degree::Quintic, Degree::Cubic, Degree::Linear].map(of).into();
     }
-    let mut all: Vec<[Box<dyn Method>; 2]> = Vec::new();
-    let on_grid = samples.grid().is_ok();
-    let least = (0..samples.inputs()).map(|i| samples.distinct(i).len()).min().unwrap_or(0);
-    if let Some(highest) = Degree::highest(least).filter(|_| on_grid) {
-        let of = |degree| Box::new(SplineParams::new(degree)) as Box<dyn Method>;
-        for pair in Degree::ALL.windows(2).filter(|pair| pair[1] <= highest) {
-            all.push([of(pair[1]), of(pair[0])]);
+    let highest = (samples.inputs() == 1).then(|| Degree::highest(samples.distinct(0).len())).flatten();
+    match highest {
+        Some(highest) => {
+            let degrees = Degree::ALL.into_iter().filter(|degree| *degree <= highest).rev();
+            degrees.map(|degree| Box::new(SplineParams::new(degree)) as Box<dyn Method>).collect()
         }
-        all.reverse();
+        None => candidates(samples),
     }
-    if samples.inputs() > 1 || all.is_empty() {
-        let of = |kernel| Box::new(RbfParams::new(kernel)) as Box<dyn Method>;
-        all.push([of(Kernel::Quintic), of(Kernel::ThinPlate)]);
-    }
-    all
 }
 
 impl Coefficients {
-    /// By the methods given, or those that predict samples best which were held out.
+    /// By the method given, or that which [`best_of`] finds.
     pub(super) fn fit(
         samples: &Samples,
         given: Option<&dyn Method>,
         phases: bool,
     ) -> Result<Self, ModelError> {
-        let mut best: Option<(f64, [Box<dyn Method>; 2])> = None;
-        let mut refused = None;
-        let all = candidates(samples, phases);
-        for pair in all {
-            match held_out(samples, given.unwrap_or(&*pair[0])) {
-                Ok(error) if best.as_ref().is_none_or(|(least, _)| error < *least) => {
-                    best = Some((error, pair))
-                }
-                Ok(_) => {}
-                Err(why) => refused = Some(why),
-            }
-            if given.is_some() {
-                break;
-            }
-        }
-        let Some((error, [first, second])) = best else {
-            let none = ModelError::Shape { what: "methods that suit the samples", expected: 1, found: 0 };
-            return Err(refused.unwrap_or(none));
+        let folds = match phases {
+            // Only the first input is free.
+            true => Folds::interleaved(samples, 5),
+            false => Folds::suited(samples, 1),
         };
-        Ok(Self { first: given.unwrap_or(&*first).fit(samples)?, second: second.fit(samples)?, error })
+        let mut methods = methods(samples, phases);
+        let (best, relative) = match (given, &folds) {
+            (Some(given), Ok(folds)) => (None, cross_validate(given, samples, folds)?.error),
+            (Some(_), Err(_)) => (None, 0.0),
+            (None, Ok(folds)) => {
+                let best = best_of(&methods, samples, folds)?;
+                let error = best.table.rows[best.chosen].outcome.as_ref().map_or(0.0, |row| row.error);
+                (Some(methods.remove(best.chosen)), error)
+            }
+            // Too few samples to leave any out.
+            (None, Err(_)) => (methods.pop(), 0.0),
+        };
+        let Some(first) = given.or(best.as_deref()) else {
+            return Err(ModelError::Shape { what: "methods that suit the samples", expected: 1, found: 0 });
+        };
+        // The first other one that works.
+        let other = methods.iter().find_map(|method| Some((method.fit(samples).ok()?, &**method)));
+        let (second, second_method) = match other {
+            Some(other) => other,
+            None => (first.fit(samples)?, first),
+        };
+        let squares: f64 = samples.values().squared_norm_l2();
+        let left_out = relative * (squares / samples.len() as f64).sqrt();
+        let (error, distance) = match between(samples, [first, second_method]) {
+            Some([error, distance]) if samples.inputs() == 1 || phases => (error, distance),
+            // Across the parameters a value left out doubles the distance: at order 2 or more the error is a quarter of that or less.
+            Some([error, distance]) => (error.max(0.25 * left_out), distance),
+            None => (0.25 * left_out, 0.0),
+        };
+        Ok(Self { first: first.fit(samples)?, second, error, distance })
     }
 
     pub(super) fn outputs(&self) -> usize {
@@ -75,25 +82,29 @@ impl Coefficients {
     pub(super) fn domain(&self) -> &[[f64; 2]] {
         self.first.domain()
     }
-    /// Root mean square error at samples that were held out.
+    /// Root mean square error between samples.
     pub(super) fn error(&self) -> f64 {
         self.error
     }
     pub(super) fn predict(&self, x: &[f64], out: &mut [f64]) -> Result<(), ModelError> {
         Ok(self.first.predict(x, out)?)
     }
-    /// How far the two functions are apart at x.
+    /// What the error may be at x: the root mean square one, or larger by as much as the two functions are farther apart than they usually are.
     pub(super) fn doubt(&self, x: &[f64]) -> Result<f64, ModelError> {
         let (mut a, mut b) = (vec![0.0; self.outputs()], vec![0.0; self.outputs()]);
         self.first.predict(x, &mut a)?;
         self.second.predict(x, &mut b)?;
-        Ok(a.iter().zip(&b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt())
+        let distance = a.iter().zip(&b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+        let factor = if self.distance > 0.0 { (distance / self.distance).max(1.0) } else { 1.0 };
+        // Far outside the functions are no measure of one another.
+        let beyond = if self.first.covers(x) { 0.0 } else { distance };
+        Ok((self.error * factor).max(beyond))
     }
     pub(super) fn record(&self) -> Record {
         Record::new("coefficients")
             .with_record("first", &self.first.record())
             .with_record("second", &self.second.record())
-            .with("error", [self.error])
+            .with("error", [self.error, self.distance])
     }
     pub(super) fn from_record(record: &Record) -> Result<Self, RecordError> {
         record.expect("coefficients")?;
@@ -101,36 +112,53 @@ impl Coefficients {
         if (first.inputs(), first.outputs()) != (second.inputs(), second.outputs()) {
             return Err(record.wrong("second", "does not fit the first".into()));
         }
-        Ok(Self { first, second, error: record.number("error")? })
+        let [error, distance] = record.numbers("error")?[..] else {
+            return Err(record.wrong("error", "is not two numbers".into()));
+        };
+        Ok(Self { first, second, error, distance })
     }
 }
 
-/// Root mean square error at every fifth sample of a function of the others; on a grid of several inputs, of those at every fifth value of the input with most values.
-fn held_out(samples: &Samples, method: &dyn Method) -> Result<f64, ModelError> {
-    let along = (0..samples.inputs()).max_by_key(|&i| samples.distinct(i).len()).unwrap_or(0);
-    let values = samples.distinct(along);
-    let inside = 1..values.len().saturating_sub(1);
-    let place = |j: usize| {
-        let x = samples.points()[(along, j)];
-        values.partition_point(|v| *v < x - 0.5e-12 * (values[values.len() - 1] - values[0]))
+/// The first method's error and its distance from the second one's function, root mean squares half-way between values of the first input. Both are told from
+/// what functions of every second value have at the others, e₂, and functions of every fourth one half-way between those, e₄: at an order p e₂/e₄ = 2^−p, and what is
+/// looked for is e₂ e₂/e₄. None with too few values.
+fn between(samples: &Samples, methods: [&dyn Method; 2]) -> Option<[f64; 2]> {
+    let values = samples.distinct(0);
+    let place = |j: &usize| {
+        values.partition_point(|v| {
+            *v < samples.point(*j)[0] - 0.5 * ROUND_OFF * (values[values.len() - 1] - values[0])
+        })
     };
-    // Ends stay: nothing is to be extrapolated.
-    let out = |j: usize| inside.contains(&place(j)) && place(j) % FOLDS == FOLDS / 2;
-    let (kept, tested): (Vec<usize>, Vec<usize>) = (0..samples.len()).partition(|&j| !out(j));
-    if tested.is_empty() {
-        // Too few to tell.
-        method.fit(samples)?;
-        return Ok(0.0);
+    let last = values.len() - 1;
+    let mut told = [[0.0; 2]; 2];
+    for (told, stride) in told.iter_mut().zip([2, 4]) {
+        let ends = last / stride * stride;
+        let kept: Vec<usize> = (0..samples.len()).filter(|j| place(j).is_multiple_of(stride)).collect();
+        let tested: Vec<usize> =
+            (0..samples.len()).filter(|j| place(j) % stride == stride / 2 && place(j) < ends).collect();
+        if ends < LEAST * stride || tested.is_empty() {
+            return None;
+        }
+        let part = samples.subset(&kept)?;
+        let functions = methods.map(|method| method.fit(&part));
+        let [Ok(first), Ok(second)] = functions else { return None };
+        let (mut a, mut b) = (vec![0.0; samples.outputs()], vec![0.0; samples.outputs()]);
+        for &j in &tested {
+            first.predict(samples.point(j), &mut a).ok()?;
+            second.predict(samples.point(j), &mut b).ok()?;
+            for (row, y) in samples.value(j).iter().enumerate() {
+                told[0] += (a[row] - y).powi(2) / tested.len() as f64;
+                told[1] += (a[row] - b[row]).powi(2) / tested.len() as f64;
+            }
+        }
+        *told = told.map(f64::sqrt);
     }
-    let subset = samples.subset(&kept);
-    let Some(subset) = subset else { return Ok(0.0) };
-    let function = method.fit(&subset)?;
-    let (mut x, mut y) = (vec![0.0; samples.inputs()], vec![0.0; samples.outputs()]);
-    let mut sum = 0.0;
-    for &j in &tested {
-        x.iter_mut().enumerate().for_each(|(i, x)| *x = samples.points()[(i, j)]);
-        function.predict(&x, &mut y)?;
-        sum += y.iter().enumerate().map(|(row, y)| (y - samples.values()[(row, j)]).powi(2)).sum::<f64>();
-    }
-    Ok((sum / tested.len() as f64).sqrt())
+    let [two, four] = told;
+    let at_spacing = |i: usize| two[i] * if four[i] > 0.0 { (two[i] / four[i]).min(1.0) } else { 1.0 };
+    Some([at_spacing(0), at_spacing(1)])
 }
+
+/// Intervals that are needed of every fourth value.
+const LEAST: usize = 6;
+/// Of the values of an input, relative to their range.
+const ROUND_OFF: f64 = 1e-12;

@@ -10,7 +10,7 @@ use crate::shifted::{
     ShiftedError, Shifts,
 };
 use crate::{Mat, MatRef};
-use interfaces::Point;
+use interfaces::{Point, Vector};
 use monomorphic::Qr;
 use std::f64::consts::TAU;
 use std::io;
@@ -34,6 +34,8 @@ pub struct Spodiann {
     interpolation: Interpolation,
     interpolator: Interpolator,
     frames: Vec<Carried>,
+    /// Of the decomposition; in the paths already.
+    offsets: Vec<Vector>,
     paths: Paths,
     inputs: usize,
     rows: usize,
@@ -69,6 +71,7 @@ impl Spodiann {
         let (frames, m) = (&decomposition.frames, points.ncols());
         ModelError::same("frames of the shifts", frames.len(), shifts.n_frames())?;
         ModelError::same("motions of every frame, one for each point", m, shifts.n_snapshots())?;
+        let shifts: &dyn Shifts = &Motions::beside(shifts, &decomposition.offsets);
         let rows = frames.first().map_or(0, |f| f.modes.nrows());
         if rows == 0 || !rows.is_multiple_of(grid.n_cells()) {
             return Err(ShiftedError::Rows { rows, cells: grid.n_cells() }.into());
@@ -91,6 +94,7 @@ impl Spodiann {
             interpolation,
             interpolator: Interpolator::new(grid, interpolation),
             frames: carried,
+            offsets: decomposition.offsets.clone(),
             paths,
             inputs: points.nrows(),
             rows,
@@ -134,6 +138,15 @@ impl Spodiann {
         self.paths.motions(x)
     }
 
+    /// The displacement of every frame at x, as the shifts were given: without the [`offsets`](Decomposition::offsets) of the decomposition.
+    ///
+    /// # Errors
+    /// As [`motions`](Self::motions).
+    pub fn places(&self, x: &[f64]) -> Result<Vec<Vector>, ModelError> {
+        let motions = self.motions(x)?;
+        Ok(motions.iter().zip(&self.offsets).map(|(motion, offset)| motion.displacement - offset).collect())
+    }
+
     /// The field at time and parameters x into `out`.
     ///
     /// # Errors
@@ -156,8 +169,8 @@ impl Spodiann {
         Ok(())
     }
 
-    /// An estimate of the relative error at x, without the paths': the decomposition's, and the larger of what the coefficients are off at samples that were held out and
-    /// of how far functions of different order are apart at x; relative to the snapshots' root mean square.
+    /// An estimate of the relative error at x, without the paths': the decomposition's, and what the coefficients are off between samples, told by cross-validation at the samples' own
+    /// spacing, more where functions of different kinds are farther apart than they usually are; relative to the snapshots' root mean square.
     ///
     /// # Errors
     /// As [`predict`](Self::predict).
@@ -166,7 +179,7 @@ impl Spodiann {
         for (frame, motion) in self.frames.iter().zip(self.motions(x)?) {
             let Some(function) = &frame.coefficients else { continue };
             let doubt = function.doubt(&frame.inputs(x, &motion, self.interpolator.grid()))?;
-            squares += (function.error().max(doubt) / self.typical.max(f64::MIN_POSITIVE)).powi(2);
+            squares += (doubt / self.typical.max(f64::MIN_POSITIVE)).powi(2);
         }
         Ok(squares.sqrt())
     }
@@ -185,6 +198,7 @@ impl Spodiann {
         ModelError::same("rows of the snapshots", self.rows, snapshots.nrows())?;
         ModelError::same("frames of the shifts", self.frames.len(), shifts.n_frames())?;
         ModelError::same("motions of every frame, one for each point", points.ncols(), shifts.n_snapshots())?;
+        let shifts = Motions::beside(shifts, &self.offsets);
         let mut sums = Sums::default();
         let (mut predicted, mut x) = (vec![0.0; self.rows], vec![0.0; self.inputs]);
         for j in 0..points.ncols() {
@@ -244,6 +258,7 @@ impl Spodiann {
             .with_word("interpolation", self.interpolation.name())
             .with("sizes", [self.inputs as f64, self.rows as f64, self.frames.len() as f64])
             .with("errors", [self.projection_error, self.typical])
+            .with("offsets", self.offsets.iter().flat_map(|c| [c.x, c.y, c.z]))
             .with_record("paths", &self.paths.record());
         for (k, frame) in self.frames.iter().enumerate() {
             record = record.with_record(&format!("frame {k}"), &frame.record());
@@ -282,11 +297,13 @@ impl Spodiann {
         if rows == 0 || !rows.is_multiple_of(grid.n_cells()) {
             return Err(record.wrong("sizes", format!("have {rows} rows on {} cells", grid.n_cells())));
         }
+        let offsets = record.numbers_of("offsets", 3 * frames)?;
         let frame = |k: usize| Carried::from_record(&record.record(&format!("frame {k}"))?, rows);
         Ok(Self {
             interpolation,
             interpolator: Interpolator::new(grid, interpolation),
             frames: (0..frames).map(frame).collect::<Result<_, _>>()?,
+            offsets: offsets.as_chunks::<3>().0.iter().map(|c| Vector::from(*c)).collect(),
             paths: Paths::from_record(&record.record("paths")?)?,
             inputs,
             rows,

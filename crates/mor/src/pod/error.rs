@@ -1,4 +1,5 @@
 //! What can go wrong.
+use crate::snapshots::SnapshotError;
 
 /// Why snapshots could not be decomposed, or a field not be projected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -63,6 +64,9 @@ pub enum PodError {
         /// Largest modulus of an entry.
         largest: f64,
     },
+    /// Snapshots could not be read.
+    #[error(transparent)]
+    Source(#[from] SnapshotError),
 }
 
 impl PodError {

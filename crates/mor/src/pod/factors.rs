@@ -1,5 +1,5 @@
 //! Singular value decompositions of weighted, centred snapshots.
-use super::blocks::Blocks;
+use super::blocks::{Blocks, Data};
 use super::{PodError, PodParams, Rank, SvdMethod};
 use crate::{Mat, MatRef};
 use monomorphic::{add_gram, add_product, self_adjoint_eigen, thin_svd};
@@ -18,55 +18,78 @@ const GRAM: f64 = 1e-5;
 
 /// `floor` is what round-off leaves in singular values.
 pub(super) fn factors(y: &Blocks<'_>, params: &PodParams, floor: f64) -> Result<Factors, PodError> {
-    let (n, m) = (y.snapshots.nrows(), y.snapshots.ncols());
-    let found = match params.method {
-        // The Gram matrix would be the larger one.
-        SvdMethod::Auto | SvdMethod::Snapshots if n < m => by_qr(y, params, floor),
-        // All there are: small ones, too.
-        SvdMethod::Auto if params.limit(m) == m && params.rank == Rank::All => by_qr(y, params, floor),
-        SvdMethod::Auto => match by_gram(y, params, floor) {
-            Some((factors, true)) => Some(factors),
-            _ => by_qr(y, params, floor),
-        },
-        SvdMethod::Snapshots => by_gram(y, params, floor).map(|(factors, _)| factors),
-        SvdMethod::Qr => by_qr(y, params, floor),
-        SvdMethod::Randomised { oversampling, power_iterations, seed } => {
+    let all_in_memory = matches!(y.data, Data::Memory(_));
+    match (params.method, &y.gram) {
+        (SvdMethod::Randomised { oversampling, power_iterations, seed }, _) => {
             randomised(y, params, floor, oversampling, power_iterations, seed)
         }
-    };
-    found.ok_or_else(|| {
-        let entry = |j: usize| y.snapshots.col(j).iter().fold(0.0, |a: f64, v| a.max(v.abs()));
-        PodError::NotConverged { rows: n, snapshots: m, largest: (0..m).map(entry).fold(0.0, f64::max) }
-    })
+        (_, None) => by_qr(y, params, floor),
+        (SvdMethod::Auto, Some(gram)) if all_in_memory => match by_gram(y, gram, params, floor)? {
+            (factors, true) => Ok(factors),
+            _ => by_qr(y, params, floor),
+        },
+        (_, Some(gram)) => Ok(by_gram(y, gram, params, floor)?.0),
+    }
 }
 
-fn by_qr(y: &Blocks<'_>, params: &PodParams, floor: f64) -> Option<Factors> {
-    let (u, values, v) = match (y.mean, y.weights) {
-        (None, None) => thin_svd(y.snapshots)?,
-        _ => thin_svd(y.whole().as_ref())?,
+/// Are the products of all pairs of snapshots needed?
+pub(super) fn needs_gram(data: &Data<'_>, params: &PodParams) -> bool {
+    let (n, m) = (data.rows(), data.snapshots());
+    // They would be the larger matrix.
+    if n < m {
+        return false;
+    }
+    match params.method {
+        SvdMethod::Snapshots => true,
+        // All there are: small ones, too, if there is the memory.
+        SvdMethod::Auto => {
+            !(matches!(data, Data::Memory(_)) && params.limit(m) == m && params.rank == Rank::All)
+        }
+        SvdMethod::Qr | SvdMethod::Randomised { .. } => false,
+    }
+}
+
+fn by_qr(y: &Blocks<'_>, params: &PodParams, floor: f64) -> Result<Factors, PodError> {
+    let svd = match (&y.data, &y.mean, y.weights) {
+        (Data::Memory(snapshots), None, None) => thin_svd(*snapshots),
+        _ => thin_svd(y.whole()?.as_ref()),
     };
+    let (u, values, v) = svd.ok_or_else(|| y.not_converged())?;
     let energy = values.iter().map(|s| s * s).sum();
     let r = params.kept(&values, energy, floor);
     let coefficients = v.subcols(0, r).transpose().to_owned();
     let modes = match y.weights {
         None if r == u.ncols() => u,
         None => u.subcols(0, r).to_owned(),
-        Some(weights) => {
-            // Where the weight is 0, the values that the snapshots' combination has.
-            let scaled = Mat::from_fn(v.nrows(), r, |j, k| v[(j, k)] / values[k]);
-            let bare = weights.contains(&0.0).then(|| y.times(false, scaled.as_ref()));
-            Mat::from_fn(u.nrows(), r, |i, k| match (weights[i], &bare) {
-                (0.0, Some(bare)) => bare[(i, k)],
-                (w, _) => u[(i, k)] / w.sqrt(),
-            })
-        }
+        Some(weights) => unweighted(y, weights, u.subcols(0, r), v.as_ref(), &values)?,
     };
-    Some(Factors { modes, values, coefficients, energy })
+    Ok(Factors { modes, values, coefficients, energy })
+}
+
+/// W^−½ U; where the weight is 0, the values that the snapshots' combination has.
+fn unweighted(
+    y: &Blocks<'_>,
+    weights: &[f64],
+    u: MatRef<'_, f64>,
+    v: MatRef<'_, f64>,
+    values: &[f64],
+) -> Result<Mat<f64>, PodError> {
+    let scaled = Mat::from_fn(v.nrows(), u.ncols(), |j, k| v[(j, k)] / values[k]);
+    let bare = weights.contains(&0.0).then(|| y.times(false, scaled.as_ref())).transpose()?;
+    Ok(Mat::from_fn(u.nrows(), u.ncols(), |i, k| match (weights[i], &bare) {
+        (0.0, Some(bare)) => bare[(i, k)],
+        (w, _) => u[(i, k)] / w.sqrt(),
+    }))
 }
 
 /// And whether all modes that were asked for are there.
-fn by_gram(y: &Blocks<'_>, params: &PodParams, floor: f64) -> Option<(Factors, bool)> {
-    let (ascending, vectors) = self_adjoint_eigen(y.gram().as_ref())?;
+fn by_gram(
+    y: &Blocks<'_>,
+    gram: &Mat<f64>,
+    params: &PodParams,
+    floor: f64,
+) -> Result<(Factors, bool), PodError> {
+    let (ascending, vectors) = self_adjoint_eigen(gram.as_ref()).ok_or_else(|| y.not_converged())?;
     let m = ascending.len();
     let mut values: Vec<f64> = ascending.iter().rev().map(|v| v.max(0.0).sqrt()).collect();
     let energy = values.iter().map(|s| s * s).sum();
@@ -74,20 +97,21 @@ fn by_gram(y: &Blocks<'_>, params: &PodParams, floor: f64) -> Option<(Factors, b
     let sound = values.iter().take_while(|s| **s >= GRAM * values[0] && **s > floor).count();
     let r = wanted.min(sound);
     let scaled = Mat::from_fn(m, r, |j, k| vectors[(j, m - 1 - k)] / values[k]);
-    let mut modes = y.times(false, scaled.as_ref());
+    let mut modes = y.times(false, scaled.as_ref())?;
     // S = Lᵀ Σ Vᵀ with L of the modes' products: modes L⁻ᵀ are orthonormal, and so are the factors of S.
-    let (inverse, lower) = cholesky(products(modes.as_ref(), y.weights).as_ref())?;
+    let (inverse, lower) =
+        cholesky(products(modes.as_ref(), y.weights).as_ref()).ok_or_else(|| y.not_converged())?;
     let right = Mat::from_fn(r, m, |k, j| values[k] * vectors[(j, m - 1 - k)]);
     let mut s = Mat::zeros(r, m);
     add_product(s.as_mut(), lower.as_ref().transpose(), right.as_ref());
-    let (u, exact, v) = thin_svd(s.as_ref())?;
+    let (u, exact, v) = thin_svd(s.as_ref()).ok_or_else(|| y.not_converged())?;
     let turn = inverse.transpose() * u;
     let mut turned = Mat::zeros(modes.nrows(), r);
     add_product(turned.as_mut(), modes.as_ref(), turn.as_ref());
     std::mem::swap(&mut modes, &mut turned);
     values[..r].copy_from_slice(&exact[..r]);
     let coefficients = v.subcols(0, r).transpose().to_owned();
-    Some((Factors { modes, values, coefficients, energy }, r == wanted))
+    Ok((Factors { modes, values, coefficients, energy }, r == wanted))
 }
 
 /// ΦᵀWΦ, the lower triangle.
@@ -137,34 +161,26 @@ fn randomised(
     oversampling: usize,
     power_iterations: usize,
     seed: u64,
-) -> Option<Factors> {
-    let (n, m) = (y.snapshots.nrows(), y.snapshots.ncols());
+) -> Result<Factors, PodError> {
+    let (n, m) = (y.data.rows(), y.data.snapshots());
     let l = (params.limit(n.min(m)) + oversampling).min(n.min(m));
     let mut random = rand_pcg::Pcg64::seed_from_u64(seed);
+    let orthonormal = |a: Mat<f64>| thin_svd(a.as_ref()).map(|svd| svd.0).ok_or_else(|| y.not_converged());
     // Sums of uniform numbers: near enough to normal ones.
     let test = Mat::from_fn(m, l, |_, _| (0..4).map(|_| random.random_range(-1.0..1.0)).sum::<f64>());
-    let mut q = orthonormal(y.times(true, test.as_ref()))?;
+    let mut q = orthonormal(y.times(true, test.as_ref())?)?;
     for _ in 0..power_iterations {
-        let right = orthonormal(y.transposed_times(q.as_ref()).transpose().to_owned())?;
-        q = orthonormal(y.times(true, right.as_ref()))?;
+        let right = orthonormal(y.transposed_times(q.as_ref())?.transpose().to_owned())?;
+        q = orthonormal(y.times(true, right.as_ref())?)?;
     }
-    let (u, values, v) = thin_svd(y.transposed_times(q.as_ref()).as_ref())?;
-    let energy = y.energy();
+    let (u, values, v) =
+        thin_svd(y.transposed_times(q.as_ref())?.as_ref()).ok_or_else(|| y.not_converged())?;
+    let energy = y.energy()?;
     let r = params.kept(&values, energy, floor);
     let mut modes = Mat::zeros(n, r);
     add_product(modes.as_mut(), q.as_ref(), u.subcols(0, r));
     if let Some(weights) = y.weights {
-        let scaled = Mat::from_fn(m, r, |j, k| v[(j, k)] / values[k]);
-        let bare = weights.contains(&0.0).then(|| y.times(false, scaled.as_ref()));
-        modes = Mat::from_fn(n, r, |i, k| match (weights[i], &bare) {
-            (0.0, Some(bare)) => bare[(i, k)],
-            (w, _) => modes[(i, k)] / w.sqrt(),
-        });
+        modes = unweighted(y, weights, modes.as_ref(), v.as_ref(), &values)?;
     }
-    Some(Factors { modes, values, coefficients: v.subcols(0, r).transpose().to_owned(), energy })
-}
-
-/// Orthonormal columns of the same span.
-fn orthonormal(a: Mat<f64>) -> Option<Mat<f64>> {
-    Some(thin_svd(a.as_ref())?.0)
+    Ok(Factors { modes, values, coefficients: v.subcols(0, r).transpose().to_owned(), energy })
 }

@@ -1,7 +1,8 @@
 //! Modes and their coefficients.
-use super::blocks::Blocks;
-use super::factors::{Factors, factors};
+use super::blocks::{Blocks, Data};
+use super::factors::{Factors, factors, needs_gram};
 use super::{PodError, PodParams};
+use crate::snapshots::SnapshotSource;
 use crate::{Mat, MatRef};
 
 /// X ≈ x̄ + Φ Σ A: the r modes Φ (n × r) that are nearest to all m snapshots X (n × m), for any r (Eckart and Young, Psychometrika 1 (1936) 211),
@@ -24,7 +25,7 @@ pub struct Pod {
 }
 
 /// What is less than so many units in the last place of the snapshots' norm is round-off.
-const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
+pub(super) const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 
 impl Pod {
     /// Of snapshots (n × m).
@@ -32,31 +33,33 @@ impl Pod {
     /// # Errors
     /// [`PodError`].
     pub fn new(snapshots: MatRef<'_, f64>, params: &PodParams) -> Result<Self, PodError> {
-        let (n, m) = (snapshots.nrows(), snapshots.ncols());
+        Self::of_data(Data::Memory(snapshots), params)
+    }
+
+    /// Of snapshots that need not be in memory, in two passes over blocks of rows by the method of snapshots: it holds a block of 64 MB, m × m numbers and twice the
+    /// modes. With [`SvdMethod::Auto`](super::SvdMethod::Auto), too, modes with σ_k < 1e-5 σ₁ are left out then. [`SvdMethod::Qr`](super::SvdMethod::Qr) and more snapshots
+    /// than rows take the whole into memory.
+    ///
+    /// # Errors
+    /// [`PodError`]; [`PodError::Source`] if snapshots cannot be read.
+    pub fn of(source: &dyn SnapshotSource, params: &PodParams) -> Result<Self, PodError> {
+        Self::of_data(Data::Source(source), params)
+    }
+
+    fn of_data(data: Data<'_>, params: &PodParams) -> Result<Self, PodError> {
+        let (n, m) = (data.rows(), data.snapshots());
         if n == 0 || m == 0 {
             return Err(PodError::Empty { rows: n, snapshots: m });
         }
         params.check(n)?;
-        let mut mean = vec![0.0; n];
-        let mut squares = 0.0;
-        for j in 0..m {
-            for (row, x) in snapshots.col(j).iter().enumerate() {
-                if !x.is_finite() {
-                    return Err(PodError::NotFinite { snapshot: j, row, value: *x });
-                }
-                mean[row] += x;
-                squares += params.weights.as_ref().map_or(1.0, |w| w[row]) * x * x;
-            }
-        }
-        mean.iter_mut().for_each(|x| *x /= m as f64);
-        let mean = params.subtract_mean.then_some(mean);
-        let y = Blocks { snapshots, mean: mean.as_deref(), weights: params.weights.as_deref() };
-        let floor = ROUND_OFF * (n.min(m) as f64).sqrt() * f64::sqrt(squares);
+        let gram = needs_gram(&data, params);
+        let y = Blocks::new(data, params.subtract_mean, params.weights.as_deref(), gram)?;
+        let floor = ROUND_OFF * (n.min(m) as f64).sqrt() * f64::sqrt(y.squares);
         let Factors { modes, values, coefficients, energy } = factors(&y, params, floor)?;
         // Nothing but round-off is nothing.
         let energy = if values.first().is_some_and(|s| *s > floor) { energy } else { 0.0 };
         let weights = params.weights.clone();
-        Ok(Self { mean, modes, singular_values: values, coefficients, weights, energy })
+        Ok(Self { mean: y.mean, modes, singular_values: values, coefficients, weights, energy })
     }
 
     /// r.

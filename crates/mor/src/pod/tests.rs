@@ -170,3 +170,61 @@ fn poor_snapshots() {
     assert_eq!(fewer.rank(), 8);
     assert_eq!(fewer.truncated(3).rank(), 3);
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// One snapshot at a time, the same modes as of all at once, or others within the bound.
+    #[test]
+    fn streaming(
+        n in 1..60usize, m in 1..50usize, rank in 1..12usize, own in 1..9usize, seed in 0..10_000u64,
+        mean in any::<bool>(), weighted in any::<bool>(),
+    ) {
+        let x = random(n, own, seed) * random(own, m, seed + 2) + Mat::from_fn(n, m, |i, _| i as f64 / n as f64);
+        let weights = weighted.then(|| random(n, 1, seed + 1).col_as_slice(0).iter().map(|w| w.abs() + 0.1).collect::<Vec<_>>());
+        let mut stream = StreamingPod::new(rank);
+        if mean {
+            stream = stream.subtracting_mean();
+        }
+        if let Some(weights) = &weights {
+            stream = stream.weighted(weights.clone()).unwrap();
+        }
+        for j in 0..m {
+            stream.add(x.col_as_slice(j)).unwrap();
+        }
+        prop_assert_eq!(stream.seen(), m);
+        let mut whole = stream.clone();
+        whole.absorb().unwrap();
+        let bound = whole.error_bound();
+        let pod = stream.finish().unwrap();
+        let params = PodParams { method: SvdMethod::Qr, subtract_mean: mean, weights, ..PodParams::default() };
+        let all = Pod::new(x.as_ref(), &params).unwrap();
+        let norm = |m: &Mat<f64>| Pod::new(m.as_ref(), &PodParams { subtract_mean: false, ..params.clone() }).unwrap().energy.sqrt();
+        prop_assert!(skew(&pod) < 1e-11, "skew {:e}", skew(&pod));
+        prop_assert!((pod.energy - all.energy).abs() < 1e-10 * norm(&x).powi(2));
+        let off = left(&pod, &x);
+        // Taking the mean away may push one more mode out.
+        let pushed_out = if mean { all.singular_values.get(rank - 1).copied().unwrap_or(0.0) } else { 0.0 };
+        prop_assert!(off <= bound * norm(&x) + pushed_out + 1e-10 * norm(&x), "{off:e} {bound:e}");
+        if rank >= own + 1 {
+            prop_assert!(off < 1e-10 * norm(&x), "{off:e}");
+        }
+        let best = all.singular_values.iter().skip(pod.rank()).map(|s| s * s).sum::<f64>().sqrt();
+        prop_assert!(off >= best - 1e-9 * norm(&x));
+    }
+}
+
+#[test]
+fn streams_that_are_not_usable() {
+    let mut stream = StreamingPod::new(3);
+    stream.add(&[1.0, 2.0]).unwrap();
+    assert!(matches!(stream.add(&[1.0]), Err(PodError::Shape { expected: 2, found: 1, .. })));
+    assert!(matches!(stream.add(&[1.0, f64::NAN]), Err(PodError::NotFinite { snapshot: 1, row: 1, .. })));
+    assert_eq!(stream.finish().unwrap().rank(), 1);
+    assert!(matches!(StreamingPod::new(3).finish(), Err(PodError::Empty { .. })));
+    assert!(matches!(StreamingPod::new(3).weighted(vec![1.0, 0.0]), Err(PodError::Weight { row: 1, .. })));
+    let mut nothing = StreamingPod::new(3).subtracting_mean();
+    (0..20).for_each(|_| nothing.add(&[2.0; 7]).unwrap());
+    let pod = nothing.finish().unwrap();
+    assert!(pod.singular_values.iter().all(|s| *s < 1e-12) && pod.mean.unwrap()[3] == 2.0);
+}

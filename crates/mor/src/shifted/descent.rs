@@ -91,7 +91,7 @@ impl JointDescent {
         let least_squares = LeastSquares { problem, level: self.level };
         let mut course = Course::new(self.limits, observer);
         let (frames, stopped) = least_squares.descend(frames, &mut course);
-        Ok(Decomposition { frames, noise: None, history: course.history, stopped })
+        Ok(Decomposition::of(frames, course.history, stopped))
     }
 }
 

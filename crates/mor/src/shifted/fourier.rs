@@ -17,4 +17,7 @@ mod spectrum;
 mod tests;
 
 pub use als::Als;
+pub(super) use als::LONG;
 pub use centring::centred;
+pub(super) use centring::offsets;
+pub(super) use spectrum::Spectrum;

@@ -1,4 +1,5 @@
 //! The operators that carry fields along with frames of reference, on whole matrices of snapshots.
+use interfaces::Vector;
 use monomorphic::{Mat, MatMut, MatRef};
 
 /// T^{Δ_k(t_j)} for every frame k and snapshot j. Whoever implements it may carry fields along in any way.
@@ -15,6 +16,11 @@ pub trait FrameOperators: Sync {
     fn to_frame(&self, frame: usize, fields: MatMut<'_, f64>);
     /// The transpose of [`to_lab`](Self::to_lab). Shifts of periodic grids by whole cells and by phases are orthogonal: there it is the inverse.
     fn to_lab_transposed(&self, frame: usize, fields: MatMut<'_, f64>);
+    /// T^{Δ + c} for a frame that is c beside where it should be: what [`Decomposition::offsets`] asks for. Only [`GridFrames`](super::GridFrames) are asked for
+    /// any c but zero, for which it is [`to_lab`](Self::to_lab).
+    fn to_lab_beside(&self, frame: usize, _offset: Vector, fields: MatMut<'_, f64>) {
+        self.to_lab(frame, fields);
+    }
 }
 
 /// What one frame carries: Q_k = Φ Σ A, in the frame.
@@ -78,6 +84,9 @@ pub struct Progress {
 pub struct Decomposition {
     /// One by one.
     pub frames: Vec<Frame>,
+    /// c of each frame: it moves by Δ_k + c_k, so that what it carries is at rest at the centres of cells ([`centred`](super::fourier::centred)); zero but for
+    /// frames that [`ShiftedPod`](super::ShiftedPod) found to be better so.
+    pub offsets: Vec<Vector>,
     /// E, what no frame carries, if it was asked for.
     pub noise: Option<Mat<f64>>,
     /// After every step.
@@ -87,6 +96,12 @@ pub struct Decomposition {
 }
 
 impl Decomposition {
+    /// Where frames are, without a noise.
+    pub(super) fn of(frames: Vec<Frame>, history: Vec<Progress>, stopped: StopReason) -> Self {
+        let offsets = vec![Vector::zeros(); frames.len()];
+        Self { frames, offsets, noise: None, history, stopped }
+    }
+
     /// Modes of each frame.
     #[must_use]
     pub fn ranks(&self) -> Vec<usize> {
@@ -99,7 +114,7 @@ impl Decomposition {
         let mut sum = Mat::zeros(operators.n_rows(), operators.n_snapshots());
         for (k, frame) in self.frames.iter().enumerate().filter(|(_, f)| f.rank() > 0) {
             let mut field = frame.field();
-            operators.to_lab(k, field.as_mut());
+            operators.to_lab_beside(k, self.offsets[k], field.as_mut());
             sum += field;
         }
         sum

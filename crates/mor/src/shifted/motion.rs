@@ -71,6 +71,16 @@ impl Motions {
         Self { n_snapshots, motions: motions.map(|(k, j)| motion(k, j)).collect() }
     }
 
+    /// The same motions, each frame displaced by its offset.
+    #[must_use]
+    pub fn beside(shifts: &dyn Shifts, offsets: &[Vector]) -> Self {
+        let offset = |k: usize| offsets.get(k).copied().unwrap_or_default();
+        Self::by(shifts.n_frames(), shifts.n_snapshots(), |k, j| {
+            let motion = shifts.motion(k, j);
+            Motion { displacement: motion.displacement + offset(k), ..motion }
+        })
+    }
+
     /// Translations along x: for each frame one per snapshot.
     ///
     /// # Errors

@@ -65,7 +65,7 @@ impl MultiFrame {
         let mut frames = problem.start(start)?;
         let mut course = Course::new(self.limits, observer);
         let stopped = iterate(&problem, &ranks, &mut frames, &mut course);
-        Ok(Decomposition { frames, noise: None, history: course.history, stopped })
+        Ok(Decomposition::of(frames, course.history, stopped))
     }
 }
 

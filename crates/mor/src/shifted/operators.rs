@@ -109,20 +109,21 @@ impl GridFrames {
     }
 
     /// Column by column; they do not know of one another.
-    fn apply(&self, frame: usize, fields: MatMut<'_, f64>, task: Task) {
+    fn apply(&self, frame: usize, offset: Vector, fields: MatMut<'_, f64>, task: Task) {
         assert_eq!(
             (fields.nrows(), fields.ncols()),
             (self.n_rows, self.n_snapshots),
             "not one column per snapshot"
         );
-        let carry = |(snapshot, column): (usize, &mut [f64])| self.carry(frame, snapshot, column, task);
+        let carry =
+            |(snapshot, column): (usize, &mut [f64])| self.carry(frame, snapshot, offset, column, task);
         let columns: Option<Vec<_>> =
             fields.col_iter_mut().map(|c| c.try_as_col_major_mut().map(|c| c.as_slice_mut())).collect();
         let columns = columns.expect("columns of a matrix are contiguous");
         columns.into_par_iter().enumerate().for_each(carry);
     }
 
-    fn carry(&self, frame: usize, snapshot: usize, column: &mut [f64], task: Task) {
+    fn carry(&self, frame: usize, snapshot: usize, offset: Vector, column: &mut [f64], task: Task) {
         let side = if task == Task::Transpose { Side::Transpose } else { Side::Operator };
         match &self.ways {
             Ways::Maps([back, forth]) => {
@@ -130,7 +131,8 @@ impl GridFrames {
                 self.gatherer.gather(&|x| map(frame, snapshot, x), side, column);
             }
             Ways::Motions(motions) => {
-                let motion = motions[frame * self.n_snapshots + snapshot];
+                let mut motion = motions[frame * self.n_snapshots + snapshot];
+                motion.displacement += offset;
                 match &self.turner {
                     _ if motion.is_translation() => self.shift(motion.displacement, column, task),
                     // Shears have their inverse for their transpose.
@@ -228,12 +230,15 @@ impl FrameOperators for GridFrames {
         self.n_frames
     }
     fn to_lab(&self, frame: usize, fields: MatMut<'_, f64>) {
-        self.apply(frame, fields, Task::Lab);
+        self.apply(frame, Vector::zeros(), fields, Task::Lab);
     }
     fn to_frame(&self, frame: usize, fields: MatMut<'_, f64>) {
-        self.apply(frame, fields, Task::Frame);
+        self.apply(frame, Vector::zeros(), fields, Task::Frame);
     }
     fn to_lab_transposed(&self, frame: usize, fields: MatMut<'_, f64>) {
-        self.apply(frame, fields, Task::Transpose);
+        self.apply(frame, Vector::zeros(), fields, Task::Transpose);
+    }
+    fn to_lab_beside(&self, frame: usize, offset: Vector, fields: MatMut<'_, f64>) {
+        self.apply(frame, offset, fields, Task::Lab);
     }
 }

@@ -153,7 +153,7 @@ impl Proximal {
                 break stopped;
             }
         };
-        Ok(Decomposition { frames: state.frames, noise: state.noise, history: course.history, stopped })
+        Ok(Decomposition { noise: state.noise, ..Decomposition::of(state.frames, course.history, stopped) })
     }
 
     fn scheme(&self, problem: &Problem<'_>) -> Result<Scheme, ShiftedError> {

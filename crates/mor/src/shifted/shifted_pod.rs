@@ -1,14 +1,14 @@
 //! The usual way to decompose snapshots.
-use super::dense::thin;
-use super::fourier::Als;
-use super::rank_search::{Fit, Found, RankSearch, deviation};
+use super::rank_search::{Fit, Found, RankSearch};
 use super::residual::{Observer, Problem};
+use super::thinning::{MANY, Thinned, thinned};
+use super::translated::Translated;
 use super::waves::Waves;
 use super::{
-    Decomposition, Frame, FrameOperators, Grid, GridFrames, Interpolation, JointDescent, Motion, Progress,
-    Proximal, ShiftedError, Shifts, StopReason,
+    Decomposition, Frame, FrameOperators, Grid, GridFrames, Interpolation, JointDescent, Progress,
+    ShiftedError, Shifts, StopReason,
 };
-use monomorphic::{Mat, MatRef};
+use monomorphic::MatRef;
 use std::ops::ControlFlow;
 
 /// How many modes each frame has.
@@ -37,22 +37,20 @@ pub enum Noise {
 ///    on some of the snapshots if there are many.
 /// 3. [`JointDescent`] fits all modes to the entries that are not wrong: nothing is left of the bias of the nuclear norm.
 ///
-/// Frames that only move, with [`Interpolation::Spectral`], are decomposed in the space of wave vectors and fitted by [`Als`].
+/// Frames that only move along periodic axes, with [`Interpolation::Spectral`], are fitted in the space of wave vectors by [`Als`](super::fourier::Als) instead, and first brought to
+/// where what they carry is at the centres of cells ([`centred`](super::fourier::centred), [`Decomposition::offsets`]). Wrong entries are found by turns with the modes, those of some of the snapshots first: what is off by
+/// more than six deviations is replaced by what the modes have there. Only if more than a twentieth of up to a million entries is wrong, the augmented Lagrangian is asked as above.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShiftedPod {
-    grid: Grid,
-    interpolation: Interpolation,
-    ranks: Ranks,
-    noise: Noise,
-    rank_tolerance: f64,
-    tolerance: f64,
-    max_rank: usize,
-    max_steps: usize,
+    pub(super) grid: Grid,
+    pub(super) interpolation: Interpolation,
+    pub(super) ranks: Ranks,
+    pub(super) noise: Noise,
+    pub(super) rank_tolerance: f64,
+    pub(super) tolerance: f64,
+    pub(super) max_rank: usize,
+    pub(super) max_steps: usize,
 }
-
-/// More snapshots than this are thinned out to find the ranks.
-const MANY: usize = 150;
-const SOME: usize = 75;
 
 impl ShiftedPod {
     /// Ranks found for a relative error of 1e-4, up to 20 in a frame; no wrong entries; fitted to a relative error of 1e-10, in 100 steps at most.
@@ -128,13 +126,17 @@ impl ShiftedPod {
         let problem = Problem::new(&operators, snapshots)?;
         let start = start.map(|s| problem.start(Some(s))).transpose()?;
         let mut watch = Watch { observer, history: vec![] };
-        if self.noise == Noise::Sparse {
-            return self.robust(&operators, snapshots, start, &mut watch);
-        }
         let waves = Waves::new(&self.grid, shifts, snapshots.nrows());
-        match waves.filter(|_| self.interpolation == Interpolation::Spectral) {
-            Some(waves) => self.translated(&waves, shifts, snapshots, start, &mut watch),
-            None => self.dense(&operators, shifts, snapshots, start, &mut watch),
+        match (waves.filter(|_| self.interpolation == Interpolation::Spectral), self.noise) {
+            (Some(_), _) => {
+                let found = Translated { pod: self, shifts, snapshots }.solve(start.clone(), &mut watch)?;
+                if found.stopped == StopReason::Asked || !many_wrong(&found) {
+                    return Ok(found);
+                }
+                self.robust(&operators, snapshots, start, &mut watch)
+            }
+            (None, Noise::Sparse) => self.robust(&operators, snapshots, start, &mut watch),
+            (None, Noise::Dense) => self.dense(&operators, shifts, snapshots, start, &mut watch),
         }
     }
 
@@ -157,7 +159,7 @@ impl ShiftedPod {
             Noise::Dense => {
                 let start = start.unwrap_or(problem.start(None)?);
                 let (frames, stopped) = self.fit(operators, snapshots, &[], start, &mut watch)?;
-                Ok(Decomposition { frames, noise: None, history: watch.history, stopped })
+                Ok(Decomposition::of(frames, watch.history, stopped))
             }
         }
     }
@@ -182,140 +184,18 @@ impl ShiftedPod {
                 let (frames, stopped) = self.search(&operators, few.as_ref(), &[], None, &fit, watch)?;
                 let frames = frames.iter().map(|f| f.between(&some, n)).collect();
                 if stopped == StopReason::Asked {
-                    return Ok(Decomposition { frames, noise: None, history: watch.take(), stopped });
+                    return Ok(Decomposition::of(frames, watch.take(), stopped));
                 }
                 frames
             }
             None => vec![Frame::nothing(m, n); operators.n_frames()],
         };
         let (frames, stopped) = self.fit(operators, snapshots, &[], frames, watch)?;
-        Ok(Decomposition { frames, noise: None, history: watch.take(), stopped })
-    }
-
-    /// The same of frames that only move, by their waves: [`Als`] fits them.
-    fn translated(
-        &self,
-        waves: &Waves,
-        shifts: &dyn Shifts,
-        snapshots: MatRef<'_, f64>,
-        start: Option<Vec<Frame>>,
-        watch: &mut Watch<'_>,
-    ) -> Result<Decomposition, ShiftedError> {
-        let n = snapshots.ncols();
-        let decomposition =
-            |frames| Decomposition { frames, noise: None, history: vec![], stopped: StopReason::Asked };
-        let als =
-            |ranks: &[usize], tolerance| Als { tolerance, max_steps: 5 * self.max_steps, ..Als::new(ranks) };
-        let (ranks, start) = match &self.ranks {
-            Ranks::Given(ranks) => (ranks.clone(), start),
-            Ranks::Found => {
-                let (some, few) = match &start {
-                    None if n > MANY => thinned(snapshots),
-                    _ => ((0..n).collect(), snapshots.to_owned()),
-                };
-                let thinned = Thinned { shifts, snapshots: &some };
-                let fit = |frames: &[Frame], tolerance: f64, observer: Observer<'_>| {
-                    let ranks: Vec<_> = frames.iter().map(Frame::rank).collect();
-                    let start = decomposition(frames.to_vec());
-                    let mut go_on = |p: &Progress| observer(p).is_continue();
-                    let als = als(&ranks, tolerance);
-                    let d = als.solve(&self.grid, &thinned, few.as_ref(), Some(&start), None, &mut go_on)?;
-                    Ok((carried(d.frames, &|modes| waves.waves(modes)), d.stopped))
-                };
-                let start = start.map(|frames| carried(frames, &|modes| waves.waves(modes)));
-                let transformed = waves.waves(few.as_ref());
-                let waves_of_some = waves.thinned(&some);
-                let (frames, stopped) =
-                    self.search(&waves_of_some, transformed.as_ref(), &[], start, &fit, watch)?;
-                let frames = carried(frames, &|modes| waves.fields(modes));
-                let frames: Vec<_> = frames.iter().map(|f| f.between(&some, n)).collect();
-                if stopped == StopReason::Asked {
-                    return Ok(Decomposition { history: watch.take(), ..decomposition(frames) });
-                }
-                (frames.iter().map(Frame::rank).collect(), Some(frames))
-            }
-        };
-        let start = start.map(decomposition);
-        let mut go_on = |p: &Progress| watch.see(p).is_continue();
-        let als = als(&ranks, self.tolerance);
-        let d = als.solve(&self.grid, shifts, snapshots, start.as_ref(), None, &mut go_on)?;
-        Ok(Decomposition { history: watch.take(), ..d })
-    }
-
-    /// Some entries are wrong.
-    fn robust(
-        &self,
-        operators: &dyn FrameOperators,
-        snapshots: MatRef<'_, f64>,
-        start: Option<Vec<Frame>>,
-        watch: &mut Watch<'_>,
-    ) -> Result<Decomposition, ShiftedError> {
-        let mut proximal = Proximal::augmented_lagrangian().with_noise().tolerance(1e-3);
-        proximal = proximal.max_steps(2 * self.max_steps);
-        let convex = proximal.solve(operators, snapshots, start.as_deref(), &mut |p| watch.see(p))?;
-        if convex.stopped == StopReason::Asked {
-            return Ok(Decomposition { history: watch.take(), ..convex });
-        }
-        // Small singular values are noise or will be found again.
-        let largest = convex.frames.iter().flat_map(|f| &f.singular_values).fold(0.0, |a: f64, &s| a.max(s));
-        let leading = |(k, frame): (usize, &Frame)| match &self.ranks {
-            Ranks::Given(ranks) => frame.cut(ranks.get(k).map_or(0, |&r| r.min(frame.rank()))),
-            Ranks::Found => {
-                frame.cut(frame.singular_values.iter().filter(|&&s| s > LEADING * largest).count())
-            }
-        };
-        let mut frames: Vec<Frame> = convex.frames.iter().enumerate().map(leading).collect();
-        let problem = Problem::new(operators, snapshots)?;
-        for round in 1.. {
-            let ranks: Vec<_> = frames.iter().map(Frame::rank).collect();
-            frames = self.robust_fit(&problem, frames, watch)?;
-            // Where nothing is explained nothing is wrong.
-            let known = ranks.iter().any(|&rank| rank > 0);
-            let wrong = match known {
-                true => entries(&problem.residual(&frames), 6.0 * deviation_there(&problem, &frames)),
-                false => vec![],
-            };
-            let stopped;
-            (frames, stopped) = self.fit(operators, snapshots, &wrong, frames, watch)?;
-            let same = frames.iter().map(Frame::rank).eq(ranks);
-            if same || round == ROUNDS || stopped == StopReason::Asked {
-                let residual = problem.residual(&frames);
-                let mut noise = Mat::zeros(residual.nrows(), residual.ncols());
-                wrong.iter().for_each(|&at| noise[at] = residual[at]);
-                return Ok(Decomposition { frames, noise: Some(noise), history: watch.take(), stopped });
-            }
-        }
-        unreachable!("the last round returns")
-    }
-
-    /// Modes fitted so that wrong entries do little harm, with Huber's level from the deviation of the others, until that is as small as it gets.
-    fn robust_fit(
-        &self,
-        problem: &Problem<'_>,
-        mut frames: Vec<Frame>,
-        watch: &mut Watch<'_>,
-    ) -> Result<Vec<Frame>, ShiftedError> {
-        let mut level = deviation_there(problem, &frames);
-        for _ in 0..self.max_steps {
-            if level <= 0.0 {
-                break;
-            }
-            let ranks: Vec<_> = frames.iter().map(Frame::rank).collect();
-            let descent = JointDescent::new(ranks).huber(level).stagnation(0.05).max_steps(self.max_steps);
-            let d =
-                descent.solve(problem.operators, problem.snapshots, Some(&frames), &mut |p| watch.see(p))?;
-            frames = d.frames;
-            let before = level;
-            level = deviation_there(problem, &frames);
-            if d.stopped == StopReason::Asked || level > 0.9 * before {
-                break;
-            }
-        }
-        Ok(frames)
+        Ok(Decomposition::of(frames, watch.take(), stopped))
     }
 
     /// The modes that are asked for, fitted to all entries but the wrong ones.
-    fn fit(
+    pub(super) fn fit(
         &self,
         operators: &dyn FrameOperators,
         snapshots: MatRef<'_, f64>,
@@ -384,89 +264,33 @@ impl ShiftedPod {
     }
 }
 
-/// Frames with other modes.
-fn carried(frames: Vec<Frame>, map: &dyn Fn(MatRef<'_, f64>) -> Mat<f64>) -> Vec<Frame> {
-    frames.into_iter().map(|frame| Frame { modes: map(frame.modes.as_ref()), ..frame }).collect()
+/// Are so many entries wrong that the convex problem should tell where to start, and is it small enough?
+fn many_wrong(found: &Decomposition) -> bool {
+    let Some(noise) = &found.noise else { return false };
+    let entries = noise.nrows() * noise.ncols();
+    let wrong: usize = noise.col_iter().map(|c| c.iter().filter(|x| **x != 0.0).count()).sum();
+    entries <= CONVEX && wrong as f64 > MANY_WRONG * entries as f64
 }
 
-/// Some of the snapshots, the first and the last among them.
-fn thinned(snapshots: MatRef<'_, f64>) -> (Vec<usize>, Mat<f64>) {
-    let some: Vec<usize> = (0..SOME).map(|i| i * (snapshots.ncols() - 1) / (SOME - 1)).collect();
-    let few = Mat::from_fn(snapshots.nrows(), SOME, |i, j| snapshots[(i, some[j])]);
-    (some, few)
-}
-
-/// Modes of the augmented Lagrangian below this part of the largest one are not started from.
-const LEADING: f64 = 0.02;
-
-/// How often ranks are looked for.
-const ROUNDS: usize = 3;
-
-/// The deviation of what is left, where there is something to carry along, from nothing; no less than round-off.
-fn deviation_there(problem: &Problem<'_>, frames: &[Frame]) -> f64 {
-    let residual = problem.residual(frames);
-    let explained = problem.snapshots - &residual;
-    let something = 0.02 * explained.norm_max();
-    let there = explained.col_iter().zip(residual.col_iter()).flat_map(|(f, r)| {
-        f.iter().zip(r.iter()).filter(|(f, _)| f.abs() > something).map(|(_, r)| r.abs()).collect::<Vec<_>>()
-    });
-    deviation(there.collect()).max(1e-10 * problem.snapshots.norm_max())
-}
-
-/// Row and column of entries larger than that.
-fn entries(field: &Mat<f64>, size: f64) -> Vec<(usize, usize)> {
-    let column =
-        |j: usize| (0..field.nrows()).filter(move |&i| field[(i, j)].abs() > size).map(move |i| (i, j));
-    (0..field.ncols()).flat_map(column).collect()
-}
-
-/// Some of the snapshots.
-struct Thinned<'a> {
-    shifts: &'a dyn Shifts,
-    snapshots: &'a [usize],
-}
-
-impl Shifts for Thinned<'_> {
-    fn n_frames(&self) -> usize {
-        self.shifts.n_frames()
-    }
-    fn n_snapshots(&self) -> usize {
-        self.snapshots.len()
-    }
-    fn motion(&self, frame: usize, snapshot: usize) -> Motion {
-        self.shifts.motion(frame, self.snapshots[snapshot])
-    }
-}
+/// More entries than these take the convex problem too long.
+const CONVEX: usize = 1_000_000;
+/// Up to this part of all, wrong entries and modes are found by turns.
+const MANY_WRONG: f64 = 0.05;
 
 /// Numbers the steps of several iterations through.
-struct Watch<'a> {
+pub(super) struct Watch<'a> {
     observer: Observer<'a>,
-    history: Vec<Progress>,
+    pub(super) history: Vec<Progress>,
 }
 
 impl Watch<'_> {
-    fn see(&mut self, progress: &Progress) -> ControlFlow<()> {
+    pub(super) fn see(&mut self, progress: &Progress) -> ControlFlow<()> {
         let progress = Progress { step: self.history.len() + 1, ..*progress };
         self.history.push(progress);
         (self.observer)(&progress)
     }
 
-    fn take(&mut self) -> Vec<Progress> {
+    pub(super) fn take(&mut self) -> Vec<Progress> {
         std::mem::take(&mut self.history)
-    }
-}
-
-impl Frame {
-    /// From some of `n` snapshots to all of them, σ a linear in between.
-    fn between(&self, some: &[usize], n: usize) -> Self {
-        let scaled = self.scaled_coefficients();
-        let coefficient = |j: usize, i: usize| {
-            let after = some.partition_point(|&at| at < j).clamp(1, some.len() - 1);
-            let [a, b] = [some[after - 1], some[after]];
-            let part = (j - a) as f64 / (b - a) as f64;
-            (1.0 - part) * scaled[(i, after - 1)] + part * scaled[(i, after)]
-        };
-        let (v, singular_values, u) = thin(Mat::from_fn(n, self.rank(), coefficient), self.rank());
-        Self { modes: &self.modes * u, singular_values, coefficients: v.transpose().to_owned() }
     }
 }

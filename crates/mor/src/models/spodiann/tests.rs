@@ -55,6 +55,7 @@ fn decomposition(times: &[f64]) -> Decomposition {
     };
     Decomposition {
         frames: (0..2).map(frame).collect(),
+        offsets: vec![Vector::zeros(); 2],
         noise: None,
         history: vec![Progress { step: 0, error: 1e-6, rank: 2 }],
         stopped: StopReason::Tolerance,
@@ -159,6 +160,7 @@ fn frames_that_turn() {
     };
     let decomposition = Decomposition {
         frames: vec![frame],
+        offsets: vec![Vector::zeros()],
         noise: None,
         history: Vec::new(),
         stopped: StopReason::Tolerance,

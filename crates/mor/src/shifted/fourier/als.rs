@@ -9,7 +9,7 @@ use crate::shifted::{Decomposition, Frame, Grid, Progress, ShiftedError, Shifts,
 use crate::{Mat, MatRef};
 
 /// With as many modes as asked for: by [`Als::stagnation`].
-const LONG: Patience = (10, 0.0);
+pub(in crate::shifted) const LONG: Patience = (10, 0.0);
 /// With fewer.
 const SHORT: Patience = (3, 0.1);
 /// On all data after a sample.
@@ -63,27 +63,43 @@ impl Als {
         if self.ranks.len() != frames {
             return Err(ShiftedError::Ranks { ranks: self.ranks.len(), frames });
         }
-        let spectrum = Spectrum::new(grid, shifts, snapshots, noise, 0.1 * self.tolerance.max(1e-13))?;
-        let n = snapshots.ncols();
+        let spectrum = Spectrum::new(grid, shifts, snapshots, noise, self.cut())?;
+        let d = self.fit(&spectrum, start, LONG, progress)?;
+        Ok(Decomposition { noise: noise.map(|e| e.to_owned()), ..d })
+    }
+
+    /// What part of the snapshots need not be looked at.
+    pub(in crate::shifted) fn cut(&self) -> f64 {
+        0.1 * self.tolerance.max(1e-13)
+    }
+
+    /// Decomposes what is in Fourier space already.
+    pub(in crate::shifted) fn fit(
+        &self,
+        spectrum: &Spectrum,
+        start: Option<&Decomposition>,
+        patience: Patience,
+        progress: &mut dyn FnMut(&Progress) -> bool,
+    ) -> Result<Decomposition, ShiftedError> {
+        let n = spectrum.n_snapshots();
         let ranks: Vec<_> = self.ranks.iter().map(|&r| r.min(n).min(spectrum.n_rows())).collect();
         let mut amplitudes = begin(start, &ranks, n)?;
-        let mut run = Run { als: self, spectrum: &spectrum, history: Vec::new(), progress };
+        let mut run = Run { als: self, spectrum, history: Vec::new(), progress };
         if spectrum.energy == 0.0 {
             let nothing = || frame(Mat::zeros(spectrum.n_rows(), 0), &Mat::zeros(n, 0), 1.0);
             let frames = ranks.iter().map(|_| nothing()).collect();
             run.note(0.0, 0);
-            let (history, stopped) = (run.history, StopReason::Tolerance);
-            return Ok(Decomposition { frames, noise: noise.map(|e| e.to_owned()), history, stopped });
+            return Ok(Decomposition::of(frames, run.history, StopReason::Tolerance));
         }
-        let all = Problem::all(&spectrum);
-        let sample = Problem::sample(&spectrum, ranks.iter().sum());
+        let all = Problem::all(spectrum);
+        let sample = Problem::sample(spectrum, ranks.iter().sum());
         let mut problem = sample.as_ref().unwrap_or(&all);
         let mut sampled = sample.is_some();
         let (descent, stopped) = loop {
             amplitudes = grow(problem, amplitudes, &ranks);
             let last = amplitudes.ranks == ranks;
             let mut descent = Descent::new(problem, amplitudes);
-            let mut reason = run.descend(&mut descent, if last { LONG } else { SHORT });
+            let mut reason = run.descend(&mut descent, if last { patience } else { SHORT });
             if sampled && (last || reason == StopReason::Tolerance) && reason != StopReason::Asked {
                 (problem, sampled) = (&all, false);
                 descent = descent.with(problem);
@@ -98,8 +114,8 @@ impl Als {
         if sampled {
             evaluation = Evaluation::new(&all, &amplitudes);
         }
-        let frames = frames_of(&spectrum, &amplitudes, &evaluation);
-        Ok(Decomposition { frames, noise: noise.map(|e| e.to_owned()), history: run.history, stopped })
+        let frames = frames_of(spectrum, &amplitudes, &evaluation);
+        Ok(Decomposition::of(frames, run.history, stopped))
     }
 }
 
@@ -112,7 +128,7 @@ struct Run<'a> {
 }
 
 /// When to stop: steps, and the part by which they must lower the error.
-type Patience = (usize, f64);
+pub(in crate::shifted) type Patience = (usize, f64);
 
 impl Run<'_> {
     /// Another step; false if it shall be the last.
@@ -170,6 +186,9 @@ fn begin(start: Option<&Decomposition>, ranks: &[usize], n: usize) -> Result<Amp
 /// One more mode in each frame that is to have more: the residual's largest in it.
 fn grow(problem: &Problem<'_>, old: Amplitudes, ranks: &[usize]) -> Amplitudes {
     let more: Vec<_> = old.ranks.iter().zip(ranks).map(|(&a, &b)| usize::from(a < b)).collect();
+    if more.iter().all(|&m| m == 0) {
+        return old;
+    }
     let new = dominant(problem, &old, &more);
     let sum: Vec<_> = old.ranks.iter().zip(&more).map(|(a, b)| a + b).collect();
     let (mut i, mut m) = (0, 0);

@@ -3,7 +3,7 @@ use super::amplitudes::Amplitudes;
 use super::normal::Normal;
 use super::problem::{Piece, Problem};
 use super::spectrum::Spectrum;
-use crate::shifted::{Grid, Motion, Motions, ShiftedError, Shifts};
+use crate::shifted::{Grid, Motions, ShiftedError, Shifts};
 use crate::{Mat, MatRef};
 use interfaces::Vector;
 use std::borrow::Cow;
@@ -11,6 +11,10 @@ use std::f64::consts::PI;
 
 /// Waves that hold less than this part of the energy, squared, are not looked at.
 const TOLERANCE: f64 = 1e-6;
+/// Nor are frames moved if the waves of two cells hold more than this part of the energy.
+const EDGES: f64 = 1e-3;
+/// Nor is a frame moved if what is gained is not so many times what one phase does not explain.
+const CLEARLY: f64 = 3.0;
 /// A frame that explains less than this part of the waves of two cells stays where it is.
 const EXPLAINED: f64 = 0.1;
 
@@ -30,6 +34,11 @@ pub fn centred(
     snapshots: MatRef<'_, f64>,
 ) -> Result<Motions, ShiftedError> {
     let spectrum = Spectrum::new(grid, shifts, snapshots, None, TOLERANCE)?;
+    Ok(Motions::beside(shifts, &offsets(grid, shifts, &spectrum)))
+}
+
+/// What [`centred`] adds to the shifts of each frame.
+pub(in crate::shifted) fn offsets(grid: &Grid, shifts: &dyn Shifts, spectrum: &Spectrum) -> Vec<Vector> {
     let (n_frames, n) = (shifts.n_frames(), shifts.n_snapshots());
     let mut offsets = vec![Vector::zeros(); n_frames];
     for &axis in &spectrum.phases.moving {
@@ -63,12 +72,19 @@ pub fn centred(
                 *both += phi[0] * phi[2] + phi[1] * phi[3];
             }
         }
+        // Fields that are no edges have much more there.
+        if energy > EDGES * spectrum.energy {
+            continue;
+        }
         for (offset, [cosines, sines, both]) in offsets.iter_mut().zip(sums) {
-            if 0.5 * n as f64 * (cosines + sines) > EXPLAINED * energy {
+            // What the best phase explains, and what needs another one.
+            let half = (0.5 * (cosines - sines)).hypot(both);
+            let (best, other) = (0.5 * (cosines + sines) + half, 0.5 * (cosines + sines) - half);
+            if 0.5 * n as f64 * (cosines + sines) > EXPLAINED * energy && best - cosines > CLEARLY * other {
                 // cos θ cos πs + sin θ sin πs = cos (πs − θ)
                 offset[axis] = -0.5 * (2.0 * both).atan2(cosines - sines) / PI * h;
             }
         }
     }
-    Ok(Motions::by(n_frames, n, |k, j| Motion::translation(shifts.motion(k, j).displacement + offsets[k])))
+    offsets
 }

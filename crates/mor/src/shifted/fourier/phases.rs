@@ -95,6 +95,15 @@ impl Phases {
     /// # Errors
     /// If a frame turns, leaves the grid, or moves along a bounded axis.
     pub(super) fn new(grid: &Grid, shifts: &dyn Shifts) -> Result<Self, ShiftedError> {
+        Self::along(grid, shifts, None)
+    }
+
+    /// Along these axes, or those along which something moves.
+    pub(super) fn along(
+        grid: &Grid,
+        shifts: &dyn Shifts,
+        axes: Option<Vec<usize>>,
+    ) -> Result<Self, ShiftedError> {
         let (n_frames, n_snapshots) = (shifts.n_frames(), shifts.n_snapshots());
         let mut distances = [const { Vec::new() }; 3];
         for frame in 0..n_frames {
@@ -124,7 +133,7 @@ impl Phases {
             let n = grid.cells()[*a] as f64;
             distances[*a].iter().any(|s| s.rem_euclid(n) != 0.0)
         };
-        let moving: Vec<_> = (0..3).filter(moves).collect();
+        let moving = axes.unwrap_or_else(|| (0..3).filter(moves).collect());
         let table = |&a: &usize| Table::new(grid.cells()[a], n_snapshots, &distances[a], TABLE);
         let tables = moving.iter().map(table).collect();
         Ok(Self { n_frames, n_snapshots, moving, tables })

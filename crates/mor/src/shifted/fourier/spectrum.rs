@@ -28,7 +28,7 @@ pub(super) struct Group {
 }
 
 /// Snapshots in Fourier space along the axes on which something moves. Of each pair ±κ there is one.
-pub(super) struct Spectrum {
+pub(in crate::shifted) struct Spectrum {
     pub(super) phases: Phases,
     pub(super) groups: Vec<Group>,
     /// What the snapshots were divided by.
@@ -114,7 +114,7 @@ impl Spectrum {
     ///
     /// # Errors
     /// If the snapshots, their noise and the shifts do not fit together or are not finite.
-    pub(super) fn new(
+    pub(in crate::shifted) fn new(
         grid: &Grid,
         shifts: &dyn Shifts,
         snapshots: MatRef<'_, f64>,
@@ -206,6 +206,15 @@ impl Spectrum {
         let dropped = groups.iter().map(|g| g.1).sum();
         let groups = groups.into_iter().map(|g| g.0).filter(|g: &Group| !g.data.is_empty()).collect();
         Ok(Self { phases, groups, scale, energy, dropped, n_snapshots: n, layout })
+    }
+
+    /// With frames that are elsewhere, but move along the same axes.
+    ///
+    /// # Errors
+    /// If a frame turns, leaves the grid, or moves along a bounded axis.
+    pub(in crate::shifted) fn along(self, grid: &Grid, shifts: &dyn Shifts) -> Result<Self, ShiftedError> {
+        let phases = Phases::along(grid, shifts, Some(self.phases.moving))?;
+        Ok(Self { phases, ..self })
     }
 
     /// Unknowns of a snapshot.

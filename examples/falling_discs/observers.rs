@@ -338,8 +338,8 @@ impl Save {
 }
 
 impl<F: Forcing> Observer<Fall<F>> for Save {
-    fn step(&mut self, fall: &mut Fall<F>, _: &StepInfo) -> Result<(), CouplingError> {
-        if self.last.elapsed() >= SAVE_EVERY {
+    fn step(&mut self, fall: &mut Fall<F>, info: &StepInfo) -> Result<(), CouplingError> {
+        if self.last.elapsed() >= SAVE_EVERY && info.snapshot.is_none() {
             self.now(fall).map_err(|e| CouplingError::Output {
                 what: "saving the state".into(),
                 source: io::Error::other(e),

@@ -9,7 +9,7 @@ fn allocations(scene: &Scene, forcing: impl Forcing, threads: usize) -> u64 {
     with_threads(threads, || {
         let mut simulation = scene.build(forcing).unwrap();
         let mut ledger = Ledger::new();
-        let info = StepInfo { step: 0, time: 0.0, dt: 1e-4, courant: 0.0 };
+        let info = StepInfo { step: 0, time: 0.0, dt: 1e-4, courant: 0.0, snapshot: None };
         ledger.begin(&mut simulation);
         let mut steps = |n| {
             for _ in 0..n {

@@ -1,7 +1,7 @@
 //! A run that is stopped goes on as if it had not been.
 use crate::with_threads;
 use example_support::scene::{FLUID, Scene};
-use siltflow::coupling::{self, CheckpointError, Particles, Schedule, Simulation};
+use siltflow::coupling::{self, CheckpointError, CouplingError, Particles, Schedule, Simulation, StepInfo};
 use siltflow::dem::RigidBodies;
 use siltflow::ibm::SmoothForcing;
 use siltflow::interfaces::{BodyId, Kinematics};
@@ -40,6 +40,34 @@ fn bits(fall: &Fall) -> Vec<u64> {
     });
     let field = fall.flow.pressure().values().chain(fall.flow.velocity().field(1).values());
     motion.chain(field).chain([fall.flow.time()]).map(f64::to_bits).collect()
+}
+
+/// Notes which snapshots steps foretell and which come.
+#[derive(Default)]
+struct Foretold(Option<usize>, Vec<usize>);
+
+impl coupling::Observer<Fall> for Foretold {
+    fn step(&mut self, _: &mut Fall, info: &StepInfo) -> Result<(), CouplingError> {
+        assert!(std::mem::replace(&mut self.0, info.snapshot).is_none(), "a snapshot was skipped");
+        Ok(())
+    }
+    fn snapshot(&mut self, _: &mut Fall, index: usize, info: &StepInfo) -> Result<(), CouplingError> {
+        assert_eq!(info.snapshot, Some(index));
+        assert!(self.0.take() == Some(index) || index == 0);
+        self.1.push(index);
+        Ok(())
+    }
+}
+
+/// A state that was saved between the last step of an interval and its snapshot would lose the snapshot: steps tell when one follows.
+#[test]
+fn steps_foretell_snapshots() {
+    with_threads(1, || {
+        let schedule = Schedule { end: 0.01, intervals: 4, ..Schedule::default() };
+        let mut seen = Foretold::default();
+        coupling::run(&mut build(false), &schedule, &mut seen, &AtomicBool::new(false)).unwrap();
+        assert_eq!(seen.1, [0, 1, 2, 3, 4]);
+    });
 }
 
 #[test]

@@ -77,6 +77,9 @@ pub struct StepInfo {
     pub dt: f64,
     /// Courant number of the step.
     pub courant: f64,
+    /// The step ends an interval: the snapshot with this index follows. A state that is saved to go on from is saved behind it, not before: who goes on from a state at the
+    /// end of an interval takes its snapshot as made.
+    pub snapshot: Option<usize>,
 }
 
 /// Someone who looks on: progress, output, probes, statistics. `()` sees nothing; pairs of
@@ -189,6 +192,7 @@ pub fn run<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>>(
         time: simulation.flow.time(),
         dt: simulation.flow.last_dt(),
         courant: 0.0,
+        snapshot: None,
     };
     // Ends of intervals that are behind, up to round-off: other schedules cut time otherwise.
     let behind = info.time + ROUND_OFF * schedule.end / schedule.intervals as f64;
@@ -196,6 +200,7 @@ pub fn run<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>>(
     simulation.particles.begin(&simulation.flow)?;
     observer.begin(simulation);
     if info.step == 0 {
+        info.snapshot = Some(0);
         observer.snapshot(simulation, 0, &info)?;
     }
     while index < schedule.intervals {
@@ -226,6 +231,7 @@ pub fn run<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>>(
                 time: simulation.flow.time(),
                 dt,
                 courant: simulation.flow.courant(dt),
+                snapshot: (steps == 1.0).then_some(index + 1),
             };
             if info.courant > MOST_COURANT {
                 return Err(CouplingError::Courant { courant: info.courant, dt, time: info.time });

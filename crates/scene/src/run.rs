@@ -357,7 +357,7 @@ impl Stage<'_> {
         log.line(&format!("{} iterations, residual {residual:.3e}", flow.iterations()))?;
         let still = crate::still::Still::default();
         let mut seen = Seen { flow: &mut flow, guests: &still, timings: coupling::Timings::default() };
-        let info = StepInfo { step: seen.steps(), time: 0.0, dt: 0.0, courant: 0.0 };
+        let info = StepInfo { step: seen.steps(), time: 0.0, dt: 0.0, courant: 0.0, snapshot: None };
         audience.snapshot(&mut seen, 0, &info)?;
         audience.finish(&mut seen)?;
         let extremes = Extremes::default();
@@ -446,6 +446,9 @@ struct Look<K> {
 }
 
 impl<K: Checkpoint> Look<K> {
+    fn save_if_due<S: Checkpoint>(&mut self, simulation: &mut S) -> Result<(), CouplingError> {
+        if self.saved.elapsed() >= self.save_every { self.save(simulation) } else { Ok(()) }
+    }
     fn save<S: Checkpoint>(&mut self, simulation: &mut S) -> Result<(), CouplingError> {
         let start = Instant::now();
         self.audience.flush()?;
@@ -485,8 +488,8 @@ where
                 divergence: FlowSolver::statistics(&mut simulation.flow).divergence * info.dt,
             });
         }
-        if self.saved.elapsed() >= self.save_every {
-            self.save(simulation)?;
+        if info.snapshot.is_none() {
+            self.save_if_due(simulation)?;
         }
         Ok(())
     }
@@ -497,12 +500,13 @@ where
         let mut seen = see(simulation);
         self.audience.snapshot(&mut seen, index, info)?;
         let iterations = seen.pressure_iterations();
-        let StepInfo { step, time, dt, courant } = *info;
+        let StepInfo { step, time, dt, courant, .. } = *info;
         let flow = FlowSolver::statistics(&mut simulation.flow);
         self.log.line(&format!(
             "t = {time:.6e} s, step {step}, dt {dt:.3e} s, Courant {courant:.3}, kinetic energy {:.6e} J{}",
             flow.kinetic_energy,
             if iterations > 0 { format!(", {iterations} pressure iterations") } else { String::new() }
-        ))
+        ))?;
+        self.save_if_due(simulation)
     }
 }

@@ -65,7 +65,7 @@ impl<const D: usize, L: ContactLaw, M: Diary<D, L>> Observer<Fall<D, L>> for Wat
             courant: info.courant,
             divergence: fall.flow.statistics().divergence * info.dt,
         });
-        if self.save.is_due() {
+        if self.save.is_due() && info.snapshot.is_none() {
             let what = || "saving the state".into();
             self.save
                 .now(fall, &mut self.motion)

@@ -47,7 +47,13 @@ fn coupled<F: Forcing>(scene: &Scene, forcing: impl Fn() -> F) -> Outcome<Vec<f6
         for step in 0..STEPS {
             simulation.step(dt)?;
             if step % OUTPUT_EVERY == 0 {
-                let info = StepInfo { step: step as u64, time: simulation.flow.time(), dt, courant: 0.0, snapshot: None };
+                let info = StepInfo {
+                    step: step as u64,
+                    time: simulation.flow.time(),
+                    dt,
+                    courant: 0.0,
+                    snapshot: None,
+                };
                 files.snapshot(&mut simulation, step, &info)?;
             }
         }

@@ -87,7 +87,9 @@ fn main() -> ExitCode {
         }
     }
     if several && !cli.check {
-        print(&format!("| scene | cells | steps | CPU s | for output | results |\n|---|---|---|---|---|---|\n{table}"));
+        print(&format!(
+            "| scene | cells | steps | CPU s | for output | results |\n|---|---|---|---|---|---|\n{table}"
+        ));
     }
     ExitCode::from(worst)
 }
@@ -131,7 +133,9 @@ fn row(result: &RunResult) -> String {
     let compared: Vec<String> = result
         .compared
         .iter()
-        .map(|c| format!("{} {:.5} ({}: {}, {:+.2} %)", c.name, c.found, c.source, c.reference, 100.0 * c.error()))
+        .map(|c| {
+            format!("{} {:.5} ({}: {}, {:+.2} %)", c.name, c.found, c.source, c.reference, 100.0 * c.error())
+        })
         .collect();
     format!(
         "| {} | {} | {} | {:.1} | {:.0} % | {} |\n",
@@ -169,7 +173,12 @@ fn summary(result: &RunResult) -> String {
     );
     for body in r["forces"].as_array().into_iter().flatten().take(12) {
         let (name, load) = (body["body"].as_str().unwrap_or_default(), &body["load"]);
-        out += &format!("  body {name}: force {:.6e}, {:.6e}, {:.6e}", number(&load["last"][0]), number(&load["last"][1]), number(&load["last"][2]));
+        out += &format!(
+            "  body {name}: force {:.6e}, {:.6e}, {:.6e}",
+            number(&load["last"][0]),
+            number(&load["last"][1]),
+            number(&load["last"][2])
+        );
         if let Some(c) = body["coefficients"]["mean"].as_array() {
             out += &format!("; mean coefficients {:.5}, {:.5}", number(&c[0]), number(&c[1]));
         }
@@ -187,7 +196,14 @@ fn summary(result: &RunResult) -> String {
         );
     }
     for c in &result.compared {
-        out += &format!("  {}: {:.6} (reference {}, {:+.2} %; {})\n", c.name, c.found, c.reference, 100.0 * c.error(), c.source);
+        out += &format!(
+            "  {}: {:.6} (reference {}, {:+.2} %; {})\n",
+            c.name,
+            c.found,
+            c.reference,
+            100.0 * c.error(),
+            c.source
+        );
     }
     if let Some(residual) = r["residual"].as_f64() {
         out += &format!("  residual {residual:.2e}\n");

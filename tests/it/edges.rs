@@ -36,7 +36,9 @@ fn crates_meet_only_through_interfaces() {
             if all.contains(&to) && to != from {
                 let allowed = match (from.as_str(), to.as_str()) {
                     // What the examples share stays out of the libraries; `scene` is what the example of that name runs, and no library.
-                    (_, "example-support") => from == "scene" || from == "siltflow" && dependency["kind"] == "dev",
+                    (_, "example-support") => {
+                        from == "scene" || from == "siltflow" && dependency["kind"] == "dev"
+                    }
                     ("siltflow", "scene") => dependency["kind"] == "dev",
                     ("siltflow", _) => true,
                     (_, "scene") => false,

@@ -11,7 +11,10 @@ fn program() -> PathBuf {
 
 fn command(scene: &str, set: &[&str], out: &Path) -> Command {
     let mut command = Command::new(program());
-    command.arg(format!("{}/scenes/{scene}.toml", env!("CARGO_MANIFEST_DIR"))).args(["--quiet", "--out"]).arg(out);
+    command
+        .arg(format!("{}/scenes/{scene}.toml", env!("CARGO_MANIFEST_DIR")))
+        .args(["--quiet", "--out"])
+        .arg(out);
     // States as often as can be.
     let common = ["output.snapshots=6", "output.image_every=6", "checkpoint.every=1e-3"];
     for set in set.iter().chain(&common) {
@@ -23,7 +26,8 @@ fn command(scene: &str, set: &[&str], out: &Path) -> Command {
 
 /// Runs `scene` as a whole, then kills it again and again while it runs and lets it go on: the results are the same, bit for bit, and so are the tables.
 fn killed(scene: &str, set: &[&str]) {
-    let folder = |name: &str| std::env::temp_dir().join(format!("siltflow-{name}-{scene}-{}", std::process::id()));
+    let folder =
+        |name: &str| std::env::temp_dir().join(format!("siltflow-{name}-{scene}-{}", std::process::id()));
     let (whole, pieces) = (folder("whole"), folder("pieces"));
     for folder in [&whole, &pieces] {
         let _ = std::fs::remove_dir_all(folder);
@@ -55,7 +59,17 @@ fn killed(scene: &str, set: &[&str]) {
     }
     assert!(kills > 0, "{scene} was too quick to be killed");
     let mut compared = 0;
-    for name in ["result.json", "trajectories.csv", "forces.csv", "probes/wake.csv", "profile.csv", "averages.vti", "fields/00006.vti", "fields/00002.vti", "images/00006.png"] {
+    for name in [
+        "result.json",
+        "trajectories.csv",
+        "forces.csv",
+        "probes/wake.csv",
+        "profile.csv",
+        "averages.vti",
+        "fields/00006.vti",
+        "fields/00002.vti",
+        "images/00006.png",
+    ] {
         if whole.join(name).exists() {
             let [a, b] = [&whole, &pieces].map(|folder| std::fs::read(folder.join(name)).unwrap_or_default());
             assert!(a == b, "{scene}: {name} differs after {kills} kills");
@@ -85,7 +99,10 @@ fn bodies_that_come_and_go_and_are_killed_go_on() {
 
 #[test]
 fn a_cylinder_that_swings_and_is_killed_goes_on() {
-    killed("oscillating_cylinder", &["grid.x.fine=0.1", "grid.y.fine=0.1", "time.dt=0.025", "time.end=10", "forces.start=5"]);
+    killed(
+        "oscillating_cylinder",
+        &["grid.x.fine=0.1", "grid.y.fine=0.1", "time.dt=0.025", "time.end=10", "forces.start=5"],
+    );
 }
 
 #[test]

@@ -199,7 +199,8 @@ fn uniform_cell(
             let reach = kernel.reach() * here;
             let [low, high] = nodes.spacings(bounds.min[axis] - reach, bounds.max[axis] + reach);
             (least, most) = (least.min(low), most.max(high));
-            narrowest = narrowest.min(nodes.spacings(nodes.place(0), nodes.place(nodes.len() as isize - 1))[0]);
+            narrowest =
+                narrowest.min(nodes.spacings(nodes.place(0), nodes.place(nodes.len() as isize - 1))[0]);
         }
         if most - least > UNEQUAL * most {
             return Err(IbmError::Stretched { body, axis, least, most });

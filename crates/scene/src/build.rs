@@ -4,7 +4,9 @@ use crate::setup::{Algorithm, Bodies, ContactLawChoice, ForcingChoice, InflowSet
 use crate::still::Still;
 use dem::placing::{PlacingError, Region};
 use dem::{Chen, ContactLaw, DemError, Entrant, Inflow, Lubricated, Population, RigidBodies};
-use fv_mesh::{CartesianGrid, Diffusion, FlowError, Piso, PisoParams, Projection, Side, Simple, SimpleParams, TimeScheme};
+use fv_mesh::{
+    CartesianGrid, Diffusion, FlowError, Piso, PisoParams, Projection, Side, Simple, SimpleParams, TimeScheme,
+};
 use ibm::{Hfdib, IbmError, SmoothFilm, SmoothForcing, cut_walls};
 use interfaces::{Freedom, Periods, Twist};
 
@@ -74,7 +76,10 @@ impl Setup {
     }
 
     /// The velocity at time 0, if one is given.
-    fn initial<const D: usize>(&self, grid: &CartesianGrid<D>) -> Result<Option<impl Fn([f64; D]) -> [f64; D] + '_>, BuildError> {
+    fn initial<const D: usize>(
+        &self,
+        grid: &CartesianGrid<D>,
+    ) -> Result<Option<impl Fn([f64; D]) -> [f64; D] + '_>, BuildError> {
         let Some(u) = &self.initial else { return Ok(None) };
         let value = move |x: [f64; D]| {
             let x: [f64; 3] = std::array::from_fn(|a| x.get(a).copied().unwrap_or(0.0));
@@ -117,7 +122,8 @@ impl Setup {
         let grid = self.grid()?;
         // Bodies want explicit diffusion.
         let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
-        let diffusion = self.flow.diffusion.unwrap_or(if bodies { Diffusion::Explicit } else { Diffusion::Auto });
+        let diffusion =
+            self.flow.diffusion.unwrap_or(if bodies { Diffusion::Explicit } else { Diffusion::Auto });
         let mut flow = Projection::new(grid.clone(), self.all_sides(), self.fluid)?
             .with_convection(self.flow.convection)
             .with_diffusion(diffusion)
@@ -146,8 +152,9 @@ impl Setup {
         self.check_force()?;
         let grid = self.grid()?;
         let params = PisoParams { time_scheme: TimeScheme::Euler, ..PisoParams::default() };
-        let mut flow =
-            Piso::new(grid.clone(), self.all_sides(), self.fluid)?.with_convection(self.flow.convection).with_params(params)?;
+        let mut flow = Piso::new(grid.clone(), self.all_sides(), self.fluid)?
+            .with_convection(self.flow.convection)
+            .with_params(params)?;
         if let Some(u) = self.initial(&grid)? {
             flow.set_velocity(u);
         }
@@ -291,9 +298,29 @@ impl Setup {
         vec![
             ("flow", true, algorithm.into()),
             ("immersed boundary", any, forcing.into()),
-            ("rigid bodies", moves, if moves { format!("{} at the start", bodies.list.len()) } else { "nothing moves".into() }),
-            ("contact", contact, if contact { format!("law {law}, {} walls", bodies.walls.len()) } else { why_no_contact.into() }),
-            ("lubrication", bodies.lubrication.is_some(), if bodies.lubrication.is_some() { "films below two cells".into() } else { "not asked for".into() }),
+            (
+                "rigid bodies",
+                moves,
+                if moves { format!("{} at the start", bodies.list.len()) } else { "nothing moves".into() },
+            ),
+            (
+                "contact",
+                contact,
+                if contact {
+                    format!("law {law}, {} walls", bodies.walls.len())
+                } else {
+                    why_no_contact.into()
+                },
+            ),
+            (
+                "lubrication",
+                bodies.lubrication.is_some(),
+                if bodies.lubrication.is_some() {
+                    "films below two cells".into()
+                } else {
+                    "not asked for".into()
+                },
+            ),
             ("turbulence", false, "no closure".into()),
         ]
     }

@@ -3,8 +3,8 @@ use crate::setup::Motion;
 use dem::placing::PlacingError;
 use dem::{ContactLaw, Origin, Population, RigidBodies, RigidDynamics};
 use interfaces::{
-    Bodies, BodyId, Checkpoint, Dynamics, Freedom, Inertia, Kinematics, Load, Pose, Renumbering, RestartError, Solid,
-    Twist, Vector, Wrench,
+    Bodies, BodyId, Checkpoint, Dynamics, Freedom, Inertia, Kinematics, Load, Pose, Renumbering,
+    RestartError, Solid, Twist, Vector, Wrench,
 };
 
 /// A [`Population`] some of whose bodies move by formulas.

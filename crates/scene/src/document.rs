@@ -104,12 +104,8 @@ pub(crate) struct Document {
 impl Document {
     /// Reads `source`, then sets what `overrides` say (`fluid.nu=2e-6`, `bodies.0.density = 1100`).
     pub(crate) fn parse(name: &str, source: &str, overrides: &[String]) -> Result<Self, Problems> {
-        let document = |root| Self {
-            name: name.into(),
-            source: source.into(),
-            overrides: overrides.to_vec(),
-            root,
-        };
+        let document =
+            |root| Self { name: name.into(), source: source.into(), overrides: overrides.to_vec(), root };
         let table = DeTable::parse(source).map_err(|error| {
             let place = Place::File(error.span().unwrap_or(0..0));
             let message = format!("this is not TOML: {}", error.message().trim_end());
@@ -161,7 +157,9 @@ impl Document {
             Err(_) if !value.is_empty() && !value.contains(['"', '\n', '[', '{']) => {
                 Value::Text(value.trim_matches('\'').into())
             }
-            Err(error) => return Err(format!("the value {value} is not TOML: {}", error.message().trim_end())),
+            Err(error) => {
+                return Err(format!("the value {value} is not TOML: {}", error.message().trim_end()));
+            }
         };
         let keys: Vec<&str> = path.split('.').collect();
         if keys.iter().any(|key| key.is_empty()) {
@@ -216,11 +214,7 @@ impl Item {
 fn section(table: &DeTable<'_>) -> Section {
     let entry = |(key, item): (&toml::Spanned<std::borrow::Cow<'_, str>>, &toml::Spanned<DeValue<'_>>)| {
         let place = Place::File(item.span());
-        (
-            key.get_ref().to_string(),
-            Place::File(key.span()),
-            Item { value: convert(item.get_ref()), place },
-        )
+        (key.get_ref().to_string(), Place::File(key.span()), Item { value: convert(item.get_ref()), place })
     };
     let mut entries: Vec<_> = table.iter().map(entry).collect();
     let start = |place: &Place| if let Place::File(range) = place { range.start } else { 0 };
@@ -268,7 +262,8 @@ mod tests {
     #[test]
     fn overrides_reach_tables_lists_and_new_keys() {
         let source = "[fluid]\nnu = 1e-6\n[[bodies]]\ndensity = 1\n[[bodies]]\ndensity = 2\n";
-        let set = ["fluid.nu=2e-6", "bodies.1.density = 7", "flow.scheme=quick", "fluid.names=[\"a\", \"b\"]"];
+        let set =
+            ["fluid.nu=2e-6", "bodies.1.density = 7", "flow.scheme=quick", "fluid.names=[\"a\", \"b\"]"];
         let document = Document::parse("a", source, &set.map(String::from)).unwrap();
         assert!(matches!(find(&document, &["fluid", "nu"]), Value::Number(x) if *x == 2e-6));
         assert!(matches!(find(&document, &["flow", "scheme"]), Value::Text(t) if t == "quick"));

@@ -33,8 +33,11 @@ enum Step {
     Two(fn(f64, f64) -> f64),
 }
 
+/// A name and the function it stands for.
+type Named<F> = (&'static str, F);
+
 /// Functions of one number.
-const ONE: [(&str, fn(f64) -> f64); 21] = [
+const ONE: [Named<fn(f64) -> f64>; 21] = [
     ("sin", f64::sin),
     ("cos", f64::cos),
     ("tan", f64::tan),
@@ -59,7 +62,7 @@ const ONE: [(&str, fn(f64) -> f64); 21] = [
     ("step", |x| f64::from(u8::from(x >= 0.0))),
 ];
 /// Functions of two.
-const TWO: [(&str, fn(f64, f64) -> f64); 4] =
+const TWO: [Named<fn(f64, f64) -> f64>; 4] =
     [("min", f64::min), ("max", f64::max), ("atan2", f64::atan2), ("mod", f64::rem_euclid)];
 const CONSTANTS: [(&str, f64); 4] = [("PI", PI), ("pi", PI), ("E", E), ("e", E)];
 
@@ -81,7 +84,10 @@ impl Expression {
         parser.sum()?;
         parser.blanks();
         if let Some(c) = parser.rest.chars().next() {
-            return Err(format!("cannot be understood from \"{c}\" on, {} characters before its end", parser.rest.chars().count()));
+            return Err(format!(
+                "cannot be understood from \"{c}\" on, {} characters before its end",
+                parser.rest.chars().count()
+            ));
         }
         let formula = Self { steps: parser.steps.into() };
         if formula.fixed().is_some() {
@@ -228,12 +234,14 @@ impl<'a> Parser<'a> {
             self.sum()?;
             return if self.takes(')') { Ok(()) } else { Err("lacks a closing bracket".into()) };
         }
-        let first = self.rest.chars().next().ok_or("ends where a number, a variable or a bracket is needed")?;
+        let first =
+            self.rest.chars().next().ok_or("ends where a number, a variable or a bracket is needed")?;
         if first.is_ascii_digit() || first == '.' {
             return self.number();
         }
         let name: &'a str = {
-            let end = self.rest.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(self.rest.len());
+            let end =
+                self.rest.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(self.rest.len());
             &self.rest[..end]
         };
         if name.is_empty() {
@@ -262,7 +270,12 @@ impl<'a> Parser<'a> {
     }
 
     fn arguments(&mut self, name: &str, number: usize) -> Result<(), String> {
-        let wants = || format!("has \"{name}\" without its {number} argument{} in brackets", if number > 1 { "s" } else { "" });
+        let wants = || {
+            format!(
+                "has \"{name}\" without its {number} argument{} in brackets",
+                if number > 1 { "s" } else { "" }
+            )
+        };
         if !self.takes('(') {
             return Err(wants());
         }

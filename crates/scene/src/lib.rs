@@ -92,7 +92,8 @@ impl Scene {
     /// [`SceneError`] with all that is wrong.
     pub fn load(path: &Path, overrides: &[String]) -> Result<Self, SceneError> {
         let name = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|source| SceneError::Io { path: name.clone(), source })?;
+        let text =
+            std::fs::read_to_string(path).map_err(|source| SceneError::Io { path: name.clone(), source })?;
         Ok(Self::parse(&name, &text, overrides)?)
     }
 

@@ -110,7 +110,11 @@ impl Setup {
         let bodies = self.bodies.list.iter().map(|b| {
             let radius = b.shape.bounding_radius();
             let ratio = (b.material.density / self.fluid.density - 1.0).abs();
-            let fall = if self.bodies.any_free() { (2.0 * radius * ratio * self.gravity.norm()).sqrt() } else { 0.0 };
+            let fall = if self.bodies.any_free() {
+                (2.0 * radius * ratio * self.gravity.norm()).sqrt()
+            } else {
+                0.0
+            };
             fall.max(b.twist.linear.norm() + b.twist.angular.norm() * radius)
         });
         sides.max(initial).max(bodies.fold(0.0, f64::max))
@@ -135,7 +139,10 @@ impl Setup {
             let name = ["x", "y", "z"][a];
             let widest = list.iter().map(|b| b.shape.aabb().posed(&b.pose).extent()[a]).fold(0.0, f64::max);
             if widest > 0.5 * axis.length() && !self.bodies.any_moves() {
-                out.push(format!("bodies block {:.0} % of the box along {name}", 100.0 * widest / axis.length()));
+                out.push(format!(
+                    "bodies block {:.0} % of the box along {name}",
+                    100.0 * widest / axis.length()
+                ));
             }
             if axis.largest_ratio() > 1.3 {
                 out.push(format!(
@@ -158,7 +165,10 @@ impl Setup {
         {
             let rate: f64 = self.axes.iter().map(|axis| speed / axis.narrowest()).sum();
             if rate * dt > 0.5 && self.flow.algorithm == Algorithm::Projection {
-                out.push(format!("time.dt gives a Courant number of about {:.2}; above 0.5 runs may diverge", rate * dt));
+                out.push(format!(
+                    "time.dt gives a Courant number of about {:.2}; above 0.5 runs may diverge",
+                    rate * dt
+                ));
             }
         }
         let fluid_inside = list.iter().map(|b| b.shape.inertia(1.0).volume).sum::<f64>();

@@ -74,9 +74,10 @@ impl fmt::Display for Problems {
                     // Long lines are shown around the place.
                     let skip = column.saturating_sub(SHOWN / 2);
                     let shown: String = text.chars().skip(skip).take(SHOWN).collect();
-                    let length = self.text.get(range.clone()).map_or(1, |s| {
-                        s.lines().next().map_or(1, |first| first.chars().count())
-                    });
+                    let length = self
+                        .text
+                        .get(range.clone())
+                        .map_or(1, |s| s.lines().next().map_or(1, |first| first.chars().count()));
                     let room = shown.chars().count().saturating_sub(column - 1 - skip).max(1);
                     let marks = "^".repeat(length.clamp(1, room));
                     let gutter = line.to_string();

@@ -56,12 +56,15 @@ impl<'a> Reader<'a> {
         self.list(key).map(numbers)
     }
     pub(crate) fn wholes(&self, key: &str) -> Option<Vec<usize>> {
-        let whole = |item: &Item| if let Value::Whole(n) = item.value { usize::try_from(n).ok() } else { None };
+        let whole =
+            |item: &Item| if let Value::Whole(n) = item.value { usize::try_from(n).ok() } else { None };
         self.list(key).map(|items| items.iter().filter_map(whole).collect())
     }
     pub(crate) fn flags(&self, key: &str) -> Option<[bool; 3]> {
         let items = self.list(key)?;
-        Some(std::array::from_fn(|a| items.get(a).is_some_and(|item| matches!(item.value, Value::Flag(true)))))
+        Some(std::array::from_fn(|a| {
+            items.get(a).is_some_and(|item| matches!(item.value, Value::Flag(true)))
+        }))
     }
     /// Lists of numbers within the list `key`.
     pub(crate) fn rows(&self, key: &str) -> Vec<Vec<f64>> {
@@ -92,7 +95,12 @@ impl<'a> Reader<'a> {
         }
     }
     /// One formula per axis.
-    pub(crate) fn formulas(&self, key: &str, variables: &[&str], dim: usize) -> Result<Option<[Expression; 3]>, Problem> {
+    pub(crate) fn formulas(
+        &self,
+        key: &str,
+        variables: &[&str],
+        dim: usize,
+    ) -> Result<Option<[Expression; 3]>, Problem> {
         self.has_dim(key, dim)?;
         let Some(items) = self.list(key) else { return Ok(None) };
         let mut out = [const { None }; 3];
@@ -107,7 +115,9 @@ impl<'a> Reader<'a> {
     fn expression(&self, key: &str, item: &Item, variables: &[&str]) -> Result<Expression, Problem> {
         match &item.value {
             Value::Text(text) => {
-                let told = |e| Problem::new(self.path_of(key), item.place.clone(), format!("the formula {text:?} {e}"));
+                let told = |e| {
+                    Problem::new(self.path_of(key), item.place.clone(), format!("the formula {text:?} {e}"))
+                };
                 Expression::new(text, variables).map_err(told)
             }
             value => Ok(Expression::constant(number(value).unwrap_or(0.0))),
@@ -119,7 +129,11 @@ impl<'a> Reader<'a> {
     }
     pub(crate) fn tables(&self, key: &str) -> Vec<Reader<'a>> {
         let items = self.list(key).unwrap_or_default();
-        items.iter().enumerate().filter_map(|(i, item)| reader(item, format!("{}.{i}", self.path_of(key)))).collect()
+        items
+            .iter()
+            .enumerate()
+            .filter_map(|(i, item)| reader(item, format!("{}.{i}", self.path_of(key))))
+            .collect()
     }
     /// The tables under names in `key`.
     pub(crate) fn named(&self, key: &str) -> Vec<(&'a str, Reader<'a>)> {
@@ -136,7 +150,11 @@ impl<'a> Reader<'a> {
     }
     pub(crate) fn choices(&self, key: &str, tag: &str) -> Vec<(&'a str, Reader<'a>)> {
         let items = self.list(key).unwrap_or_default();
-        items.iter().enumerate().filter_map(|(i, item)| choice(item, tag, format!("{}.{i}", self.path_of(key)))).collect()
+        items
+            .iter()
+            .enumerate()
+            .filter_map(|(i, item)| choice(item, tag, format!("{}.{i}", self.path_of(key))))
+            .collect()
     }
 }
 

@@ -144,9 +144,7 @@ impl RunResult {
             })
             .collect();
         if !compared.is_empty() {
-            let row = |c: &Compared| {
-                json!({ "name": c.name, "found": number(c.found), "reference": c.reference, "error": number(c.error()), "source": c.source })
-            };
+            let row = |c: &Compared| json!({ "name": c.name, "found": number(c.found), "reference": c.reference, "error": number(c.error()), "source": c.source });
             result["references"] = compared.iter().map(row).collect();
         }
         Self { ending, folder: folder.into(), result, timings: Value::Null, compared }
@@ -156,7 +154,13 @@ impl RunResult {
         self.result[key] = value;
     }
 
-    pub(crate) fn with_timings(mut self, elapsed: Elapsed, threads: usize, output: f64, view: &dyn View) -> Self {
+    pub(crate) fn with_timings(
+        mut self,
+        elapsed: Elapsed,
+        threads: usize,
+        output: f64,
+        view: &dyn View,
+    ) -> Self {
         let modules: serde_json::Map<String, Value> =
             Module::ALL.iter().map(|m| (m.name().into(), json!(view.timings().seconds(*m)))).collect();
         self.timings = json!({

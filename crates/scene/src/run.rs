@@ -7,11 +7,12 @@ use crate::result::{Ending, RunResult};
 use crate::setup::{Algorithm, ContactLawChoice, ForcingChoice, Setup, StrategyChoice};
 use crate::view::{Flow, Guests, Seen, View};
 use crate::watch::{
-    Audience, AveragesWatch, FieldsWatch, ForcesWatch, ImagesWatch, ProbesWatch, TrajectoriesWatch, Watch, output,
+    Audience, AveragesWatch, FieldsWatch, ForcesWatch, ImagesWatch, ProbesWatch, TrajectoriesWatch, Watch,
+    output,
 };
 use coupling::{
-    CheckpointError, CouplingError, Exchange, Explicit, FlowSolver, Immersed, Iterated, Ledger, LedgerReport, Observer,
-    Particles, Schedule, Simulation, StepInfo, Strategy,
+    CheckpointError, CouplingError, Exchange, Explicit, FlowSolver, Immersed, Iterated, Ledger, LedgerReport,
+    Observer, Particles, Schedule, Simulation, StepInfo, Strategy,
 };
 use dem::{ContactLaw, Population, Rolling};
 use example_support::cpu::Stopwatch;
@@ -46,7 +47,12 @@ pub enum RunError {
 
 impl Setup {
     /// Runs the scene.
-    pub(crate) fn run(&self, options: &Options, fingerprint: u64, stop: &AtomicBool) -> Result<RunResult, RunError> {
+    pub(crate) fn run(
+        &self,
+        options: &Options,
+        fingerprint: u64,
+        stop: &AtomicBool,
+    ) -> Result<RunResult, RunError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
         pool.install(|| match self.dim() {
             2 => self.run_in::<2>(options, fingerprint, stop),
@@ -55,7 +61,12 @@ impl Setup {
     }
 
     /// The one choice of types, before the time loop.
-    fn run_in<const D: usize>(&self, options: &Options, fingerprint: u64, stop: &AtomicBool) -> Result<RunResult, RunError> {
+    fn run_in<const D: usize>(
+        &self,
+        options: &Options,
+        fingerprint: u64,
+        stop: &AtomicBool,
+    ) -> Result<RunResult, RunError> {
         let stage = Stage { setup: self, options, fingerprint, stop };
         let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
         match self.flow.algorithm {
@@ -65,7 +76,8 @@ impl Setup {
                 return stage.march(self.simulation(self.piso::<D>()?, particles)?, NoBooks);
             }
             Algorithm::Piso => {
-                return stage.march(self.simulation(self.piso::<D>()?, crate::still::Still::default())?, NoBooks);
+                return stage
+                    .march(self.simulation(self.piso::<D>()?, crate::still::Still::default())?, NoBooks);
             }
             Algorithm::Projection => {}
         }
@@ -79,24 +91,33 @@ impl Setup {
         }
     }
 
-    fn bodies_by<const D: usize, F: Forcing>(&self, stage: &Stage<'_>, forcing: F) -> Result<RunResult, RunError> {
+    fn bodies_by<const D: usize, F: Forcing>(
+        &self,
+        stage: &Stage<'_>,
+        forcing: F,
+    ) -> Result<RunResult, RunError> {
         let flow = self.projection::<D>()?;
         match (self.bodies.law, self.bodies.coupling.strategy, self.bodies.lubrication) {
             (ContactLawChoice::Chen, StrategyChoice::OneSolve, Some(roughness)) => {
                 stage.bodies(flow, self.particles(forcing, self.cast(self.lubricated(roughness)?)?))
             }
-            (ContactLawChoice::Chen, StrategyChoice::Iterated, _) => {
-                stage.bodies(flow, self.particles(forcing, self.cast(self.chen())?).with_strategy(Iterated::default()))
-            }
+            (ContactLawChoice::Chen, StrategyChoice::Iterated, _) => stage.bodies(
+                flow,
+                self.particles(forcing, self.cast(self.chen())?).with_strategy(Iterated::default()),
+            ),
             (ContactLawChoice::Chen, StrategyChoice::Explicit, _) => {
                 stage.bodies(flow, self.particles(forcing, self.cast(self.chen())?).with_strategy(Explicit))
             }
-            (ContactLawChoice::Chen, ..) => stage.bodies(flow, self.particles(forcing, self.cast(self.chen())?)),
+            (ContactLawChoice::Chen, ..) => {
+                stage.bodies(flow, self.particles(forcing, self.cast(self.chen())?))
+            }
             (ContactLawChoice::Potential, ..) => {
                 let law = dem::Potential::default().with_length_factor(self.bodies.length_factor);
                 stage.bodies(flow, self.particles(forcing, self.cast(law)?))
             }
-            (ContactLawChoice::Rolling, ..) => stage.bodies(flow, self.particles(forcing, self.cast(Rolling(self.chen()))?)),
+            (ContactLawChoice::Rolling, ..) => {
+                stage.bodies(flow, self.particles(forcing, self.cast(Rolling(self.chen()))?))
+            }
             (ContactLawChoice::None, ..) => stage.bodies(flow, self.particles(forcing, self.cast(())?)),
         }
     }
@@ -223,7 +244,11 @@ impl Stage<'_> {
     }
 
     /// Steps to the end of the run, or until it is stopped.
-    fn march<const D: usize, P, A, K>(&self, mut simulation: Simulation<D, P, A>, mut books: K) -> Result<RunResult, RunError>
+    fn march<const D: usize, P, A, K>(
+        &self,
+        mut simulation: Simulation<D, P, A>,
+        mut books: K,
+    ) -> Result<RunResult, RunError>
     where
         P: Guests + Immersed<D, A>,
         A: Flow<D> + FlowSolver<D>,
@@ -237,8 +262,13 @@ impl Stage<'_> {
         let mut resume = None;
         if self.options.resume {
             // First the simulation and its time; then what the observers have kept, in files that go on from that time.
-            let mut whole =
-                Whole { simulation: &mut simulation, books: &mut books, extremes: &mut extremes, fingerprint: self.fingerprint, audience: None };
+            let mut whole = Whole {
+                simulation: &mut simulation,
+                books: &mut books,
+                extremes: &mut extremes,
+                fingerprint: self.fingerprint,
+                audience: None,
+            };
             coupling::load(&state, &mut whole).map_err(|e| self.not_resumed(e, &state))?;
             resume = Some(FlowSolver::time(&simulation.flow));
         }
@@ -302,7 +332,8 @@ impl Stage<'_> {
         }
         log.line(if summary.stopped { "stopped; --resume goes on" } else { "done" })?;
         let seconds = audience.seconds + output;
-        let result = RunResult::new(setup, &mut seen, &extremes, books.report(), &audience, ending, self.folder());
+        let result =
+            RunResult::new(setup, &mut seen, &extremes, books.report(), &audience, ending, self.folder());
         Ok(result.with_timings(watch.elapsed(), self.options.threads, seconds, &seen).write()?)
     }
 
@@ -320,7 +351,12 @@ impl Stage<'_> {
         self.make_folder()?;
         let mut audience = self.audience(None)?;
         let mut log = Log::open(self.folder(), false)?;
-        log.line(&format!("iterating {}: {} cells, to residuals of {:e}", setup.name, setup.cells(), setup.flow.tolerance))?;
+        log.line(&format!(
+            "iterating {}: {} cells, to residuals of {:e}",
+            setup.name,
+            setup.cells(),
+            setup.flow.tolerance
+        ))?;
         // Progress is the way of the residual's logarithm.
         let target = -setup.flow.tolerance.log10();
         let mut progress = (!self.options.quiet).then(|| Progress::new(0.0, target));
@@ -459,7 +495,8 @@ impl<K: Checkpoint> Look<K> {
             fingerprint: self.fingerprint,
             audience: Some(&self.audience),
         };
-        coupling::save(&self.state, &whole).map_err(|e| output("saving the state in", &self.state)(io::Error::other(e)))?;
+        coupling::save(&self.state, &whole)
+            .map_err(|e| output("saving the state in", &self.state)(io::Error::other(e)))?;
         self.saved = Instant::now();
         self.output += start.elapsed().as_secs_f64();
         Ok(())
@@ -493,7 +530,12 @@ where
         }
         Ok(())
     }
-    fn snapshot(&mut self, simulation: &mut Simulation<D, P, A>, index: usize, info: &StepInfo) -> Result<(), CouplingError> {
+    fn snapshot(
+        &mut self,
+        simulation: &mut Simulation<D, P, A>,
+        index: usize,
+        info: &StepInfo,
+    ) -> Result<(), CouplingError> {
         if self.only_end && index == 0 {
             return Ok(());
         }

@@ -131,12 +131,40 @@ pub(crate) static SCENE: Table = Table {
     about: "A scene. Numbers are in SI units. Formulas may use + - * / ^, sin, cos, tan, asin, acos, atan, atan2(y, x), sinh, cosh, tanh, exp, \
             log, ln, log10, sqrt, cbrt, abs, sign, floor, ceil, round, step (0 before 0, then 1), min(a, b), max(a, b), mod(a, b), PI and E. A formula −x^2 is −(x²).",
     keys: &[
-        optional("title", Kind::Text, "the file's name", "What stands above pictures and results.", "\"Cavity\""),
-        optional("about", Kind::Text, "nothing", "What the scene is for, with its source.", "\"After Ghia (1982).\""),
-        required("grid", Kind::Table(&flow::GRID), "The box and its cells.", "{ cells = [64, 64], size = [1.0, 1.0] }"),
-        required("sides", Kind::Table(&flow::SIDES), "What happens at the sides of the box.", "{ x = \"periodic\", y = \"wall\" }"),
+        optional(
+            "title",
+            Kind::Text,
+            "the file's name",
+            "What stands above pictures and results.",
+            "\"Cavity\"",
+        ),
+        optional(
+            "about",
+            Kind::Text,
+            "nothing",
+            "What the scene is for, with its source.",
+            "\"After Ghia (1982).\"",
+        ),
+        required(
+            "grid",
+            Kind::Table(&flow::GRID),
+            "The box and its cells.",
+            "{ cells = [64, 64], size = [1.0, 1.0] }",
+        ),
+        required(
+            "sides",
+            Kind::Table(&flow::SIDES),
+            "What happens at the sides of the box.",
+            "{ x = \"periodic\", y = \"wall\" }",
+        ),
         required("fluid", Kind::Table(&flow::FLUID), "The fluid.", "{ density = 1000.0, nu = 1e-6 }"),
-        optional("gravity", Kind::List(&Kind::Number(Range::Any, "m/s²"), 2, 3), "none", "Gravity; bodies feel it less their buoyancy.", "[0.0, -9.81]"),
+        optional(
+            "gravity",
+            Kind::List(&Kind::Number(Range::Any, "m/s²"), 2, 3),
+            "none",
+            "Gravity; bodies feel it less their buoyancy.",
+            "[0.0, -9.81]",
+        ),
         optional(
             "force",
             Kind::List(&Kind::Formula(TIME, "m/s²"), 2, 3),
@@ -144,9 +172,27 @@ pub(crate) static SCENE: Table = Table {
             "Body force per mass of fluid, the same everywhere.",
             "[\"0.1*min(t, 1)\", 0.0]",
         ),
-        optional("initial", Kind::Table(&flow::INITIAL), "fluid at rest", "The flow at time 0.", "{ velocity = [\"sin(y)\", 0.0] }"),
-        optional("flow", Kind::Table(&flow::FLOW), "all its defaults", "How the flow is computed.", "{ convection = \"quick\" }"),
-        optional("materials", Kind::Named(&bodies::MATERIAL), "none", "Materials of bodies by name.", "{ steel = { density = 7800.0 } }"),
+        optional(
+            "initial",
+            Kind::Table(&flow::INITIAL),
+            "fluid at rest",
+            "The flow at time 0.",
+            "{ velocity = [\"sin(y)\", 0.0] }",
+        ),
+        optional(
+            "flow",
+            Kind::Table(&flow::FLOW),
+            "all its defaults",
+            "How the flow is computed.",
+            "{ convection = \"quick\" }",
+        ),
+        optional(
+            "materials",
+            Kind::Named(&bodies::MATERIAL),
+            "none",
+            "Materials of bodies by name.",
+            "{ steel = { density = 7800.0 } }",
+        ),
         optional(
             "bodies",
             Kind::List(&Kind::Table(&bodies::BODY), 0, 100_000),
@@ -168,11 +214,35 @@ pub(crate) static SCENE: Table = Table {
             "Half-spaces: bodies whose centre comes into one are taken away.",
             "[{ point = [0.0, 1e-3], normal = [0.0, 1.0] }]",
         ),
-        optional("contact", Kind::Table(&bodies::CONTACT), "all its defaults", "Contacts of bodies.", "{ law = \"potential\" }"),
-        optional("lubrication", Kind::Table(&bodies::LUBRICATION), "none", "Films between bodies that are closer than two cells (in space).", "{ roughness = 1e-6 }"),
-        optional("coupling", Kind::Table(&bodies::COUPLING), "all its defaults", "How flow and bodies act on one another.", "{ balance = \"net-weight\" }"),
+        optional(
+            "contact",
+            Kind::Table(&bodies::CONTACT),
+            "all its defaults",
+            "Contacts of bodies.",
+            "{ law = \"potential\" }",
+        ),
+        optional(
+            "lubrication",
+            Kind::Table(&bodies::LUBRICATION),
+            "none",
+            "Films between bodies that are closer than two cells (in space).",
+            "{ roughness = 1e-6 }",
+        ),
+        optional(
+            "coupling",
+            Kind::Table(&bodies::COUPLING),
+            "all its defaults",
+            "How flow and bodies act on one another.",
+            "{ balance = \"net-weight\" }",
+        ),
         required("time", Kind::Table(&run::TIME_TABLE), "How long, in which steps.", "{ end = 0.6 }"),
-        optional("output", Kind::Table(&run::OUTPUT), "all its defaults", "What is written, and how often.", "{ snapshots = 100, images = true }"),
+        optional(
+            "output",
+            Kind::Table(&run::OUTPUT),
+            "all its defaults",
+            "What is written, and how often.",
+            "{ snapshots = 100, images = true }",
+        ),
         optional(
             "probes",
             Kind::List(&Kind::Table(&run::PROBES), 0, 100),
@@ -180,8 +250,20 @@ pub(crate) static SCENE: Table = Table {
             "Points where the flow is written down.",
             "[{ name = \"wake\", points = [[0.3, 0.2]] }]",
         ),
-        optional("forces", Kind::Table(&run::FORCES), "none", "Loads on bodies, step by step, with means and amplitudes.", "{ velocity = 0.2, area = 0.1, start = 5.0 }"),
-        optional("averages", Kind::Table(&run::AVERAGES), "none", "Means in time of velocity and pressure, and the Reynolds stresses.", "{ start = 10.0 }"),
+        optional(
+            "forces",
+            Kind::Table(&run::FORCES),
+            "none",
+            "Loads on bodies, step by step, with means and amplitudes.",
+            "{ velocity = 0.2, area = 0.1, start = 5.0 }",
+        ),
+        optional(
+            "averages",
+            Kind::Table(&run::AVERAGES),
+            "none",
+            "Means in time of velocity and pressure, and the Reynolds stresses.",
+            "{ start = 10.0 }",
+        ),
         optional(
             "references",
             Kind::List(&Kind::Table(&run::REFERENCE), 0, 100),
@@ -189,7 +271,13 @@ pub(crate) static SCENE: Table = Table {
             "Numbers that results are set beside.",
             "[{ name = \"drag\", pointer = \"/forces/0/coefficients/mean/0\", value = 5.5795 }]",
         ),
-        optional("checkpoint", Kind::Table(&run::CHECKPOINT), "all its defaults", "Saved states, from which `--resume` goes on.", "{ every = 60.0 }"),
+        optional(
+            "checkpoint",
+            Kind::Table(&run::CHECKPOINT),
+            "all its defaults",
+            "Saved states, from which `--resume` goes on.",
+            "{ every = 60.0 }",
+        ),
     ],
 };
 
@@ -214,7 +302,12 @@ mod tests {
         assert!(seen > 150, "{seen}");
     }
 
-    fn walk(table: &'static Table, path: &str, on_way: &mut Vec<*const Table>, f: &mut impl FnMut(&str, &Key)) {
+    fn walk(
+        table: &'static Table,
+        path: &str,
+        on_way: &mut Vec<*const Table>,
+        f: &mut impl FnMut(&str, &Key),
+    ) {
         if on_way.contains(&std::ptr::from_ref(table)) {
             return;
         }
@@ -227,7 +320,12 @@ mod tests {
         on_way.pop();
     }
 
-    fn inner(kind: &'static Kind, path: &str, on_way: &mut Vec<*const Table>, f: &mut impl FnMut(&str, &Key)) {
+    fn inner(
+        kind: &'static Kind,
+        path: &str,
+        on_way: &mut Vec<*const Table>,
+        f: &mut impl FnMut(&str, &Key),
+    ) {
         match kind {
             Kind::Table(table) | Kind::Named(table) => walk(table, path, on_way, f),
             Kind::List(of, ..) => inner(of, path, on_way, f),

@@ -7,7 +7,7 @@ mod measures;
 mod shapes;
 mod sides;
 
-pub(crate) use bodies::{BodySetup, Bodies, ContactLawChoice, ForcingChoice, Motion, StrategyChoice};
+pub(crate) use bodies::{Bodies, BodySetup, ContactLawChoice, ForcingChoice, Motion, StrategyChoice};
 pub(crate) use factories::InflowSetup;
 pub(crate) use flow::{Algorithm, FlowSetup};
 pub(crate) use measures::{Averages, Forces, Images, Output, ProbeSetup, Quantity, Reference};
@@ -97,7 +97,9 @@ impl Setup {
         let periodic_along = |a: usize| matches!(sides[a][0], Side::Periodic);
         let balance = match bodies.coupling.balance {
             Some(balance) => balance,
-            None if moved && (0..dim).any(|a| gravity[a] != 0.0 && periodic_along(a)) => WeightBalance::NetWeight,
+            None if moved && (0..dim).any(|a| gravity[a] != 0.0 && periodic_along(a)) => {
+                WeightBalance::NetWeight
+            }
             None => WeightBalance::None,
         };
         let setup = Self {
@@ -134,7 +136,10 @@ impl Setup {
         let check = |key: &str, sides: Result<(), fv_mesh::FlowError>| sides.map_err(|e| root.fail(key, e));
         match dim {
             2 => check("sides", Sides::new([self.sides[0].clone(), self.sides[1].clone()]).map(drop))?,
-            _ => check("sides", Sides::new([self.sides[0].clone(), self.sides[1].clone(), self.sides[2].clone()]).map(drop))?,
+            _ => check(
+                "sides",
+                Sides::new([self.sides[0].clone(), self.sides[1].clone(), self.sides[2].clone()]).map(drop),
+            )?,
         }
         let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
         let flow = root.table("flow");
@@ -144,21 +149,35 @@ impl Setup {
         };
         match self.flow.algorithm {
             Algorithm::Simple if bodies => {
-                return Err(fail("algorithm", "steady flow with bodies is not offered yet; take \"projection\" and let the run go on until it is steady"));
+                return Err(fail(
+                    "algorithm",
+                    "steady flow with bodies is not offered yet; take \"projection\" and let the run go on until it is steady",
+                ));
             }
             Algorithm::Simple if !self.probes.is_empty() || self.averages.is_some() => {
-                return Err(fail("algorithm", "a steady flow has no history; leave out probes and averages, or take \"projection\""));
+                return Err(fail(
+                    "algorithm",
+                    "a steady flow has no history; leave out probes and averages, or take \"projection\"",
+                ));
             }
             Algorithm::Piso if bodies && self.bodies.forcing() != ForcingChoice::Hfdib => {
-                return Err(fail("algorithm", "\"piso\" goes with coupling.forcing = \"hfdib\" (the paper's algorithm) only; take \"projection\""));
+                return Err(fail(
+                    "algorithm",
+                    "\"piso\" goes with coupling.forcing = \"hfdib\" (the paper's algorithm) only; take \"projection\"",
+                ));
             }
             Algorithm::Piso if self.dt.is_none() => {
-                return Err(fail("algorithm", "\"piso\" has no stability limit to choose a step by; give time.dt"));
+                return Err(fail(
+                    "algorithm",
+                    "\"piso\" has no stability limit to choose a step by; give time.dt",
+                ));
             }
             _ => {}
         }
         if dim == 2 && self.bodies.lubrication.is_some() {
-            return Err(root.fail("lubrication", "films are for solids in space; leave this out in a plane scene"));
+            return Err(
+                root.fail("lubrication", "films are for solids in space; leave this out in a plane scene")
+            );
         }
         Ok(())
     }

@@ -1,7 +1,9 @@
 //! Bodies at rest, as walls of the flow.
 use coupling::{CouplingError, FlowSolver, Immersed, Module, Timings};
 use dem::Shape;
-use interfaces::{Bodies, BodyId, Checkpoint, Freedom, Inertia, Kinematics, Pose, RestartError, Solid, Twist};
+use interfaces::{
+    Bodies, BodyId, Checkpoint, Freedom, Inertia, Kinematics, Pose, RestartError, Solid, Twist,
+};
 use std::sync::Arc;
 
 /// Bodies that stay where they are. The flow has them as walls already, so nothing is left to do in a step.

@@ -4,8 +4,8 @@ use crate::still::Still;
 use coupling::{Particles, Strategy, Timings};
 use dem::{ContactLaw, Population, RigidDynamics};
 use fv_mesh::{
-    Axis, CartesianGrid, CellWriter, Field, FlowStatistics, OutputError, Piso, Projection, SampleError, Sampler, Sides, Simple,
-    Velocity,
+    Axis, CartesianGrid, CellWriter, Field, FlowStatistics, OutputError, Piso, Projection, SampleError,
+    Sampler, Sides, Simple, Velocity,
 };
 use ibm::Forcing;
 use interfaces::{Bodies, BodyId, Checkpoint, Lattice, Point, Wrench};
@@ -99,7 +99,13 @@ macro_rules! flow {
     };
 }
 
-flow!(Projection, Projection::time, Projection::steps, |f: &Self| f.pressure_info().iterations, Projection::wall_impulses);
+flow!(
+    Projection,
+    Projection::time,
+    Projection::steps,
+    |f: &Self| f.pressure_info().iterations,
+    Projection::wall_impulses
+);
 flow!(Piso, Piso::time, Piso::steps, |_: &Self| 0, no_walls);
 flow!(Simple, |_: &Self| 0.0, |f: &Self| f.iterations() as u64, |_: &Self| 0, no_walls);
 
@@ -222,12 +228,18 @@ impl<const D: usize, A: Flow<D>, P: Guests> View for Seen<'_, D, A, P> {
             .scalar("pressure", self.flow.pressure().values())
             .write(&mut out)
     }
-    fn write_named(&self, fields: &[(&str, Vec<&[f64]>)], mut out: &mut dyn Write) -> Result<(), OutputError> {
+    fn write_named(
+        &self,
+        fields: &[(&str, Vec<&[f64]>)],
+        mut out: &mut dyn Write,
+    ) -> Result<(), OutputError> {
         let mut writer = CellWriter::new(self.flow.grid());
         for (name, components) in fields {
             writer = match components.as_slice() {
                 [one] => writer.scalar(name, one.iter().copied()),
-                many => writer.vector(name, std::array::from_fn(|c| many[c.min(many.len() - 1)].iter().copied())),
+                many => {
+                    writer.vector(name, std::array::from_fn(|c| many[c.min(many.len() - 1)].iter().copied()))
+                }
             };
         }
         writer.write(&mut out)

@@ -31,7 +31,13 @@ pub(crate) trait Watch: Checkpoint {
         Ok(())
     }
     /// At the start and the end of every interval; `lambda` is the solid fraction of the cells.
-    fn snapshot(&mut self, view: &mut dyn View, lambda: &[f64], index: usize, info: &StepInfo) -> Result<(), CouplingError> {
+    fn snapshot(
+        &mut self,
+        view: &mut dyn View,
+        lambda: &[f64],
+        index: usize,
+        info: &StepInfo,
+    ) -> Result<(), CouplingError> {
         let _ = (view, lambda, index, info);
         Ok(())
     }
@@ -68,7 +74,12 @@ impl Audience {
         self.watches.iter_mut().try_for_each(|watch| watch.step(view, info))
     }
 
-    pub(crate) fn snapshot(&mut self, view: &mut dyn View, index: usize, info: &StepInfo) -> Result<(), CouplingError> {
+    pub(crate) fn snapshot(
+        &mut self,
+        view: &mut dyn View,
+        index: usize,
+        info: &StepInfo,
+    ) -> Result<(), CouplingError> {
         let start = std::time::Instant::now();
         let lattice = view.lattice();
         self.lambda.clear();
@@ -99,7 +110,10 @@ impl Checkpoint for Audience {
             watch.save(&mut |name, values| sink(&format!("{}.{name}", watch.name()), values));
         }
     }
-    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), interfaces::RestartError> {
+    fn restore<'a>(
+        &mut self,
+        source: &dyn Fn(&str) -> Option<&'a [f64]>,
+    ) -> Result<(), interfaces::RestartError> {
         for watch in &mut self.watches {
             let prefix = watch.name();
             watch.restore(&|name| source(&format!("{prefix}.{name}")))?;
@@ -110,6 +124,10 @@ impl Checkpoint for Audience {
 
 /// An error of a file.
 pub(crate) fn output(what: impl Into<String>, path: &Path) -> impl FnOnce(std::io::Error) -> CouplingError {
-    let what = format!("{} {} (is the disk full, or the folder not yours to write to?)", what.into(), path.display());
+    let what = format!(
+        "{} {} (is the disk full, or the folder not yours to write to?)",
+        what.into(),
+        path.display()
+    );
     move |source| CouplingError::Output { what, source }
 }

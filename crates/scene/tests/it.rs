@@ -31,10 +31,13 @@ fn coarse(text: &str) -> String {
     };
     let mut out = String::new();
     let mut rest = text;
-    while let Some(at) = ["cells = ", "fine = "].iter().filter_map(|key| rest.find(key).map(|i| i + key.len())).min() {
+    while let Some(at) =
+        ["cells = ", "fine = "].iter().filter_map(|key| rest.find(key).map(|i| i + key.len())).min()
+    {
         let end = rest[at..].find([']', '}', '\n']).map_or(rest.len(), |i| at + i);
         // Of a single number, only that.
-        let end = if rest[at..].starts_with('[') { end } else { rest[at..end].find(',').map_or(end, |i| at + i) };
+        let end =
+            if rest[at..].starts_with('[') { end } else { rest[at..end].find(',').map_or(end, |i| at + i) };
         out += &rest[..at];
         let list = rest[at..end].strip_prefix('[');
         let numbers: Vec<String> = list.unwrap_or(&rest[at..end]).split(',').map(shrink).collect();
@@ -58,7 +61,10 @@ fn quiet(out: &Path) -> Options {
 fn the_manual_and_the_schema_are_those_of_the_code() {
     let told = "run `cargo run --release --example scene -- --manual > docs/scene.md` and `-- --schema > scenes/schema.json`";
     assert!(std::fs::read_to_string(root().join("docs/scene.md")).unwrap_or_default() == manual(), "{told}");
-    assert!(std::fs::read_to_string(root().join("scenes/schema.json")).unwrap_or_default() == json_schema(), "{told}");
+    assert!(
+        std::fs::read_to_string(root().join("scenes/schema.json")).unwrap_or_default() == json_schema(),
+        "{told}"
+    );
 }
 
 #[test]
@@ -95,8 +101,26 @@ enum Spoil {
 }
 
 const VALUES: [&str; 20] = [
-    "0", "-1", "1e300", "nan", "inf", "\"\"", "\"x\"", "[]", "[1, 2, 3, 4]", "{}", "true", "1979-05-27", "\"sin(\"", "\"1/t\"", "[[1]]", "1e-300",
-    "99999999999999999999", "\"periodic\"", "{ type = \"wall\" }", "'''\n'''",
+    "0",
+    "-1",
+    "1e300",
+    "nan",
+    "inf",
+    "\"\"",
+    "\"x\"",
+    "[]",
+    "[1, 2, 3, 4]",
+    "{}",
+    "true",
+    "1979-05-27",
+    "\"sin(\"",
+    "\"1/t\"",
+    "[[1]]",
+    "1e-300",
+    "99999999999999999999",
+    "\"periodic\"",
+    "{ type = \"wall\" }",
+    "'''\n'''",
 ];
 
 fn spoil() -> impl Strategy<Value = Spoil> {
@@ -119,7 +143,8 @@ fn spoilt(text: &str, how: &Spoil) -> String {
     let on = |share: f64, change: &dyn Fn(&str) -> String, which: &dyn Fn(&str) -> bool| {
         let fit: Vec<usize> = (0..lines.len()).filter(|&i| which(lines[i])).collect();
         let chosen = fit.get(pick(share, fit.len())).copied();
-        let line = |(i, line): (usize, &&str)| if Some(i) == chosen { change(line) } else { (*line).to_owned() };
+        let line =
+            |(i, line): (usize, &&str)| if Some(i) == chosen { change(line) } else { (*line).to_owned() };
         lines.iter().enumerate().map(line).collect::<Vec<_>>().join("\n")
     };
     let is_key = |line: &str| line.contains('=') && !line.trim_start().starts_with('#');
@@ -132,7 +157,9 @@ fn spoilt(text: &str, how: &Spoil) -> String {
         }
         Spoil::Drop(share) => on(share, &|_| String::new(), &|line| !line.trim().is_empty()),
         Spoil::Twice(share) => on(share, &|line| format!("{line}\n{line}"), &|line| !line.trim().is_empty()),
-        Spoil::Value(share, value) => on(share, &|line| format!("{} = {value}", line.split('=').next().unwrap_or("")), &is_key),
+        Spoil::Value(share, value) => {
+            on(share, &|line| format!("{} = {value}", line.split('=').next().unwrap_or("")), &is_key)
+        }
         Spoil::Key(share) => on(share, &|line| line.chars().skip(1).collect(), &is_key),
         Spoil::Digit(share, digit) => on(
             share,
@@ -177,7 +204,13 @@ fn spoilt_scenes_are_told_about() {
             Ok(scene) => match scene.plan() {
                 Err(error) => prop_assert!(error.to_string().len() > 10),
                 Ok(plan) if plan.cells.iter().product::<usize>() < 5000 && plan.bodies < 100 => {
-                    let short = ["time.end=1e-9", "output.snapshots=0", "output.images=false", "output.fields=false", "flow.iterations=2"];
+                    let short = [
+                        "time.end=1e-9",
+                        "output.snapshots=0",
+                        "output.images=false",
+                        "output.fields=false",
+                        "flow.iterations=2",
+                    ];
                     let short = short.map(String::from);
                     if let Ok(scene) = Scene::parse(&path.display().to_string(), &text, &short)
                         && let Err(error) = scene.run(&quiet(&out), &stop)

@@ -9,12 +9,42 @@ pub(super) static MATERIAL: Table = Table {
     about: "A material.",
     keys: &[
         optional("density", Kind::Number(Range::Positive, "kg/m³"), "1000", "Density.", "2500.0"),
-        optional("youngs_modulus", Kind::Number(Range::Positive, "Pa"), "1e6", "Young's modulus; soft bodies take larger steps.", "1e7"),
-        optional("poisson_ratio", Kind::Number(Range::Within(-1.0, 0.5), "1"), "0.3", "Poisson's ratio.", "0.25"),
-        optional("damping", Kind::Number(Range::NotNegative, "1"), "0.5", "Damping of the law `chen`.", "1.0"),
-        optional("restitution", SHARE, "0.9", "Restitution of the law `potential`: speed after over speed before.", "0.6"),
+        optional(
+            "youngs_modulus",
+            Kind::Number(Range::Positive, "Pa"),
+            "1e6",
+            "Young's modulus; soft bodies take larger steps.",
+            "1e7",
+        ),
+        optional(
+            "poisson_ratio",
+            Kind::Number(Range::Within(-1.0, 0.5), "1"),
+            "0.3",
+            "Poisson's ratio.",
+            "0.25",
+        ),
+        optional(
+            "damping",
+            Kind::Number(Range::NotNegative, "1"),
+            "0.5",
+            "Damping of the law `chen`.",
+            "1.0",
+        ),
+        optional(
+            "restitution",
+            SHARE,
+            "0.9",
+            "Restitution of the law `potential`: speed after over speed before.",
+            "0.6",
+        ),
         optional("friction", Kind::Number(Range::NotNegative, "1"), "0.3", "Coefficient of friction.", "0.5"),
-        optional("rolling_friction", Kind::Number(Range::NotNegative, "1"), "0", "Coefficient of rolling friction, of the law `rolling`.", "0.01"),
+        optional(
+            "rolling_friction",
+            Kind::Number(Range::NotNegative, "1"),
+            "0",
+            "Coefficient of rolling friction, of the law `rolling`.",
+            "0.01",
+        ),
     ],
 };
 
@@ -38,13 +68,21 @@ static SHAPES: [(&str, &Table); 9] = [
     ),
     (
         "cylinder",
-        &Table { about: "A cylinder along z with flat ends.", keys: &[RADIUS, required("length", LENGTH, "Length.", "0.1")] },
+        &Table {
+            about: "A cylinder along z with flat ends.",
+            keys: &[RADIUS, required("length", LENGTH, "Length.", "0.1")],
+        },
     ),
     (
         "box",
         &Table {
             about: "A box (in plane scenes a rectangle, for bodies that are not moved by the flow).",
-            keys: &[required("edges", Kind::List(&LENGTH, 2, 3), "Edges along x, y (and z).", "[2e-3, 1e-3, 1e-3]")],
+            keys: &[required(
+                "edges",
+                Kind::List(&LENGTH, 2, 3),
+                "Edges along x, y (and z).",
+                "[2e-3, 1e-3, 1e-3]",
+            )],
         },
     ),
     (
@@ -52,7 +90,12 @@ static SHAPES: [(&str, &Table); 9] = [
         &Table {
             about: "A convex polyhedron: the hull of points, or vertices with their faces.",
             keys: &[
-                required("vertices", Kind::List(&SPACE_POINT, 4, 100_000), "Points.", "[[0.0, 0.0, 0.0], [1e-3, 0.0, 0.0], [0.0, 1e-3, 0.0], [0.0, 0.0, 1e-3]]"),
+                required(
+                    "vertices",
+                    Kind::List(&SPACE_POINT, 4, 100_000),
+                    "Points.",
+                    "[[0.0, 0.0, 0.0], [1e-3, 0.0, 0.0], [0.0, 1e-3, 0.0], [0.0, 0.0, 1e-3]]",
+                ),
                 optional(
                     "faces",
                     Kind::List(&Kind::List(&Kind::Whole(0, 100_000), 3, 1000), 4, 100_000),
@@ -77,17 +120,32 @@ static SHAPES: [(&str, &Table); 9] = [
         "union",
         &Table {
             about: "Several shapes that touch but do not overlap, as one body; its centre of mass is where the body is put.",
-            keys: &[required("parts", Kind::List(&Kind::Table(&PART), 1, 1000), "The parts.", "[{ shape = { type = \"sphere\", radius = 1e-3 } }, { shape = { type = \"sphere\", radius = 1e-3 }, position = [2e-3, 0.0, 0.0] }]")],
+            keys: &[required(
+                "parts",
+                Kind::List(&Kind::Table(&PART), 1, 1000),
+                "The parts.",
+                "[{ shape = { type = \"sphere\", radius = 1e-3 } }, { shape = { type = \"sphere\", radius = 1e-3 }, position = [2e-3, 0.0, 0.0] }]",
+            )],
         },
     ),
 ];
 
 static PART: Table = Table {
     about: "A part of a union, in the union's frame.",
-    keys: &[required("shape", Kind::Choice("type", &SHAPES), "Its shape.", "{ type = \"sphere\", radius = 1e-3 }"), POSITION_OR_ORIGIN, ORIENTATION],
+    keys: &[
+        required(
+            "shape",
+            Kind::Choice("type", &SHAPES),
+            "Its shape.",
+            "{ type = \"sphere\", radius = 1e-3 }",
+        ),
+        POSITION_OR_ORIGIN,
+        ORIENTATION,
+    ],
 };
 
-const POSITION_OR_ORIGIN: Key = optional("position", POINT, "the origin", "Where its centre is.", "[1e-3, 0.0, 0.0]");
+const POSITION_OR_ORIGIN: Key =
+    optional("position", POINT, "the origin", "Where its centre is.", "[1e-3, 0.0, 0.0]");
 const ORIENTATION: Key = optional(
     "orientation",
     Kind::Either(&TURNS),
@@ -101,15 +159,37 @@ static TURNS: [Kind; 2] = [TURN, Kind::Table(&ROTATION)];
 static ROTATION: Table = Table {
     about: "A rotation.",
     keys: &[
-        required("axis", Kind::List(&Kind::Number(Range::Any, "1"), 3, 3), "The axis, of any length.", "[0.0, 1.0, 0.0]"),
+        required(
+            "axis",
+            Kind::List(&Kind::Number(Range::Any, "1"), 3, 3),
+            "The axis, of any length.",
+            "[0.0, 1.0, 0.0]",
+        ),
         required("angle", TURN, "The angle.", "45.0"),
     ],
 };
 
-const BODY_MATERIAL: Key =
-    optional("material", Kind::Text, "the material of the key's defaults", "Name of a material from `materials`.", "\"steel\"");
-const DENSITY: Key = optional("density", Kind::Number(Range::Positive, "kg/m³"), "the material's", "Density, whatever the material's is.", "1060.0");
-const VELOCITY: Key = optional("velocity", Kind::List(&Kind::Number(Range::Any, "m/s"), 2, 3), "0", "Velocity at the start.", "[0.0, -0.01]");
+const BODY_MATERIAL: Key = optional(
+    "material",
+    Kind::Text,
+    "the material of the key's defaults",
+    "Name of a material from `materials`.",
+    "\"steel\"",
+);
+const DENSITY: Key = optional(
+    "density",
+    Kind::Number(Range::Positive, "kg/m³"),
+    "the material's",
+    "Density, whatever the material's is.",
+    "1060.0",
+);
+const VELOCITY: Key = optional(
+    "velocity",
+    Kind::List(&Kind::Number(Range::Any, "m/s"), 2, 3),
+    "0",
+    "Velocity at the start.",
+    "[0.0, -0.01]",
+);
 const SPIN: Key = optional(
     "spin",
     Kind::Either(&[Kind::Number(Range::Any, "rad/s"), Kind::List(&Kind::Number(Range::Any, "rad/s"), 3, 3)]),
@@ -130,7 +210,13 @@ pub(super) static BODY: Table = Table {
         VELOCITY,
         SPIN,
         optional("motion", Kind::Choice("type", &MOTIONS), "free", "What moves it.", "\"fixed\""),
-        optional("tether", Kind::Table(&TETHER), "none", "A spring that holds it.", "{ anchor = [0.0, 0.0, 0.0], stiffness = 0.1 }"),
+        optional(
+            "tether",
+            Kind::Table(&TETHER),
+            "none",
+            "A spring that holds it.",
+            "{ anchor = [0.0, 0.0, 0.0], stiffness = 0.1 }",
+        ),
     ],
 };
 
@@ -143,20 +229,50 @@ static MOTIONS: [(&str, &Table); 4] = [
         &Table {
             about: "The same, but only along and about some axes.",
             keys: &[
-                optional("linear", Kind::List(&Kind::Flag, 3, 3), "none", "Along x, y, z.", "[true, true, false]"),
-                optional("angular", Kind::List(&Kind::Flag, 3, 3), "none", "About x, y, z.", "[false, false, true]"),
+                optional(
+                    "linear",
+                    Kind::List(&Kind::Flag, 3, 3),
+                    "none",
+                    "Along x, y, z.",
+                    "[true, true, false]",
+                ),
+                optional(
+                    "angular",
+                    Kind::List(&Kind::Flag, 3, 3),
+                    "none",
+                    "About x, y, z.",
+                    "[false, false, true]",
+                ),
             ],
         },
     ),
-    ("fixed", &Table { about: "Nothing: it stays where it is. A scene without other bodies than these has them as sharp walls (cut links).", keys: &[] }),
+    (
+        "fixed",
+        &Table {
+            about: "Nothing: it stays where it is. A scene without other bodies than these has them as sharp walls (cut links).",
+            keys: &[],
+        },
+    ),
     (
         "prescribed",
         &Table {
             about: "Formulas of the time t, added to where it stands: `shift`, and the `angle` about an axis.",
             keys: &[
-                optional("shift", Kind::List(&MOVING, 2, 3), "none", "How far it has come.", "[\"-0.79577*sin(2*PI*t/5)\", 0.0]"),
+                optional(
+                    "shift",
+                    Kind::List(&MOVING, 2, 3),
+                    "none",
+                    "How far it has come.",
+                    "[\"-0.79577*sin(2*PI*t/5)\", 0.0]",
+                ),
                 optional("angle", Kind::Formula(TIME, "rad"), "none", "How far it has turned.", "\"2*t\""),
-                optional("axis", Kind::List(&Kind::Number(Range::Any, "1"), 3, 3), "z", "About which axis.", "[0.0, 0.0, 1.0]"),
+                optional(
+                    "axis",
+                    Kind::List(&Kind::Number(Range::Any, "1"), 3, 3),
+                    "z",
+                    "About which axis.",
+                    "[0.0, 0.0, 1.0]",
+                ),
             ],
         },
     ),
@@ -166,9 +282,20 @@ static TETHER: Table = Table {
     about: "A spring of no length from a place on the body to an anchor.",
     keys: &[
         required("anchor", POINT, "Where it is held.", "[0.0, 0.0, 0.0]"),
-        required("stiffness", Kind::Number(Range::Positive, "N/m"), "Stiffness (plane scenes: per metre of depth).", "0.1"),
+        required(
+            "stiffness",
+            Kind::Number(Range::Positive, "N/m"),
+            "Stiffness (plane scenes: per metre of depth).",
+            "0.1",
+        ),
         optional("damping", Kind::Number(Range::NotNegative, "N s/m"), "0", "Damping.", "1e-3"),
-        optional("on_body", SPACE_POINT, "its centre", "Where on the body, in the body's frame.", "[0.0, 0.0, 0.0]"),
+        optional(
+            "on_body",
+            SPACE_POINT,
+            "its centre",
+            "Where on the body, in the body's frame.",
+            "[0.0, 0.0, 0.0]",
+        ),
     ],
 };
 
@@ -179,7 +306,8 @@ const REGION: Key = optional(
     "Where.",
     "{ lower = [0.0, 0.0], upper = [0.01, 0.005] }",
 );
-const GAP: Key = optional("gap", Kind::Number(Range::NotNegative, "m"), "0", "Least distance of surfaces.", "1e-4");
+const GAP: Key =
+    optional("gap", Kind::Number(Range::NotNegative, "m"), "0", "Least distance of surfaces.", "1e-4");
 const SEED: Key = optional("seed", Kind::Whole(0, i64::MAX), "0", "What is drawn depends on it alone.", "7");
 const TURNED: Key = optional(
     "turned",
@@ -188,12 +316,26 @@ const TURNED: Key = optional(
     "How bodies are turned.",
     "\"no\"",
 );
-const TEMPLATE: Key = required("shape", Kind::Choice("type", &SHAPES), "The shape of all of them, enlarged by `scale`.", "{ type = \"sphere\", radius = 1e-3 }");
-const SCALE: Key = optional("scale", Kind::Choice("law", &SCALES), "1", "Factors by which bodies are enlarged.", "{ law = \"uniform\", low = 0.85, high = 1.15 }");
+const TEMPLATE: Key = required(
+    "shape",
+    Kind::Choice("type", &SHAPES),
+    "The shape of all of them, enlarged by `scale`.",
+    "{ type = \"sphere\", radius = 1e-3 }",
+);
+const SCALE: Key = optional(
+    "scale",
+    Kind::Choice("law", &SCALES),
+    "1",
+    "Factors by which bodies are enlarged.",
+    "{ law = \"uniform\", low = 0.85, high = 1.15 }",
+);
 
 static REGION_TABLE: Table = Table {
     about: "A box.",
-    keys: &[required("lower", POINT, "Lower corner.", "[0.0, 0.0]"), required("upper", POINT, "Upper corner.", "[0.01, 0.005]")],
+    keys: &[
+        required("lower", POINT, "Lower corner.", "[0.0, 0.0]"),
+        required("upper", POINT, "Upper corner.", "[0.01, 0.005]"),
+    ],
 };
 
 const FACTOR: Kind = Kind::Number(Range::Positive, "1");
@@ -203,7 +345,10 @@ static SCALES: [(&str, &Table); 3] = [
         "uniform",
         &Table {
             about: "Equally many in equal intervals.",
-            keys: &[required("low", FACTOR, "Least factor.", "0.85"), required("high", FACTOR, "Largest factor.", "1.15")],
+            keys: &[
+                required("low", FACTOR, "Least factor.", "0.85"),
+                required("high", FACTOR, "Largest factor.", "1.15"),
+            ],
         },
     ),
     (
@@ -223,7 +368,12 @@ static SCALES: [(&str, &Table); 3] = [
             about: "The log-normal distribution between two bounds.",
             keys: &[
                 required("median", FACTOR, "Median.", "1.0"),
-                required("deviation", Kind::Number(Range::Above(1.0, 100.0), "1"), "Geometric standard deviation.", "1.2"),
+                required(
+                    "deviation",
+                    Kind::Number(Range::Above(1.0, 100.0), "1"),
+                    "Geometric standard deviation.",
+                    "1.2",
+                ),
                 required("bounds", Kind::List(&FACTOR, 2, 2), "Nothing outside.", "[0.5, 2.0]"),
             ],
         },
@@ -253,7 +403,13 @@ pub(super) static FACTORIES: [(&str, &Table); 4] = [
                     "The lattice.",
                     "\"hexagonal\"",
                 ),
-                optional("jitter", Kind::Number(Range::NotNegative, "m"), "0", "Bodies stray so far from their places at most.", "2e-4"),
+                optional(
+                    "jitter",
+                    Kind::Number(Range::NotNegative, "m"),
+                    "0",
+                    "Bodies stray so far from their places at most.",
+                    "2e-4",
+                ),
                 optional("number", Kind::Whole(1, 10_000_000), "all that fit", "So many, from below.", "100"),
                 REGION,
                 GAP,
@@ -274,7 +430,13 @@ pub(super) static FACTORIES: [(&str, &Table); 4] = [
                 TEMPLATE,
                 SCALE,
                 optional("number", Kind::Whole(1, 10_000_000), "`fraction` tells", "How many.", "50"),
-                optional("fraction", Kind::Number(Range::Above(0.0, 0.7), "1"), "`number` tells", "Share of the region that bodies fill.", "0.2"),
+                optional(
+                    "fraction",
+                    Kind::Number(Range::Above(0.0, 0.7), "1"),
+                    "`number` tells",
+                    "Share of the region that bodies fill.",
+                    "0.2",
+                ),
                 REGION,
                 GAP,
                 SEED,
@@ -323,14 +485,22 @@ pub(super) static FACTORIES: [(&str, &Table); 4] = [
 
 const MOTION_OF_MANY: Key = optional(
     "motion",
-    Kind::Word(&[("free", "the flow, gravity and other bodies move them"), ("fixed", "they stay where they are")]),
+    Kind::Word(&[
+        ("free", "the flow, gravity and other bodies move them"),
+        ("fixed", "they stay where they are"),
+    ]),
     "free",
     "What moves them.",
     "\"fixed\"",
 );
 
 const PLANE_POINT: Key = required("point", POINT, "A point of its plane.", "[0.0, 1e-3]");
-const PLANE_NORMAL: Key = required("normal", Kind::List(&Kind::Number(Range::Any, "1"), 2, 3), "Points out of it, of any length.", "[0.0, 1.0]");
+const PLANE_NORMAL: Key = required(
+    "normal",
+    Kind::List(&Kind::Number(Range::Any, "1"), 2, 3),
+    "Points out of it, of any length.",
+    "[0.0, 1.0]",
+);
 
 pub(super) static EXIT: Table = Table { about: "A half-space.", keys: &[PLANE_POINT, PLANE_NORMAL] };
 
@@ -359,8 +529,20 @@ pub(super) static CONTACT: Table = Table {
             "Planes that bodies touch besides, and the fluid does not know: a distributor plate, say.",
             "[{ point = [0.0, 1e-3], normal = [0.0, 1.0] }]",
         ),
-        optional("wall_material", Kind::Text, "that of the first body", "Material of those walls.", "\"steel\""),
-        optional("length_factor", Kind::Number(Range::Positive, "1"), "4", "Of the contact length L_c.", "4.0"),
+        optional(
+            "wall_material",
+            Kind::Text,
+            "that of the first body",
+            "Material of those walls.",
+            "\"steel\"",
+        ),
+        optional(
+            "length_factor",
+            Kind::Number(Range::Positive, "1"),
+            "4",
+            "Of the contact length L_c.",
+            "4.0",
+        ),
         optional("adhesion", Kind::Flag, "false", "May damping pull (law chen)?", "true"),
         optional("overlaps", Kind::Flag, "false", "May bodies overlap at the start?", "true"),
     ],
@@ -368,7 +550,13 @@ pub(super) static CONTACT: Table = Table {
 
 pub(super) static LUBRICATION: Table = Table {
     about: "Lubrication.",
-    keys: &[optional("roughness", Kind::Number(Range::Above(0.0, 1.0), "1"), "1e-3", "Films get no thinner than this share of the radius.", "1e-4")],
+    keys: &[optional(
+        "roughness",
+        Kind::Number(Range::Above(0.0, 1.0), "1"),
+        "1e-3",
+        "Films get no thinner than this share of the radius.",
+        "1e-4",
+    )],
 };
 
 pub(super) static COUPLING: Table = Table {
@@ -409,11 +597,22 @@ pub(super) static COUPLING: Table = Table {
             "What bears the bodies' net weight in a periodic box.",
             "\"zero-flow\"",
         ),
-        optional("virtual_mass", Kind::Number(Range::NotNegative, "1"), "what the density asks for", "Virtual mass by the displaced mass (one-solve).", "0.3"),
+        optional(
+            "virtual_mass",
+            Kind::Number(Range::NotNegative, "1"),
+            "what the density asks for",
+            "Virtual mass by the displaced mass (one-solve).",
+            "0.3",
+        ),
         optional("passes", Kind::Whole(1, 20), "3", "Passes of the smooth forcing.", "5"),
         optional(
             "kernel",
-            Kind::Word(&[("auto", "quartic in the plane, yang in space"), ("yang", "support ±2"), ("quartic", "support ±2½"), ("quintic", "support ±3, the quietest")]),
+            Kind::Word(&[
+                ("auto", "quartic in the plane, yang in space"),
+                ("yang", "support ±2"),
+                ("quartic", "support ±2½"),
+                ("quintic", "support ±3, the quietest"),
+            ]),
             "auto",
             "Kernel of the smooth forcing.",
             "\"quintic\"",

@@ -41,7 +41,8 @@ fn check_section(
     }
     for Key { name, need, about, example, .. } in table.keys {
         if *need == Need::Required && section.get(name).is_none() {
-            let message = format!("the key \"{name}\" is missing. {about} Write, for example, {name} = {example}");
+            let message =
+                format!("the key \"{name}\" is missing. {about} Write, for example, {name} = {example}");
             problems.push(Problem::new(path.into(), place.clone(), message));
         }
     }
@@ -54,7 +55,9 @@ fn instead(word: &str, known: &[&str]) -> String {
     }
     let near = |k: &&&str| strsim::damerau_levenshtein(word, k);
     let nearest = known.iter().min_by_key(near).filter(|k| {
-        strsim::damerau_levenshtein(word, k) <= 1 + word.chars().count() / 3 || k.contains(word) || word.contains(**k)
+        strsim::damerau_levenshtein(word, k) <= 1 + word.chars().count() / 3
+            || k.contains(word)
+            || word.contains(**k)
     });
     let all = known.join(", ");
     match nearest {
@@ -122,7 +125,9 @@ pub(crate) fn check_item(item: &Item, kind: &Kind, path: &str, problems: &mut Ve
                 check_item(item, &Kind::Table(table), &join(path, name), problems);
             }
         }
-        (Kind::Table(_) | Kind::Named(_), _) => problem(wanted("a table in braces, or under a heading of its own")),
+        (Kind::Table(_) | Kind::Named(_), _) => {
+            problem(wanted("a table in braces, or under a heading of its own"))
+        }
         (Kind::Choice(tag, tables), value) => check_choice(item, value, (tag, tables), path, problems),
         (Kind::Either(kinds), value) => {
             // The kind that fits the value's form tells what is wrong with it.
@@ -145,7 +150,8 @@ fn check_choice(
     problems: &mut Vec<Problem>,
 ) {
     let known: Vec<_> = tables.iter().map(|(name, _)| *name).collect();
-    let mut problem = |place: &Place, message: String| problems.push(Problem::new(path.into(), place.clone(), message));
+    let mut problem =
+        |place: &Place, message: String| problems.push(Problem::new(path.into(), place.clone(), message));
     let unknown = |word: &str| format!("\"{word}\" is not known here; {}", instead(word, &known));
     let empty = Section::default();
     let (word, place, section) = match value {
@@ -153,7 +159,10 @@ fn check_choice(
         Value::Table(section) => match section.get(tag) {
             Some(Item { value: Value::Text(word), place }) => (word, place, section),
             Some(other) => {
-                return problem(&other.place, format!("{tag} is {}; give one of {}", other.value, known.join(", ")));
+                return problem(
+                    &other.place,
+                    format!("{tag} is {}; give one of {}", other.value, known.join(", ")),
+                );
             }
             None => {
                 let message = format!("the key \"{tag}\" is missing; it is one of {}", known.join(", "));
@@ -161,7 +170,10 @@ fn check_choice(
             }
         },
         other => {
-            let message = format!("{other} stands here; give a table with the key \"{tag}\", one of {}", known.join(", "));
+            let message = format!(
+                "{other} stands here; give a table with the key \"{tag}\", one of {}",
+                known.join(", ")
+            );
             return problem(&item.place, message);
         }
     };

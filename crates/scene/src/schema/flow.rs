@@ -1,7 +1,5 @@
 //! Box, sides, fluid, flow.
-use super::{
-    Key, Kind, LENGTH, METRES, POINT, Range, SPACE, SPACE_TIME, Table, optional, required,
-};
+use super::{Key, Kind, LENGTH, METRES, POINT, Range, SPACE, SPACE_TIME, Table, optional, required};
 
 const SPEED: Kind = Kind::Number(Range::Any, "m/s");
 
@@ -15,11 +13,35 @@ pub(super) static GRID: Table = Table {
             "Cells along x, y (and z).",
             "[150, 300]",
         ),
-        optional("size", Kind::List(&LENGTH, 2, 3), "the axes tell", "Edge lengths of the box.", "[0.01, 0.02]"),
+        optional(
+            "size",
+            Kind::List(&LENGTH, 2, 3),
+            "the axes tell",
+            "Edge lengths of the box.",
+            "[0.01, 0.02]",
+        ),
         optional("origin", POINT, "0", "Lower corner of the box, with `cells` and `size`.", "[-0.5, -0.5]"),
-        optional("x", AXIS, "`cells` and `size`", "The axis x.", "{ spacing = \"uniform\", cells = 64, to = 1.0 }"),
-        optional("y", AXIS, "`cells` and `size`", "The axis y.", "{ spacing = \"tanh\", cells = 64, to = 1.0, strength = 1.5 }"),
-        optional("z", AXIS, "`cells` and `size`", "The axis z.", "{ spacing = \"geometric\", cells = 32, to = 1.0, ratio = 1.05 }"),
+        optional(
+            "x",
+            AXIS,
+            "`cells` and `size`",
+            "The axis x.",
+            "{ spacing = \"uniform\", cells = 64, to = 1.0 }",
+        ),
+        optional(
+            "y",
+            AXIS,
+            "`cells` and `size`",
+            "The axis y.",
+            "{ spacing = \"tanh\", cells = 64, to = 1.0, strength = 1.5 }",
+        ),
+        optional(
+            "z",
+            AXIS,
+            "`cells` and `size`",
+            "The axis z.",
+            "{ spacing = \"geometric\", cells = 32, to = 1.0, ratio = 1.05 }",
+        ),
     ],
 };
 
@@ -54,7 +76,11 @@ static AXES: [(&str, &Table); 6] = [
                 required("strength", Kind::Number(Range::Above(0.0, 10.0), "1"), "How much.", "1.8"),
                 optional(
                     "cluster",
-                    Kind::Word(&[("both", "at both ends"), ("lower", "at the lower end"), ("upper", "at the upper end")]),
+                    Kind::Word(&[
+                        ("both", "at both ends"),
+                        ("lower", "at the lower end"),
+                        ("upper", "at the upper end"),
+                    ]),
                     "both",
                     "Where.",
                     "\"lower\"",
@@ -71,7 +97,13 @@ static AXES: [(&str, &Table); 6] = [
                 required("between", Kind::List(&METRES, 2, 2), "Where they are.", "[0.1, 0.4]"),
                 FROM,
                 TO,
-                optional("growth", Kind::Number(Range::Above(1.0, 1.5), "1"), "1.05", "Factor from one cell to the next outside.", "1.08"),
+                optional(
+                    "growth",
+                    Kind::Number(Range::Above(1.0, 1.5), "1"),
+                    "1.05",
+                    "Factor from one cell to the next outside.",
+                    "1.08",
+                ),
             ],
         },
     ),
@@ -79,14 +111,24 @@ static AXES: [(&str, &Table); 6] = [
         "faces",
         &Table {
             about: "Every face.",
-            keys: &[required("faces", Kind::List(&METRES, 2, 100_001), "Increasing.", "[0.0, 0.1, 0.3, 0.6]")],
+            keys: &[required(
+                "faces",
+                Kind::List(&METRES, 2, 100_001),
+                "Increasing.",
+                "[0.0, 0.1, 0.3, 0.6]",
+            )],
         },
     ),
     (
         "file",
         &Table {
             about: "Every face, from a file of numbers.",
-            keys: &[required("file", Kind::File, "Numbers separated by blanks, commas or line ends; # begins a comment.", "\"x_faces.txt\"")],
+            keys: &[required(
+                "file",
+                Kind::File,
+                "Numbers separated by blanks, commas or line ends; # begins a comment.",
+                "\"x_faces.txt\"",
+            )],
         },
     ),
 ];
@@ -94,15 +136,69 @@ static AXES: [(&str, &Table); 6] = [
 pub(super) static SIDES: Table = Table {
     about: "Every side of the box has to be given, by its own name or with the opposite one as `x`, `y` or `z`.",
     keys: &[
-        optional("x", Kind::Choice("type", &SIDE_TYPES), "`x_min` and `x_max` tell", "Both sides of the axis x.", "\"periodic\""),
-        optional("y", Kind::Choice("type", &SIDE_TYPES), "`y_min` and `y_max` tell", "Both sides of the axis y.", "\"wall\""),
-        optional("z", Kind::Choice("type", &SIDE_TYPES), "`z_min` and `z_max` tell", "Both sides of the axis z.", "\"symmetry\""),
-        optional("x_min", Kind::Choice("type", &SIDE_TYPES), "`x` tells", "The lower side of the axis x.", "{ type = \"inlet\", velocity = [1.0, 0.0] }"),
-        optional("x_max", Kind::Choice("type", &SIDE_TYPES), "`x` tells", "The upper side of the axis x.", "\"outlet\""),
-        optional("y_min", Kind::Choice("type", &SIDE_TYPES), "`y` tells", "The lower side of the axis y.", "\"wall\""),
-        optional("y_max", Kind::Choice("type", &SIDE_TYPES), "`y` tells", "The upper side of the axis y.", "{ type = \"wall\", velocity = [1.0, 0.0] }"),
-        optional("z_min", Kind::Choice("type", &SIDE_TYPES), "`z` tells", "The lower side of the axis z.", "\"wall\""),
-        optional("z_max", Kind::Choice("type", &SIDE_TYPES), "`z` tells", "The upper side of the axis z.", "{ type = \"pressure\", value = 0.0 }"),
+        optional(
+            "x",
+            Kind::Choice("type", &SIDE_TYPES),
+            "`x_min` and `x_max` tell",
+            "Both sides of the axis x.",
+            "\"periodic\"",
+        ),
+        optional(
+            "y",
+            Kind::Choice("type", &SIDE_TYPES),
+            "`y_min` and `y_max` tell",
+            "Both sides of the axis y.",
+            "\"wall\"",
+        ),
+        optional(
+            "z",
+            Kind::Choice("type", &SIDE_TYPES),
+            "`z_min` and `z_max` tell",
+            "Both sides of the axis z.",
+            "\"symmetry\"",
+        ),
+        optional(
+            "x_min",
+            Kind::Choice("type", &SIDE_TYPES),
+            "`x` tells",
+            "The lower side of the axis x.",
+            "{ type = \"inlet\", velocity = [1.0, 0.0] }",
+        ),
+        optional(
+            "x_max",
+            Kind::Choice("type", &SIDE_TYPES),
+            "`x` tells",
+            "The upper side of the axis x.",
+            "\"outlet\"",
+        ),
+        optional(
+            "y_min",
+            Kind::Choice("type", &SIDE_TYPES),
+            "`y` tells",
+            "The lower side of the axis y.",
+            "\"wall\"",
+        ),
+        optional(
+            "y_max",
+            Kind::Choice("type", &SIDE_TYPES),
+            "`y` tells",
+            "The upper side of the axis y.",
+            "{ type = \"wall\", velocity = [1.0, 0.0] }",
+        ),
+        optional(
+            "z_min",
+            Kind::Choice("type", &SIDE_TYPES),
+            "`z` tells",
+            "The lower side of the axis z.",
+            "\"wall\"",
+        ),
+        optional(
+            "z_max",
+            Kind::Choice("type", &SIDE_TYPES),
+            "`z` tells",
+            "The upper side of the axis z.",
+            "{ type = \"pressure\", value = 0.0 }",
+        ),
     ],
 };
 
@@ -112,7 +208,13 @@ static SIDE_TYPES: [(&str, &Table); 7] = [
         "wall",
         &Table {
             about: "The fluid sticks to it; bodies touch it.",
-            keys: &[optional("velocity", Kind::List(&SPEED, 2, 3), "at rest", "It moves along itself.", "[1.0, 0.0]")],
+            keys: &[optional(
+                "velocity",
+                Kind::List(&SPEED, 2, 3),
+                "at rest",
+                "It moves along itself.",
+                "[1.0, 0.0]",
+            )],
         },
     ),
     ("symmetry", &Table { about: "A frictionless wall, or a plane of symmetry.", keys: &[] }),
@@ -150,7 +252,12 @@ static SIDE_TYPES: [(&str, &Table); 7] = [
         "patches",
         &Table {
             about: "Different things on parts of the side: the first rectangle that holds a face counts. They have to cover the side.",
-            keys: &[required("list", Kind::List(&Kind::Table(&PATCH), 1, 100), "The rectangles.", "[{ lower = [0.0, 0.0], upper = [0.0, 1.0], side = \"wall\" }]")],
+            keys: &[required(
+                "list",
+                Kind::List(&Kind::Table(&PATCH), 1, 100),
+                "The rectangles.",
+                "[{ lower = [0.0, 0.0], upper = [0.0, 1.0], side = \"wall\" }]",
+            )],
         },
     ),
 ];
@@ -160,7 +267,12 @@ static PATCH: Table = Table {
     keys: &[
         required("lower", POINT, "Lower corner.", "[0.0, -2.0]"),
         required("upper", POINT, "Upper corner.", "[0.0, -1.0]"),
-        required("side", Kind::Choice("type", &SIDE_TYPES), "What happens there; neither periodic nor patches again.", "\"outlet\""),
+        required(
+            "side",
+            Kind::Choice("type", &SIDE_TYPES),
+            "What happens there; neither periodic nor patches again.",
+            "\"outlet\"",
+        ),
     ],
 };
 
@@ -168,7 +280,13 @@ pub(super) static FLUID: Table = Table {
     about: "Density, and one of both viscosities.",
     keys: &[
         required("density", Kind::Number(Range::Positive, "kg/m³"), "Density.", "1000.0"),
-        optional("nu", Kind::Number(Range::NotNegative, "m²/s"), "`mu` tells", "Kinematic viscosity.", "1e-6"),
+        optional(
+            "nu",
+            Kind::Number(Range::NotNegative, "m²/s"),
+            "`mu` tells",
+            "Kinematic viscosity.",
+            "1e-6",
+        ),
         optional("mu", Kind::Number(Range::NotNegative, "Pa s"), "`nu` tells", "Dynamic viscosity.", "1e-3"),
     ],
 };
@@ -190,8 +308,14 @@ pub(super) static FLOW: Table = Table {
         optional(
             "algorithm",
             Kind::Word(&[
-                ("projection", "incremental pressure correction, explicit convection: the fastest, and the one for bodies"),
-                ("piso", "implicit, several pressure corrections per step: larger steps, no bodies but the paper's forcing"),
+                (
+                    "projection",
+                    "incremental pressure correction, explicit convection: the fastest, and the one for bodies",
+                ),
+                (
+                    "piso",
+                    "implicit, several pressure corrections per step: larger steps, no bodies but the paper's forcing",
+                ),
                 ("simple", "steady flow by SIMPLEC; bodies at rest are left to the projection"),
             ]),
             "projection",
@@ -233,7 +357,19 @@ pub(super) static FLOW: Table = Table {
             "The pressure solver (projection).",
             "\"multigrid\"",
         ),
-        optional("tolerance", Kind::Number(Range::Within(1e-12, 1e-2), "1"), "1e-6", "Residual at which a steady flow is done (simple).", "1e-8"),
-        optional("iterations", Kind::Whole(1, 1_000_000), "5000", "Iterations allowed for a steady flow (simple).", "2000"),
+        optional(
+            "tolerance",
+            Kind::Number(Range::Within(1e-12, 1e-2), "1"),
+            "1e-6",
+            "Residual at which a steady flow is done (simple).",
+            "1e-8",
+        ),
+        optional(
+            "iterations",
+            Kind::Whole(1, 1_000_000),
+            "5000",
+            "Iterations allowed for a steady flow (simple).",
+            "2000",
+        ),
     ],
 };

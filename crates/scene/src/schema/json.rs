@@ -15,8 +15,10 @@ pub fn json_schema() -> String {
 }
 
 fn table(table: &Table, definitions: &mut Map<String, Value>) -> Value {
-    let properties: Map<_, _> = table.keys.iter().map(|key| (key.name.into(), property(key, definitions))).collect();
-    let required: Vec<_> = table.keys.iter().filter(|key| key.need == Need::Required).map(|key| key.name).collect();
+    let properties: Map<_, _> =
+        table.keys.iter().map(|key| (key.name.into(), property(key, definitions))).collect();
+    let required: Vec<_> =
+        table.keys.iter().filter(|key| key.need == Need::Required).map(|key| key.name).collect();
     let mut out = json!({
         "type": "object",
         "description": table.about,

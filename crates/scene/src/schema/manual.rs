@@ -20,7 +20,11 @@ pub fn manual() -> String {
         let _ = writeln!(out, "## {heading}\n\n{}\n", table.about);
         let mut below = Vec::new();
         if table.keys.is_empty() {
-            let _ = writeln!(out, "It has no keys{}.\n", tag.map_or(String::new(), |tag| format!(" but `{tag}`")));
+            let _ = writeln!(
+                out,
+                "It has no keys{}.\n",
+                tag.map_or(String::new(), |tag| format!(" but `{tag}`"))
+            );
         } else {
             out.push_str("| key | what | takes | without it | example |\n|---|---|---|---|---|\n");
         }
@@ -30,7 +34,14 @@ pub fn manual() -> String {
                 Need::Default(default) => default,
             };
             let about = cell(key.about);
-            let _ = writeln!(out, "| `{}` | {about} | {} | {} | `{}` |", key.name, cell(&takes(&key.kind)), cell(default), cell(key.example));
+            let _ = writeln!(
+                out,
+                "| `{}` | {about} | {} | {} | `{}` |",
+                key.name,
+                cell(&takes(&key.kind)),
+                cell(default),
+                cell(key.example)
+            );
             let inner = if path.is_empty() { key.name.into() } else { format!("{path}.{}", key.name) };
             tables(&key.kind, &inner, &mut below);
         }
@@ -55,9 +66,18 @@ fn takes(kind: &Kind) -> String {
         Kind::Whole(least, most) => format!("a whole number, {least} to {most}"),
         Kind::Text => "a text".into(),
         Kind::File => "a path".into(),
-        Kind::Formula(variables, u) => format!("a number, or a formula of {}{}", variables.join(", "), unit(u)),
+        Kind::Formula(variables, u) => {
+            format!("a number, or a formula of {}{}", variables.join(", "), unit(u))
+        }
         Kind::Word(words) => {
-            let words: Vec<_> = words.iter().map(|(word, about)| if word == about { format!("`{word}`") } else { format!("`{word}`: {about}") }).collect();
+            let words: Vec<_> = words
+                .iter()
+                .map(
+                    |(word, about)| {
+                        if word == about { format!("`{word}`") } else { format!("`{word}`: {about}") }
+                    },
+                )
+                .collect();
             words.join("; ")
         }
         Kind::List(of, least, most) if least == most => format!("a list of {least}: {}", takes(of)),
@@ -80,7 +100,10 @@ fn tables(kind: &'static Kind, path: &str, out: &mut Vec<(String, &'static Table
         Kind::List(of, ..) => tables(of, path, out),
         Kind::Either(kinds) => kinds.iter().for_each(|kind| tables(kind, path, out)),
         Kind::Choice(tag, of) => {
-            out.extend(of.iter().map(|&(name, table)| (format!("{path} = {{ {tag} = \"{name}\" }}"), table, Some(*tag))));
+            out.extend(
+                of.iter()
+                    .map(|&(name, table)| (format!("{path} = {{ {tag} = \"{name}\" }}"), table, Some(*tag))),
+            );
         }
         _ => {}
     }

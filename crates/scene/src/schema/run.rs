@@ -8,28 +8,77 @@ pub(super) static TIME_TABLE: Table = Table {
     keys: &[
         required("end", SECONDS, "End of the run.", "0.6"),
         optional("dt", SECONDS, "the largest that is stable at the Courant number", "The step.", "1e-4"),
-        optional("courant", Kind::Number(Range::Above(0.0, 1.5), "1"), "0.1 with bodies that move, else 0.4", "Largest Courant number of an automatic step.", "0.25"),
-        optional("ramp", Kind::Flag, "true with free bodies", "Do steps begin small and grow, as a start from rest wants it?", "false"),
+        optional(
+            "courant",
+            Kind::Number(Range::Above(0.0, 1.5), "1"),
+            "0.1 with bodies that move, else 0.4",
+            "Largest Courant number of an automatic step.",
+            "0.25",
+        ),
+        optional(
+            "ramp",
+            Kind::Flag,
+            "true with free bodies",
+            "Do steps begin small and grow, as a start from rest wants it?",
+            "false",
+        ),
     ],
 };
 
 pub(super) static OUTPUT: Table = Table {
     about: "What is written to the folder.",
     keys: &[
-        optional("folder", Kind::File, "out/NAME", "The folder, from where the program is started.", "\"out/cavity\""),
-        optional("snapshots", Kind::Whole(0, 1_000_000), "50", "Equal intervals of the run with a snapshot at each end; 0 writes the end alone.", "100"),
-        optional("fields", Kind::Flag, "true", "VTK files of λ, velocity and pressure at the snapshots, for ParaView.", "false"),
+        optional(
+            "folder",
+            Kind::File,
+            "out/NAME",
+            "The folder, from where the program is started.",
+            "\"out/cavity\"",
+        ),
+        optional(
+            "snapshots",
+            Kind::Whole(0, 1_000_000),
+            "50",
+            "Equal intervals of the run with a snapshot at each end; 0 writes the end alone.",
+            "100",
+        ),
+        optional(
+            "fields",
+            Kind::Flag,
+            "true",
+            "VTK files of λ, velocity and pressure at the snapshots, for ParaView.",
+            "false",
+        ),
         optional("bodies", Kind::Flag, "true", "VTK files of the bodies and `trajectories.csv`.", "false"),
         optional("images", Kind::Flag, "true", "PNG pictures of plane scenes, or of a slice.", "false"),
-        optional("image_every", Kind::Whole(1, 1_000_000), "a twentieth of the snapshots", "A picture at every so many snapshots.", "10"),
+        optional(
+            "image_every",
+            Kind::Whole(1, 1_000_000),
+            "a twentieth of the snapshots",
+            "A picture at every so many snapshots.",
+            "10",
+        ),
         optional(
             "quantity",
-            Kind::Word(&[("speed", "|u|"), ("u", "velocity along x"), ("v", "along y"), ("w", "along z"), ("pressure", "pressure"), ("vorticity", "of the plane")]),
+            Kind::Word(&[
+                ("speed", "|u|"),
+                ("u", "velocity along x"),
+                ("v", "along y"),
+                ("w", "along z"),
+                ("pressure", "pressure"),
+                ("vorticity", "of the plane"),
+            ]),
             "speed",
             "What pictures show.",
             "\"vorticity\"",
         ),
-        optional("limits", Kind::List(&Kind::Number(Range::Any, ""), 2, 2), "those of each picture", "Ends of the colour bar, in the quantity's unit.", "[0.0, 0.03]"),
+        optional(
+            "limits",
+            Kind::List(&Kind::Number(Range::Any, ""), 2, 2),
+            "those of each picture",
+            "Ends of the colour bar, in the quantity's unit.",
+            "[0.0, 0.03]",
+        ),
         optional(
             "slice",
             Kind::Table(&SLICE),
@@ -43,7 +92,13 @@ pub(super) static OUTPUT: Table = Table {
 static SLICE: Table = Table {
     about: "A slice of a scene in space.",
     keys: &[
-        optional("normal", Kind::Word(&[("x", "x"), ("y", "y"), ("z", "z")]), "z", "The axis it is normal to.", "\"y\""),
+        optional(
+            "normal",
+            Kind::Word(&[("x", "x"), ("y", "y"), ("z", "z")]),
+            "z",
+            "The axis it is normal to.",
+            "\"y\"",
+        ),
         optional("at", METRES, "the middle of the box", "Where on that axis.", "0.05"),
     ],
 };
@@ -61,10 +116,34 @@ pub(super) static FORCES: Table = Table {
     about: "Loads of the fluid on bodies go to `forces.csv` at every step, and their means, amplitudes and frequencies to the results. \
             With a speed and an area there are coefficients C = 2F/(ρU²A), too.",
     keys: &[
-        optional("velocity", Kind::Number(Range::Positive, "m/s"), "no coefficients", "Reference speed U.", "0.2"),
-        optional("area", LENGTH_OR_AREA, "no coefficients", "Reference area A (plane scenes: a length).", "0.1"),
-        optional("start", Kind::Number(Range::NotNegative, "s"), "half of the run", "Means and amplitudes are taken from here on.", "5.0"),
-        optional("every", SECONDS, "every step", "How often a line is written; means are of every step.", "0.01"),
+        optional(
+            "velocity",
+            Kind::Number(Range::Positive, "m/s"),
+            "no coefficients",
+            "Reference speed U.",
+            "0.2",
+        ),
+        optional(
+            "area",
+            LENGTH_OR_AREA,
+            "no coefficients",
+            "Reference area A (plane scenes: a length).",
+            "0.1",
+        ),
+        optional(
+            "start",
+            Kind::Number(Range::NotNegative, "s"),
+            "half of the run",
+            "Means and amplitudes are taken from here on.",
+            "5.0",
+        ),
+        optional(
+            "every",
+            SECONDS,
+            "every step",
+            "How often a line is written; means are of every step.",
+            "0.01",
+        ),
     ],
 };
 
@@ -88,16 +167,26 @@ pub(super) static CHECKPOINT: Table = Table {
     about: "Saved states. The one before is kept, too.",
     keys: &[
         optional("every", SECONDS, "10", "Seconds of the wall clock between two of them.", "60.0"),
-        optional("at_end", Kind::Flag, "true", "One at the end, so that a longer run may go on from there?", "false"),
+        optional(
+            "at_end",
+            Kind::Flag,
+            "true",
+            "One at the end, so that a longer run may go on from there?",
+            "false",
+        ),
     ],
 };
-
 
 pub(super) static REFERENCE: Table = Table {
     about: "A number of the results that others have measured or computed.",
     keys: &[
         required("name", Kind::Text, "What it is.", "\"drag coefficient\""),
-        required("pointer", Kind::Text, "Where it stands in `result.json`: a JSON pointer.", "\"/forces/0/coefficients/mean/0\""),
+        required(
+            "pointer",
+            Kind::Text,
+            "Where it stands in `result.json`: a JSON pointer.",
+            "\"/forces/0/coefficients/mean/0\"",
+        ),
         required("value", Kind::Number(Range::Any, ""), "What it is there, in SI units.", "5.57953523384"),
         optional("source", Kind::Text, "none", "Who says so.", "\"Schäfer & Turek 1996\""),
     ],

@@ -32,7 +32,10 @@ pub(crate) enum Motion {
     Free(Freedom),
     Fixed,
     /// Formulas of the time: displacement, and angle about an axis.
-    Prescribed { shift: Option<[Expression; 3]>, turn: Option<(Expression, Unit<Vector>)> },
+    Prescribed {
+        shift: Option<[Expression; 3]>,
+        turn: Option<(Expression, Unit<Vector>)>,
+    },
 }
 
 /// All about bodies.
@@ -123,7 +126,8 @@ pub(super) fn read(
     let mut names: Vec<&str> = list.iter().map(|b| b.name.as_str()).collect();
     names.sort_unstable();
     if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
-        return Err(root.fail("bodies", format!("two bodies are called \"{}\"; give each a name of its own", pair[0])));
+        return Err(root
+            .fail("bodies", format!("two bodies are called \"{}\"; give each a name of its own", pair[0])));
     }
     let half_space = |t: &Reader<'_>| {
         let point = t.point_of("point", context.dim)?.unwrap_or_default();
@@ -155,7 +159,11 @@ pub(super) fn read(
         length_factor: contact.as_ref().and_then(|t| t.number("length_factor")).unwrap_or(4.0),
         adhesion: contact.as_ref().and_then(|t| t.flag("adhesion")).unwrap_or(false),
         overlaps: contact.as_ref().and_then(|t| t.flag("overlaps")).unwrap_or(false),
-        walls: [if touches { walls(axes, sides).map_err(|e| root.fail("sides", e))? } else { vec![] }, planes].concat(),
+        walls: [
+            if touches { walls(axes, sides).map_err(|e| root.fail("sides", e))? } else { vec![] },
+            planes,
+        ]
+        .concat(),
         wall_material,
         lubrication: root.table("lubrication").map(|t| t.number("roughness").unwrap_or(1e-3)),
         coupling,
@@ -166,10 +174,15 @@ pub(super) fn read(
 
 fn agrees(root: &Reader<'_>, bodies: &Bodies, fluid: Fluid) -> Result<(), Problem> {
     let coupling = root.table("coupling");
-    let fail = |key: &str, message: String| coupling.as_ref().map_or_else(|| root.fail("coupling", &message), |t| t.fail(key, &message));
+    let fail = |key: &str, message: String| {
+        coupling.as_ref().map_or_else(|| root.fail("coupling", &message), |t| t.fail(key, &message))
+    };
     let forcing = bodies.forcing();
     if forcing == ForcingChoice::CutLinks && bodies.any_moves() {
-        return Err(fail("forcing", "cut links are for bodies at rest; take \"smooth\", or make every body's motion \"fixed\"".into()));
+        return Err(fail(
+            "forcing",
+            "cut links are for bodies at rest; take \"smooth\", or make every body's motion \"fixed\"".into(),
+        ));
     }
     if forcing == ForcingChoice::CutLinks && !bodies.list.is_empty() && fluid.viscosity == 0.0 {
         return Err(root.fail("fluid", "walls by cut links need a viscosity; give `nu` above 0"));
@@ -179,7 +192,10 @@ fn agrees(root: &Reader<'_>, bodies: &Bodies, fluid: Fluid) -> Result<(), Proble
         return Err(fail("strategy", "\"iterated\" and \"explicit\" go with the contact law \"chen\" without lubrication only; take \"one-solve\"".into()));
     }
     if bodies.lubrication.is_some() && bodies.law != ContactLawChoice::Chen {
-        return Err(root.fail("lubrication", "films go with the contact law \"chen\" only; leave out contact.law or lubrication"));
+        return Err(root.fail(
+            "lubrication",
+            "films go with the contact law \"chen\" only; leave out contact.law or lubrication",
+        ));
     }
     Ok(())
 }
@@ -268,7 +284,11 @@ impl Materials {
         self.named.get(name).copied().ok_or_else(|| {
             let mut known: Vec<_> = self.named.keys().map(String::as_str).collect();
             known.sort_unstable();
-            let known = if known.is_empty() { "there are none".into() } else { format!("there are {}", known.join(", ")) };
+            let known = if known.is_empty() {
+                "there are none".into()
+            } else {
+                format!("there are {}", known.join(", "))
+            };
             t.fail(key, format!("there is no material \"{name}\" in `materials`; {known}"))
         })
     }
@@ -291,7 +311,12 @@ pub(super) fn freedom(dim: usize) -> Freedom {
     if dim == 2 { Freedom::PLANAR } else { Freedom::FREE }
 }
 
-fn body(t: &Reader<'_>, context: &Context<'_>, materials: &Materials, number: usize) -> Result<BodySetup, Problem> {
+fn body(
+    t: &Reader<'_>,
+    context: &Context<'_>,
+    materials: &Materials,
+    number: usize,
+) -> Result<BodySetup, Problem> {
     let dim = context.dim;
     let spin = match (t.number("spin"), t.vector("spin")) {
         (Some(about_z), _) => Vector::new(0.0, 0.0, about_z),
@@ -347,7 +372,9 @@ fn motion(t: &Reader<'_>, dim: usize) -> Result<Motion, Problem> {
             }
             let turn = motion.formula("angle", &["t"])?.map(|angle| (angle, axis));
             if shift.is_none() && turn.is_none() {
-                return Err(motion.fail_here("how does it move? Give `shift` or `angle`, or make it \"fixed\""));
+                return Err(
+                    motion.fail_here("how does it move? Give `shift` or `angle`, or make it \"fixed\"")
+                );
             }
             Motion::Prescribed { shift, turn }
         }

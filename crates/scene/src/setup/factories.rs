@@ -3,7 +3,9 @@ use super::bodies::{BodySetup, Materials, Motion, freedom};
 use super::{Context, shapes};
 use crate::problem::Problem;
 use crate::reader::Reader;
-use dem::placing::{CrystalLattice, LatticeKind, Orientations, RandomAddition, Region, SizeDistribution, read_bodies};
+use dem::placing::{
+    CrystalLattice, LatticeKind, Orientations, RandomAddition, Region, SizeDistribution, read_bodies,
+};
 use dem::{Material, Shape};
 use interfaces::{Aabb, Point, Pose, Twist};
 use std::sync::Arc;
@@ -58,7 +60,8 @@ pub(super) fn read(
             Some("fixed") => Motion::Fixed,
             _ => Motion::Free(freedom(context.dim)),
         };
-        let twist = Twist { linear: t.vector_of("velocity", context.dim)?.unwrap_or_default(), ..Twist::default() };
+        let twist =
+            Twist { linear: t.vector_of("velocity", context.dim)?.unwrap_or_default(), ..Twist::default() };
         for (shape, (pose, own)) in shapes.into_iter().zip(poses) {
             list.push(BodySetup {
                 name: list.len().to_string(),
@@ -93,7 +96,8 @@ impl Factory<'_> {
             min[a] < max[a] && min[a] >= self.place.bounds.min[a] && max[a] <= self.place.bounds.max[a]
         });
         if !inside {
-            let message = "the upper corner has to be above the lower one, and both inside the box of the grid";
+            let message =
+                "the upper corner has to be above the lower one, and both inside the box of the grid";
             return Err(region.fail_here(message));
         }
         Ok(Aabb { min, max })
@@ -163,7 +167,9 @@ impl Factory<'_> {
             _ => (LatticeKind::SimpleCubic, false),
         };
         if plane != (self.context.dim == 2) {
-            return Err(t.fail("kind", "square and hexagonal are for plane scenes, the others for scenes in space"));
+            return Err(
+                t.fail("kind", "square and hexagonal are for plane scenes, the others for scenes in space")
+            );
         }
         let distance = t.number("distance").unwrap_or(1.0);
         let lattice = CrystalLattice::new(kind, distance).map_err(|e| t.fail("distance", e))?;
@@ -174,12 +180,17 @@ impl Factory<'_> {
         let mut points = lattice.in_box(&self.region()?, margin).map_err(|e| t.fail_here(e))?;
         if let Some(number) = t.whole("number") {
             if number > points.len() {
-                let message = format!("{number} bodies, of which {} fit into the region; give fewer, or a smaller distance", points.len());
+                let message = format!(
+                    "{number} bodies, of which {} fit into the region; give fewer, or a smaller distance",
+                    points.len()
+                );
                 return Err(t.fail("number", message));
             }
             // From below, along the last axis.
             let up = self.context.dim - 1;
-            points.sort_by(|a, b| a[up].total_cmp(&b[up]).then(a[0].total_cmp(&b[0])).then(a[1].total_cmp(&b[1])));
+            points.sort_by(|a, b| {
+                a[up].total_cmp(&b[up]).then(a[0].total_cmp(&b[0])).then(a[1].total_cmp(&b[1]))
+            });
             points.truncate(number);
         }
         if points.is_empty() {
@@ -190,7 +201,10 @@ impl Factory<'_> {
         }
         let shapes = self.shapes(&factors.sample(points.len(), self.seed()))?;
         let turns = self.orientations().of(self.seed());
-        let poses = points.into_iter().zip(turns).map(|(position, orientation)| (Pose { position, orientation }, None));
+        let poses = points
+            .into_iter()
+            .zip(turns)
+            .map(|(position, orientation)| (Pose { position, orientation }, None));
         Ok((shapes, poses.collect()))
     }
 
@@ -207,7 +221,9 @@ impl Factory<'_> {
                     .until(fraction * region.volume(), |factor| volume * factor.powi(dim), self.seed())
                     .map_err(|e| t.fail("fraction", e))?
             }
-            (Some(_), Some(_)) => return Err(t.fail("fraction", "`number` is given already; leave out one of the two")),
+            (Some(_), Some(_)) => {
+                return Err(t.fail("fraction", "`number` is given already; leave out one of the two"));
+            }
             (None, None) => return Err(t.fail_here("how many? Give `number` or `fraction`")),
         };
         if factors.is_empty() {
@@ -262,7 +278,10 @@ impl Factory<'_> {
             seed: self.seed(),
             orientations: self.orientations(),
             material: self.material,
-            twist: Twist { linear: t.vector_of("velocity", self.context.dim)?.unwrap_or_default(), ..Twist::default() },
+            twist: Twist {
+                linear: t.vector_of("velocity", self.context.dim)?.unwrap_or_default(),
+                ..Twist::default()
+            },
             shapes: self.shapes(&scale.sample(number, self.seed()))?,
         })
     }

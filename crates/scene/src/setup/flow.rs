@@ -30,11 +30,15 @@ pub(super) fn fluid(root: &Reader<'_>) -> Result<Fluid, Problem> {
     let viscosity = match (t.number("nu"), t.number("mu")) {
         (Some(nu), None) => nu,
         (None, Some(mu)) => mu / density,
-        (None, None) => return Err(t.fail_here("the viscosity is missing: give `nu` in m²/s or `mu` in Pa s")),
+        (None, None) => {
+            return Err(t.fail_here("the viscosity is missing: give `nu` in m²/s or `mu` in Pa s"));
+        }
         (Some(_), Some(_)) => return Err(t.fail("mu", "`nu` is given already; leave out one of the two")),
     };
     if !viscosity.is_finite() {
-        return Err(t.fail("mu", format!("{viscosity} m²/s follows for the kinematic viscosity; give a finite one")));
+        return Err(
+            t.fail("mu", format!("{viscosity} m²/s follows for the kinematic viscosity; give a finite one"))
+        );
     }
     Ok(Fluid { density, viscosity })
 }

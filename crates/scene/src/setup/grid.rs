@@ -15,16 +15,21 @@ pub(super) fn read(root: &Reader<'_>, folder: &Path) -> Result<Vec<Axis>, Proble
     let axes = match (grid.wholes("cells"), grid.numbers("size")) {
         (Some(cells), Some(size)) => {
             if let Some(name) = names.iter().find(|name| single(name)) {
-                return Err(grid.fail(name, "give either `cells` and `size` or every axis by itself, not both"));
+                return Err(
+                    grid.fail(name, "give either `cells` and `size` or every axis by itself, not both")
+                );
             }
             if size.len() != cells.len() {
-                let message = format!("{} lengths for {} numbers of cells; give as many", size.len(), cells.len());
+                let message =
+                    format!("{} lengths for {} numbers of cells; give as many", size.len(), cells.len());
                 return Err(grid.fail("size", message));
             }
             grid.has_dim("origin", cells.len())?;
             let origin = grid.numbers("origin").unwrap_or(vec![0.0; cells.len()]);
             let axis = |a: usize| Axis::uniform(cells[a], origin[a], origin[a] + size[a]);
-            (0..cells.len()).map(|a| axis(a).map_err(|e| grid.fail("size", e))).collect::<Result<Vec<_>, _>>()?
+            (0..cells.len())
+                .map(|a| axis(a).map_err(|e| grid.fail("size", e)))
+                .collect::<Result<Vec<_>, _>>()?
         }
         (None, None) => {
             if !(grid.has("x") && grid.has("y")) {
@@ -34,12 +39,18 @@ pub(super) fn read(root: &Reader<'_>, folder: &Path) -> Result<Vec<Axis>, Proble
             let given = names.iter().filter(|name| single(name));
             given.map(|name| axis(&grid, name, folder)).collect::<Result<Vec<_>, _>>()?
         }
-        (Some(_), None) => return Err(grid.fail("cells", "`cells` needs `size`, the edge lengths of the box")),
-        (None, Some(_)) => return Err(grid.fail("size", "`size` needs `cells`, their numbers along the axes")),
+        (Some(_), None) => {
+            return Err(grid.fail("cells", "`cells` needs `size`, the edge lengths of the box"));
+        }
+        (None, Some(_)) => {
+            return Err(grid.fail("size", "`size` needs `cells`, their numbers along the axes"));
+        }
     };
     let cells: f64 = axes.iter().map(|axis| axis.cells() as f64).product();
     if cells > MOST_CELLS {
-        return Err(grid.fail("cells", format!("{cells:.1e} cells; no memory holds more than {MOST_CELLS:.0e}")));
+        return Err(
+            grid.fail("cells", format!("{cells:.1e} cells; no memory holds more than {MOST_CELLS:.0e}"))
+        );
     }
     Ok(axes)
 }
@@ -72,7 +83,10 @@ fn axis(grid: &Reader<'_>, name: &str, folder: &Path) -> Result<Axis, Problem> {
                 return Err(t.fail("between", message));
             }
             if (to - from) / fine > 1e6 {
-                return Err(t.fail("fine", format!("{:.1e} such cells fit on the axis; give a larger width", (to - from) / fine)));
+                return Err(t.fail(
+                    "fine",
+                    format!("{:.1e} such cells fit on the axis; give a larger width", (to - from) / fine),
+                ));
             }
             gathered([from, to], [low, high], fine, t.number("growth").unwrap_or(1.05))
         }

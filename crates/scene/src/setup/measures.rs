@@ -75,9 +75,16 @@ pub(super) fn references(root: &Reader<'_>) -> Result<Vec<Reference>, Problem> {
         .map(|t| {
             let pointer = text(t, "pointer");
             if !pointer.starts_with('/') {
-                return Err(t.fail("pointer", "a JSON pointer begins with a slash: /forces/0/coefficients/mean/0"));
+                return Err(
+                    t.fail("pointer", "a JSON pointer begins with a slash: /forces/0/coefficients/mean/0")
+                );
             }
-            Ok(Reference { name: text(t, "name"), pointer, value: t.number("value").unwrap_or(0.0), source: text(t, "source") })
+            Ok(Reference {
+                name: text(t, "name"),
+                pointer,
+                value: t.number("value").unwrap_or(0.0),
+                source: text(t, "source"),
+            })
         })
         .collect()
 }
@@ -127,12 +134,20 @@ fn images(t: &Reader<'_>, axes: &[Axis], snapshots: usize) -> Result<Images, Pro
             let at = slice.number("at").unwrap_or(middle(normal));
             if axes[normal].locate(at).is_none() {
                 let (lower, upper) = (axes[normal].lower(), axes[normal].upper());
-                return Err(slice.fail("at", format!("{at} m is outside the box, which reaches from {lower} to {upper} m")));
+                return Err(slice.fail(
+                    "at",
+                    format!("{at} m is outside the box, which reaches from {lower} to {upper} m"),
+                ));
             }
             (normal, at)
         }
     };
-    Ok(Images { every: t.whole("image_every").unwrap_or((snapshots / PICTURES).max(1)), quantity, limits, slice })
+    Ok(Images {
+        every: t.whole("image_every").unwrap_or((snapshots / PICTURES).max(1)),
+        quantity,
+        limits,
+        slice,
+    })
 }
 
 pub(super) fn probes(
@@ -144,7 +159,9 @@ pub(super) fn probes(
     let mut out: Vec<ProbeSetup> = Vec::new();
     for t in root.tables("probes") {
         let name = t.text("name").unwrap_or_default().to_owned();
-        let good = !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || "-_. ".contains(c)) && !name.starts_with('.');
+        let good = !name.is_empty()
+            && name.chars().all(|c| c.is_alphanumeric() || "-_. ".contains(c))
+            && !name.starts_with('.');
         if !good {
             return Err(t.fail("name", "this becomes the name of a file; use letters, digits, -, _ and ."));
         }
@@ -154,13 +171,18 @@ pub(super) fn probes(
         let mut points = Vec::new();
         for row in t.rows("points") {
             if row.len() != context.dim {
-                return Err(t.fail("points", format!("{row:?} is no point of this scene; give {} coordinates", context.dim)));
+                return Err(t.fail(
+                    "points",
+                    format!("{row:?} is no point of this scene; give {} coordinates", context.dim),
+                ));
             }
             for (a, &x) in row.iter().enumerate() {
                 let periodic = matches!(sides[a][0], Side::Periodic);
                 if !periodic && axes[a].locate(x).is_none() {
                     let (lower, upper) = (axes[a].lower(), axes[a].upper());
-                    let message = format!("{row:?} is outside the box, which reaches from {lower} to {upper} m along that axis");
+                    let message = format!(
+                        "{row:?} is outside the box, which reaches from {lower} to {upper} m along that axis"
+                    );
                     return Err(t.fail("points", message));
                 }
             }

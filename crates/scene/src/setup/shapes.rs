@@ -18,7 +18,12 @@ pub(super) fn recipe<'a>(body: &'a Reader<'a>, key: &'static str, context: &'a C
 }
 
 /// The shape in `key`, enlarged by `factor`.
-pub(super) fn shape(body: &Reader<'_>, key: &str, context: &Context<'_>, factor: f64) -> Result<Arc<dyn Shape>, Problem> {
+pub(super) fn shape(
+    body: &Reader<'_>,
+    key: &str,
+    context: &Context<'_>,
+    factor: f64,
+) -> Result<Arc<dyn Shape>, Problem> {
     let Some((kind, t)) = body.choice(key, "type") else {
         return Err(body.fail(key, "the shape is missing"));
     };
@@ -35,9 +40,13 @@ pub(super) fn shape(body: &Reader<'_>, key: &str, context: &Context<'_>, factor:
         }
     }
     match kind {
-        "disc" if context.dim == 3 => Err(fail(&"a disc is for plane scenes; take a sphere or a cylinder in space")),
+        "disc" if context.dim == 3 => {
+            Err(fail(&"a disc is for plane scenes; take a sphere or a cylinder in space"))
+        }
         "disc" => arc(Disc::new(length("radius")), fail),
-        "sphere" if context.dim == 2 => Err(fail(&"a sphere is for scenes in space; take a disc in the plane")),
+        "sphere" if context.dim == 2 => {
+            Err(fail(&"a sphere is for scenes in space; take a disc in the plane"))
+        }
         "sphere" => arc(Sphere::new(length("radius")), fail),
         "ellipsoid" => arc(Ellipsoid::new(triple("semi_axes")), fail),
         "capsule" => arc(Capsule::new(length("radius"), length("length")), fail),
@@ -63,7 +72,10 @@ pub(super) fn shape(body: &Reader<'_>, key: &str, context: &Context<'_>, factor:
                 return arc(ConvexPolyhedron::from_points(&vertices), fail);
             }
             if let Some(v) = faces.iter().flatten().find(|&&v| v as usize >= vertices.len()) {
-                return Err(t.fail("faces", format!("there is no vertex {v}; there are {}, from 0 on", vertices.len())));
+                return Err(t.fail(
+                    "faces",
+                    format!("there is no vertex {v}; there are {}, from 0 on", vertices.len()),
+                ));
             }
             arc(ConvexPolyhedron::new(&vertices, &faces), fail)
         }

@@ -10,7 +10,8 @@ pub(super) fn read(root: &Reader<'_>, context: &Context<'_>) -> Result<Vec<[Side
     if context.dim == 2
         && let Some(key) = ["z", "z_min", "z_max"].into_iter().find(|key| sides.has(key))
     {
-        return Err(sides.fail(key, "a plane scene has no sides along z; give the grid a third axis, or leave this out"));
+        return Err(sides
+            .fail(key, "a plane scene has no sides along z; give the grid a third axis, or leave this out"));
     }
     let pair = |name: &str| -> Result<[Side; 2], Problem> {
         let mut pair = [const { None }; 2];
@@ -18,12 +19,17 @@ pub(super) fn read(root: &Reader<'_>, context: &Context<'_>) -> Result<Vec<[Side
             let own = format!("{name}_{end}");
             *slot = match (sides.has(&own), sides.has(name)) {
                 (true, true) => {
-                    return Err(sides.fail(&own, format!("`{name}` stands for both sides already; leave out one of the two")));
+                    return Err(sides.fail(
+                        &own,
+                        format!("`{name}` stands for both sides already; leave out one of the two"),
+                    ));
                 }
                 (true, false) => Some(side(&sides, &own, context)?),
                 (false, true) => Some(side(&sides, name, context)?),
                 (false, false) => {
-                    let message = format!("what happens at the side {own}? Give `{own}`, or `{name}` for both sides of the axis");
+                    let message = format!(
+                        "what happens at the side {own}? Give `{own}`, or `{name}` for both sides of the axis"
+                    );
                     return Err(sides.fail_here(message));
                 }
             };
@@ -48,8 +54,13 @@ fn side(sides: &Reader<'_>, key: &str, context: &Context<'_>) -> Result<Side, Pr
             t.tables("list")
                 .iter()
                 .map(|patch| {
-                    let corner = |key: &str| patch.vector_of(key, context.dim).map(|v| v.unwrap_or_default().into());
-                    Ok(Patch { lower: corner("lower")?, upper: corner("upper")?, side: side(patch, "side", context)? })
+                    let corner =
+                        |key: &str| patch.vector_of(key, context.dim).map(|v| v.unwrap_or_default().into());
+                    Ok(Patch {
+                        lower: corner("lower")?,
+                        upper: corner("upper")?,
+                        side: side(patch, "side", context)?,
+                    })
                 })
                 .collect::<Result<_, _>>()?,
         ),

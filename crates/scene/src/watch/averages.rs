@@ -61,7 +61,11 @@ impl AveragesWatch {
         }
         let mut file = BufWriter::new(File::create(self.folder.join("profile.csv"))?);
         let names = if self.dim == 2 { "u,v,p,uu,vv,uv" } else { "u,v,w,p,uu,vv,ww,uv,uw,vw" };
-        writeln!(file, "# means over {:.6e} s and the other axes: place m; u m/s; p Pa; uu … Reynolds stresses m²/s²", self.seconds)?;
+        writeln!(
+            file,
+            "# means over {:.6e} s and the other axes: place m; u m/s; p Pa; uu … Reynolds stresses m²/s²",
+            self.seconds
+        )?;
         writeln!(file, "{},{names}", ["x", "y", "z"][axis])?;
         for (i, row) in rows.iter_mut().enumerate() {
             let volume = row[means.len()];
@@ -129,7 +133,9 @@ impl Watch for AveragesWatch {
             ("velocity", means[..self.dim].iter().map(Vec::as_slice).collect()),
             ("pressure", vec![&means[self.dim]]),
         ];
-        fields.extend(names.into_iter().zip(&means[self.dim + 1..]).map(|(name, mean)| (name, vec![mean.as_slice()])));
+        fields.extend(
+            names.into_iter().zip(&means[self.dim + 1..]).map(|(name, mean)| (name, vec![mean.as_slice()])),
+        );
         let write = || -> io::Result<()> {
             let mut file = BufWriter::new(File::create(&path)?);
             view.write_named(&fields, &mut file).map_err(io::Error::other)?;

@@ -21,7 +21,11 @@ pub(crate) struct FieldsWatch {
 const LIST_EVERY: Duration = Duration::from_secs(1);
 
 impl FieldsWatch {
-    pub(crate) fn new(folder: &Path, [fields, bodies]: [bool; 2], resume: Option<f64>) -> Result<Self, CouplingError> {
+    pub(crate) fn new(
+        folder: &Path,
+        [fields, bodies]: [bool; 2],
+        resume: Option<f64>,
+    ) -> Result<Self, CouplingError> {
         let series = |name: &str, wanted: bool| -> Result<Option<TimeSeries>, CouplingError> {
             if !wanted {
                 return Ok(None);
@@ -30,18 +34,25 @@ impl FieldsWatch {
             std::fs::create_dir_all(&sub).map_err(output("making", &sub))?;
             match resume {
                 // Nothing but the start was shown before the first step, and that is shown again.
-                Some(time) if time > 0.0 => {
-                    TimeSeries::resume(&list, time).map(Some).map_err(|e| output("going on with", &list)(io::Error::other(e)))
-                }
+                Some(time) if time > 0.0 => TimeSeries::resume(&list, time)
+                    .map(Some)
+                    .map_err(|e| output("going on with", &list)(io::Error::other(e))),
                 _ => Ok(Some(TimeSeries::new(list))),
             }
         };
-        Ok(Self { fields: series("fields", fields)?, bodies: series("bodies", bodies)?, folder: folder.into(), listed: None })
+        Ok(Self {
+            fields: series("fields", fields)?,
+            bodies: series("bodies", bodies)?,
+            folder: folder.into(),
+            listed: None,
+        })
     }
 
     fn list(&mut self) -> Result<(), CouplingError> {
         for series in [&self.fields, &self.bodies].into_iter().flatten() {
-            series.save().map_err(|e| output("listing the snapshots in", series.path())(io::Error::other(e)))?;
+            series
+                .save()
+                .map_err(|e| output("listing the snapshots in", series.path())(io::Error::other(e)))?;
         }
         self.listed = Some(Instant::now());
         Ok(())
@@ -59,7 +70,13 @@ impl Watch for FieldsWatch {
     fn name(&self) -> &'static str {
         "fields"
     }
-    fn snapshot(&mut self, view: &mut dyn View, lambda: &[f64], index: usize, info: &StepInfo) -> Result<(), CouplingError> {
+    fn snapshot(
+        &mut self,
+        view: &mut dyn View,
+        lambda: &[f64],
+        index: usize,
+        info: &StepInfo,
+    ) -> Result<(), CouplingError> {
         if let Some(series) = &mut self.fields {
             let name = format!("fields/{index:05}.{}", view.extension());
             let path = self.folder.join(&name);

@@ -1,7 +1,7 @@
 //! Loads on bodies, with means, amplitudes and frequencies.
+use super::Watch;
 use super::table::{Pace, Table};
 use super::trajectories::called;
-use super::Watch;
 use crate::setup::Forces;
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};

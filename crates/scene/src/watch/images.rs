@@ -21,7 +21,14 @@ impl ImagesWatch {
     pub(crate) fn new(folder: &Path, title: &str, images: Images) -> Result<Self, CouplingError> {
         let folder = folder.join("images");
         std::fs::create_dir_all(&folder).map_err(output("making", &folder))?;
-        Ok(Self { folder, title: title.into(), images, fields: Default::default(), values: vec![], solid: vec![] })
+        Ok(Self {
+            folder,
+            title: title.into(),
+            images,
+            fields: Default::default(),
+            values: vec![],
+            solid: vec![],
+        })
     }
 
     /// Numbers of the slice's cells, across fastest.
@@ -34,7 +41,8 @@ impl ImagesWatch {
         };
         let layer = if normal < view.dim() { view.axis(normal).locate(at).unwrap_or(0) } else { 0 };
         let stride = [1, n[0], n[0] * n[1]];
-        let cells = (0..n[b]).flat_map(|j| (0..n[a]).map(move |i| i * stride[a] + j * stride[b] + layer * stride[normal]));
+        let cells = (0..n[b])
+            .flat_map(|j| (0..n[a]).map(move |i| i * stride[a] + j * stride[b] + layer * stride[normal]));
         ([a, b], cells.collect())
     }
 
@@ -73,7 +81,13 @@ impl Watch for ImagesWatch {
     fn name(&self) -> &'static str {
         "images"
     }
-    fn snapshot(&mut self, view: &mut dyn View, lambda: &[f64], index: usize, info: &StepInfo) -> Result<(), CouplingError> {
+    fn snapshot(
+        &mut self,
+        view: &mut dyn View,
+        lambda: &[f64],
+        index: usize,
+        info: &StepInfo,
+    ) -> Result<(), CouplingError> {
         if !index.is_multiple_of(self.images.every) {
             return Ok(());
         }
@@ -111,9 +125,11 @@ impl Watch for ImagesWatch {
             Quantity::Vorticity => "vorticity in 1/s",
         };
         let names = ["x", "y", "z"];
-        let section = Section { across: view.axis(a).faces(), up: view.axis(b).faces(), names: [names[a], names[b]] };
+        let section =
+            Section { across: view.axis(a).faces(), up: view.axis(b).faces(), names: [names[a], names[b]] };
         let solids = view.bodies().n_bodies() > 0;
-        let layer = Layer { values: &self.values, solid: solids.then_some(&self.solid), limits, label, signed };
+        let layer =
+            Layer { values: &self.values, solid: solids.then_some(&self.solid), limits, label, signed };
         let path = self.folder.join(format!("{index:05}.png"));
         let title = format!("{}   t = {:.4} s", self.title, info.time);
         section.draw(&path, &layer, &title).map_err(output("drawing", &path))

@@ -17,7 +17,12 @@ pub(crate) struct ProbesWatch {
 }
 
 impl ProbesWatch {
-    pub(crate) fn new(folder: &Path, setups: &[ProbeSetup], dim: usize, resume: Option<f64>) -> Result<Self, CouplingError> {
+    pub(crate) fn new(
+        folder: &Path,
+        setups: &[ProbeSetup],
+        dim: usize,
+        resume: Option<f64>,
+    ) -> Result<Self, CouplingError> {
         let folder = folder.join("probes");
         std::fs::create_dir_all(&folder).map_err(output("making", &folder))?;
         let mut probes = Vec::new();

@@ -18,7 +18,11 @@ impl Table {
             None => String::new(),
             Some(time) => {
                 let text = std::fs::read_to_string(path).map_err(output("reading", path))?;
-                let past = |line: &str| line.split(',').next().is_some_and(|t| t.parse::<f64>().is_ok_and(|t| t > time * (1.0 + 1e-9)));
+                let past = |line: &str| {
+                    line.split(',')
+                        .next()
+                        .is_some_and(|t| t.parse::<f64>().is_ok_and(|t| t > time * (1.0 + 1e-9)))
+                };
                 // A row that was cut off has no end of line.
                 let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
                 whole.lines().filter(|line| !past(line)).flat_map(|line| [line, "\n"]).collect()
@@ -34,7 +38,12 @@ impl Table {
     }
 
     /// One row.
-    pub(crate) fn row(&mut self, time: f64, label: Option<&str>, values: impl IntoIterator<Item = f64>) -> Result<(), CouplingError> {
+    pub(crate) fn row(
+        &mut self,
+        time: f64,
+        label: Option<&str>,
+        values: impl IntoIterator<Item = f64>,
+    ) -> Result<(), CouplingError> {
         let write = || {
             write!(self.file, "{time:.9e}")?;
             if let Some(label) = label {
@@ -66,7 +75,8 @@ impl Pace {
     /// Has a multiple of the interval been reached in the step that ended at `time`?
     pub(crate) fn due(self, time: f64, dt: f64) -> bool {
         let slack = 1e-9 * dt;
-        self.every.is_none_or(|every| ((time + slack) / every).floor() > ((time - dt + slack) / every).floor())
+        self.every
+            .is_none_or(|every| ((time + slack) / every).floor() > ((time - dt + slack) / every).floor())
     }
 }
 

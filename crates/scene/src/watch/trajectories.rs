@@ -1,6 +1,6 @@
 //! Paths of bodies.
-use super::table::Table;
 use super::Watch;
+use super::table::Table;
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
 use interfaces::{BodyId, Checkpoint, RestartError};
@@ -62,7 +62,13 @@ impl Watch for TrajectoriesWatch {
         let row = |(name, [speed, time]): (&String, &[f64; 2])| json!({ "body": name, "largest_speed": speed, "at": time });
         Some(self.names.iter().zip(&self.fastest).map(row).collect())
     }
-    fn snapshot(&mut self, view: &mut dyn View, _: &[f64], _: usize, info: &StepInfo) -> Result<(), CouplingError> {
+    fn snapshot(
+        &mut self,
+        view: &mut dyn View,
+        _: &[f64],
+        _: usize,
+        info: &StepInfo,
+    ) -> Result<(), CouplingError> {
         let dt = if info.dt > 0.0 { info.dt } else { 1.0 };
         for b in (0..view.bodies().n_bodies()).map(BodyId) {
             let (pose, twist) = (view.bodies().pose(b), view.bodies().twist(b));

@@ -51,7 +51,8 @@ impl Section<'_> {
     /// # Errors
     /// What writing the file answers.
     pub fn draw(&self, path: &Path, layer: &Layer<'_>, title: &str) -> io::Result<()> {
-        let ends = |faces: &[f64]| (faces.first().copied().unwrap_or(0.0), faces.last().copied().unwrap_or(1.0));
+        let ends =
+            |faces: &[f64]| (faces.first().copied().unwrap_or(0.0), faces.last().copied().unwrap_or(1.0));
         let (x, y) = (ends(self.across), ends(self.up));
         let (width, height) = (x.1 - x.0, y.1 - y.0);
         let scale = (MOST[0] / width).min(MOST[1] / height);
@@ -60,11 +61,8 @@ impl Section<'_> {
         let plot = Rect::new(96.0, 56.0, even(scale * width), even(scale * height));
         let mut canvas = Canvas::new(plot.right() as usize + 140, plot.bottom() as usize + 66);
         let (name, per_metre) = unit(width.max(height));
-        let axes = Axes {
-            rect: plot,
-            x: (per_metre * x.0, per_metre * x.1),
-            y: (per_metre * y.0, per_metre * y.1),
-        };
+        let axes =
+            Axes { rect: plot, x: (per_metre * x.0, per_metre * x.1), y: (per_metre * y.0, per_metre * y.1) };
         let map = if layer.signed { Map::signed() } else { Map::viridis() };
         self.paint(&mut canvas, plot, layer, &map);
         axes.bottom(&mut canvas, LOOK, &format!("{} in {name}", self.names[0]));

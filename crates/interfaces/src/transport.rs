@@ -1,4 +1,5 @@
 //! What a closure (a turbulence model) may ask of a flow solver, and what the solver gets from it.
+use crate::WallRow;
 use std::fmt;
 
 /// One convection–diffusion–reaction equation for values φ at the cells, dense, x fastest:
@@ -75,12 +76,31 @@ pub trait Transport {
 pub trait Closure: Send {
     /// ν_t of every cell \[m²/s\]; `None` if there is none.
     fn eddy_viscosity(&self) -> Option<&[f64]>;
-    /// Brings the model up to date with the flow, whose kinematic viscosity is `nu` \[m²/s\]; `dt` \[s\] is the step, or
-    /// `None` for a steady iteration.
+    /// Turbulence kinetic energy of every cell \[m²/s²\], for the rows of the walls; `None` if there is none.
+    fn kinetic_energy(&self) -> Option<&[f64]> {
+        None
+    }
+    /// ν_t on the wall of every row that was last given \[m²/s\], so that the wall's friction is τ_w/ρ = (ν + ν_t) u_t/y. With none
+    /// the fluid sticks to walls as it does without a closure.
+    fn wall_viscosity(&self) -> &[f64] {
+        &[]
+    }
+    /// How far the model's own equations were from being met by what the last call found: their largest relative residual.
+    fn residual(&self) -> f64 {
+        0.0
+    }
+    /// Brings the model up to date with the flow, whose kinematic viscosity is `nu` \[m²/s\] and whose walls are `walls`; `dt` \[s\]
+    /// is the step, or `None` for a steady iteration. A cell beside several walls has several rows.
     ///
     /// # Errors
     /// Those of [`Transport`].
-    fn correct(&mut self, flow: &mut dyn Transport, nu: f64, dt: Option<f64>) -> Result<(), SolveError>;
+    fn correct(
+        &mut self,
+        flow: &mut dyn Transport,
+        walls: &[WallRow],
+        nu: f64,
+        dt: Option<f64>,
+    ) -> Result<(), SolveError>;
 }
 
 impl Closure for () {
@@ -89,7 +109,13 @@ impl Closure for () {
         None
     }
     #[inline(always)]
-    fn correct(&mut self, _: &mut dyn Transport, _: f64, _: Option<f64>) -> Result<(), SolveError> {
+    fn correct(
+        &mut self,
+        _: &mut dyn Transport,
+        _: &[WallRow],
+        _: f64,
+        _: Option<f64>,
+    ) -> Result<(), SolveError> {
         Ok(())
     }
 }

@@ -3,7 +3,10 @@ mod kernels;
 mod sides;
 #[cfg(test)]
 mod tests;
+mod wall_faces;
 mod walls;
+
+pub(crate) use wall_faces::WallFaces;
 
 use crate::kernels::copy_dense;
 use crate::linear::{
@@ -124,6 +127,19 @@ impl<const D: usize> CellTransport<D> {
     pub fn on<'a>(&'a mut self, velocity: &'a Velocity<D>) -> Result<FlowTransport<'a, D>, FlowError> {
         velocity.components[0].check(self.ops.grid())?;
         Ok(FlowTransport { cells: self, velocity })
+    }
+
+    pub(crate) fn grid(&self) -> &CartesianGrid<D> {
+        self.ops.grid()
+    }
+    /// `field` = `values` and zero gradient across the sides.
+    pub(crate) fn spread(&self, values: &[f64], field: &mut Field<D>) {
+        copy_dense(self.ops.grid(), values, field);
+        self.sides.fill(field, None, None);
+    }
+    /// Fills the ghosts of periodic axes.
+    pub(crate) fn wrap(&self, field: &mut Field<D>) {
+        self.sides.wrap(field.data_mut());
     }
 
     /// The distance of every cell from the nearest wall, to lower where bodies are nearer than the walls of the box.

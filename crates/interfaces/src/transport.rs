@@ -60,6 +60,11 @@ pub trait Transport {
     /// # Errors
     /// [`SolveError::Length`].
     fn strain_rate(&mut self, out: &mut [f64]) -> Result<(), SolveError>;
+    /// ∂u_a/∂x_b \[1/s\] at the cells' centres in `out[cell][a][b]`; zero along axes that the flow does not have.
+    ///
+    /// # Errors
+    /// [`SolveError::Length`].
+    fn velocity_gradient(&mut self, out: &mut [[[f64; 3]; 3]]) -> Result<(), SolveError>;
     /// ∇a·∇b at the cells' centres, one-sided beside the sides of the flow.
     ///
     /// # Errors

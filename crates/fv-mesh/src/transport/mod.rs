@@ -11,7 +11,7 @@ pub(crate) use wall_faces::WallFaces;
 use crate::kernels::copy_dense;
 use crate::linear::{
     BiCgStabParams, BiCgStabScratch, Dilu, GaussSeidelParams, GaussSeidelScratch, GaussSeidelSweep,
-    LinearError, StencilMatrix, Sweep, SweepOrder, bicgstab, gauss_seidel,
+    LinearError, LinearOperator, StencilMatrix, Sweep, SweepOrder, bicgstab, gauss_seidel,
 };
 use crate::operators::{Operators, fill_dense};
 use crate::{CartesianGrid, Convection, Field, FlowError, Sides, Velocity};
@@ -23,14 +23,25 @@ use sides::CellSides;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransportParams {
     /// Convection scheme. Anything but [`Convection::Upwind`] enters by deferred correction (Khosla & Rubin 1974): the
-    /// matrix is upwind's, the difference is taken from the φ given, so that repeated solves converge to the scheme.
+    /// matrix is upwind's, the difference is taken from the φ given, so that repeated solves converge to the scheme. Where
+    /// the difference d is negative and φ is not, it enters as the sink −d/φ (Patankar 1980), so that what is positive stays so.
     pub scheme: Convection,
     /// Method of the linear solver.
     pub method: TransportMethod,
     /// Largest ‖b − Aφ‖ over the larger of ‖b‖ and ‖a_P φ‖, taken over the cells that are not pinned.
     pub tolerance: f64,
+    /// The solver may stop where the residual is this part of the residual of the φ given, too; 0 for never. A steady iteration
+    /// needs no more than 0.1.
+    pub reduction: f64,
     /// Iterations allowed.
     pub max_iterations: usize,
+}
+
+impl TransportParams {
+    /// For steady iterations: convection of second order ([`Convection::Limited`]), residuals brought down to a tenth.
+    pub fn steady() -> Self {
+        Self { scheme: Convection::Limited, reduction: 0.1, ..Self::default() }
+    }
 }
 
 impl Default for TransportParams {
@@ -39,6 +50,7 @@ impl Default for TransportParams {
             scheme: Convection::Upwind,
             method: TransportMethod::BiCgStab,
             tolerance: 1e-9,
+            reduction: 0.0,
             max_iterations: 1000,
         }
     }
@@ -64,7 +76,7 @@ pub enum TransportMethod {
 /// over faces of area A between centres at distance d, Γ_f interpolated linearly. This is ∇·(uφ) − φ∇·u for convection, so
 /// that the matrix is an M-matrix whatever ∇·u is: with upwind, and sources and boundary values that are not negative,
 /// φ is not negative either. With [`Convection::Upwind`] of first order in space where the flow carries, with the other
-/// schemes of second order (their deferred part may break positivity). Solves allocate nothing.
+/// schemes of second order. Solves allocate nothing.
 #[derive(Clone, Debug)]
 pub struct CellTransport<const D: usize> {
     ops: Operators<D>,
@@ -231,8 +243,13 @@ impl<const D: usize> CellTransport<D> {
             sides.fill(carried, Some(e.inlet), e.wall);
             ops.convection(velocity, carried, params.scheme, high)?;
             ops.convection(velocity, carried, Convection::Upwind, low)?;
-            for ((b, v), (high, low)) in b.iter_mut().zip(&*volume).zip(high.values().zip(low.values())) {
-                *b += v * (high - low);
+            for (i, (high, low)) in high.values().zip(low.values()).enumerate() {
+                let rest = volume[i] * (high - low);
+                if rest < 0.0 && phi[i] > 0.0 {
+                    centre[i] -= rest / phi[i];
+                } else {
+                    b[i] += rest;
+                }
             }
         }
         Ok(())
@@ -254,8 +271,13 @@ impl<const D: usize> CellTransport<D> {
 
     fn iterate(&mut self, phi: &mut [f64]) -> Result<SolveInfo, LinearError> {
         let [all, scale] = self.scales(phi);
-        let TransportParams { method, tolerance, max_iterations, .. } = self.params;
-        let absolute = tolerance * scale;
+        let TransportParams { method, tolerance, reduction, max_iterations, .. } = self.params;
+        let mut absolute = tolerance * scale;
+        if reduction > 0.0 {
+            let work = &mut self.fields[2].data_mut()[..phi.len()];
+            self.matrix.residual(&self.b, phi, work);
+            absolute = absolute.max(reduction * work.iter().map(|r| r * r).sum::<f64>().sqrt());
+        }
         let Self { matrix, dilu, b, bicgstab: scratch, gauss_seidel: sweeps, .. } = self;
         // The solvers tell residuals relative to the whole b.
         let ratio = if scale > 0.0 { all / scale } else { 0.0 };
@@ -352,6 +374,17 @@ impl<const D: usize> Transport for FlowTransport<'_, D> {
         check_length("the strain rate", self.n_cells(), out.len())?;
         let ops = &self.cells.ops;
         fill_dense(ops.grid(), &ops.strain_kernel(&self.velocity.components), out);
+        Ok(())
+    }
+    fn velocity_gradient(&mut self, out: &mut [[[f64; 3]; 3]]) -> Result<(), SolveError> {
+        check_length("the velocity gradient", self.n_cells(), out.len())?;
+        out.fill([[0.0; 3]; 3]);
+        let CellTransport { ops, fields: [field, ..], .. } = &mut *self.cells;
+        for (a, b) in (0..D).flat_map(|a| (0..D).map(move |b| (a, b))) {
+            let made = ops.velocity_gradient(self.velocity, [a, b], field);
+            made.map_err(|e| SolveError::Solver(e.to_string()))?;
+            out.iter_mut().zip(field.values()).for_each(|(out, slope)| out[a][b] = slope);
+        }
         Ok(())
     }
     fn dot_gradients(&mut self, a: &[f64], b: &[f64], out: &mut [f64]) -> Result<(), SolveError> {

@@ -22,6 +22,8 @@ struct WallFace {
     /// Storage index of the cell before it, and of the ghost behind it.
     inside: usize,
     ghost: usize,
+    /// Storage index of the next cell, and its part in the velocity on the face between; `None` if there is none.
+    next: Option<(usize, f64)>,
     /// Velocity of the wall \[m/s\].
     velocity: [f64; 3],
 }
@@ -53,10 +55,17 @@ impl<const D: usize> WallFaces<D> {
                     let Some(Side::Wall(velocity)) = part else { continue };
                     let cell = lines.end_cell(grid, l, upper == 1);
                     let (inside, ghost) = lines.ends(o, upper);
-                    let y = 0.5 * grid.axis(axis).width(if upper == 1 { lines.cells - 1 } else { 0 });
+                    let (first, second) =
+                        if upper == 1 { (lines.cells - 1, lines.cells.wrapping_sub(2)) } else { (0, 1) };
+                    let width = |i| grid.axis(axis).width(i);
+                    let (y, share) = (0.5 * width(first), width(first));
+                    let next = (lines.cells > 1).then(|| {
+                        let place = if upper == 1 { inside - lines.step } else { inside + lines.step };
+                        (place, share / (share + width(second)))
+                    });
                     let area = lines.face_area(metrics, l);
                     new.rows.push(WallRow { cell, y, area, ..WallRow::default() });
-                    new.faces.push(WallFace { axis, inside, ghost, velocity: *velocity });
+                    new.faces.push(WallFace { axis, inside, ghost, next, velocity: *velocity });
                     new.add_nodes(grid, metrics, axis, cell);
                 }
             }
@@ -93,13 +102,20 @@ impl<const D: usize> WallFaces<D> {
     pub(crate) fn fill(&mut self, velocity: &Velocity<D>, k: Option<&[f64]>, nu: f64) -> &[WallRow] {
         let u = velocity.components.each_ref().map(|u| u.data());
         for (row, face) in self.rows.iter_mut().zip(&self.faces) {
-            let mut along = Vector::zeros();
-            for c in (0..D).filter(|&c| c != face.axis) {
-                along[c] = 0.5 * (u[c][face.inside] + u[c][face.inside + self.stride[c]]) - face.velocity[c];
-            }
-            (row.u_t, row.nu) = (along.norm(), nu);
+            let along = |place: usize| {
+                let mut along = Vector::zeros();
+                for c in (0..D).filter(|&c| c != face.axis) {
+                    along[c] = 0.5 * (u[c][place] + u[c][place + self.stride[c]]) - face.velocity[c];
+                }
+                along
+            };
+            let here = along(face.inside);
+            (row.u_t, row.nu) = (here.norm(), nu);
+            row.shear = face
+                .next
+                .map(|(place, share)| (here * (1.0 - share) + along(place) * share).norm() / (2.0 * row.y));
             row.k = k.map_or(0.0, |k| k[row.cell]);
-            row.tangent = along.try_normalize(0.0).unwrap_or_default();
+            row.tangent = here.try_normalize(0.0).unwrap_or_default();
         }
         &self.rows
     }

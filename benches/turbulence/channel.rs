@@ -4,8 +4,8 @@ use example_support::cpu::Stopwatch;
 use example_support::picture::profiles::{Curve, Panel, draw};
 use example_support::turbulent_flows::{ChannelProfile, Drive, between_walls, developed_channel, numbers};
 use siltflow::flow::Axis;
-use siltflow::turb::{Inflow, Law, Realizable, Sst, StandardKEpsilon, WallFunctions, WallShear, Wilcox};
 use std::path::Path;
+use turb::{Inflow, Law, Realizable, Sst, StandardKEpsilon, WallFunctions, WallShear, Wilcox};
 
 macro_rules! simple_foam {
     ($model:literal) => {

@@ -8,8 +8,8 @@ use siltflow::flow::{
     TransportParams,
 };
 use siltflow::interfaces::Closure;
-use siltflow::turb::{Inflow, KOmegaSst, Sst};
 use std::path::Path;
+use turb::{Inflow, KOmegaSst, Sst};
 
 /// Cf of CFL3D on 545 × 385 points.
 const FINEST: &str = include_str!("../../tests/data/turbulence/flat_plate_sstv.csv");

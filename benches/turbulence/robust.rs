@@ -2,7 +2,7 @@
 use example_support::Outcome;
 use example_support::cpu::Stopwatch;
 use example_support::turbulent_flows::{duct, iterate};
-use siltflow::turb::{Inflow, Law, Realizable, Sst, StandardKEpsilon, Wilcox};
+use turb::{Inflow, Law, Realizable, Sst, StandardKEpsilon, Wilcox};
 
 /// Of the reference runs.
 fn inflow() -> Outcome<Inflow> {

@@ -3,7 +3,7 @@ use example_support::turbulent_flows::{
     ChannelProfile, Drive, between_walls, developed_channel, duct, iterate, numbers,
 };
 use siltflow::flow::Axis;
-use siltflow::turb::{Inflow, Law, Realizable, Sst, StandardKEpsilon, WallFunctions, Wilcox, YPlus};
+use turb::{Inflow, Law, Realizable, Sst, StandardKEpsilon, WallFunctions, Wilcox, YPlus};
 
 /// y, y+, u+, k+, ω+ and ν_t/ν of OpenFOAM's simpleFoam.
 fn reference(text: &str) -> Vec<[f64; 6]> {

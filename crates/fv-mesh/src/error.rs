@@ -67,7 +67,7 @@ pub enum FlowError {
     /// The velocity is no longer finite, or grew beyond what a step can carry.
     #[error(
         "the velocity diverged in step {step} (t = {time} s, dt = {dt} s, Courant number {courant:.3e}), first or most in cell \
-         {cell:?}; take a smaller time step"
+         {cell:?}; take a smaller time step, or smaller relaxation factors in steady iterations"
     )]
     Diverged {
         /// Step number.

@@ -12,6 +12,7 @@ use crate::kernels;
 use crate::linear::StencilMatrix;
 use crate::momentum_matrix::{self as momentum, Equation, Implicit, MomentumEquations};
 use crate::per_dimension::per_dimension;
+use crate::poisson::PoissonError;
 use crate::{CartesianGrid, Convection, EddyStress, Field, FlowError, Fluid, Modelled, Side};
 use interfaces::Closure;
 
@@ -216,7 +217,12 @@ impl<const D: usize> Simple<D> {
         if self.pinned.iter().any(|p| !p.is_empty()) {
             self.correction.skip_frozen();
         }
-        info.pressure_iterations = self.correction.solve(false)?.iterations;
+        info.pressure_iterations = match self.correction.solve(false) {
+            Ok(solved) => solved.iterations,
+            // Coefficients of a velocity that is far too large.
+            Err(PoissonError::NotConverged { iterations: 0, .. }) => return Err(self.state.diverged(0.0)),
+            Err(error) => return Err(error.into()),
+        };
         self.correction.correct(boundaries, velocity);
         let gain = self.params.pressure_relaxation * fluid.density;
         // The viscous part of what the divergence takes (Cahouet & Chabat 1988); in SIMPLE proper β has it.

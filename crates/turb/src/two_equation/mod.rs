@@ -86,10 +86,6 @@ struct Work {
 /// The least value of k \[m²/s²\] and of ω or ε.
 const FLOOR: f64 = 1e-30;
 
-/// ν_t grows by this factor at most in one steady iteration: where ε falls before k does, k²/ε would else be huge for a while, which
-/// the flow does not survive. What is steady does not grow, so the limit is not felt in the end.
-const GROWTH: f64 = 1.5;
-
 impl<L: Law> TwoEquation<L> {
     /// The model `law` on `cells` cells, all as `inflow`, which is also what enters.
     ///
@@ -389,11 +385,8 @@ impl<L: Law> Closure for TwoEquation<L> {
         self.prepare(flow, nu, dt)?;
         self.solves[0] = self.solve_scale(flow, nu, dt)?;
         self.solves[1] = self.solve_k(flow, nu, dt)?;
-        let growth = if dt.is_some() { f64::INFINITY } else { GROWTH };
         for (i, &d) in flow.wall_distance().iter().enumerate() {
-            let new = self.law.eddy_viscosity(&self.local(i, d, nu));
-            // Not below ν, so that it can leave zero.
-            self.eddy[i] = new.min(growth * self.eddy[i].max(nu));
+            self.eddy[i] = self.law.eddy_viscosity(&self.local(i, d, nu));
         }
         self.layer.refresh(walls, &self.k, nu);
         self.y_plus = self.layer.y_plus(walls, nu);

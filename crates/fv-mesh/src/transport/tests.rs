@@ -242,7 +242,8 @@ fn nothing_negative_from_nothing_negative() {
 fn relaxation_does_not_move_the_fix_point() {
     let (_, plain, _) = reacting(TransportMethod::BiCgStab, 1.0, &[]);
     let (_, relaxed, info) = reacting(TransportMethod::BiCgStab, 0.6, &[]);
-    assert!(info.initial_residual < 1e-9, "{info:?}");
+    // Cells that nothing reaches go on towards zero.
+    assert!(info.residual < 1e-9, "{info:?}");
     for (a, b) in plain.iter().zip(&relaxed) {
         assert!((a - b).abs() < 1e-8 * (1.0 + a.abs()), "{a} {b}");
     }

@@ -67,7 +67,7 @@ pub enum FlowError {
     /// The velocity is no longer finite, or grew beyond what a step can carry.
     #[error(
         "the velocity diverged in step {step} (t = {time} s, dt = {dt} s, Courant number {courant:.3e}), first or most in cell \
-         {cell:?}; take a smaller time step"
+         {cell:?}; take a smaller time step, or smaller relaxation factors in steady iterations"
     )]
     Diverged {
         /// Step number.
@@ -124,8 +124,8 @@ pub enum FlowError {
     },
     /// A steady solution was not reached.
     #[error(
-        "after {iterations} iterations the residuals are {momentum:.3e} (momentum) and {continuity:.3e} (continuity), above \
-         the tolerance {tolerance:.3e}; allow more iterations, relax more (a smaller factor), or compute the flow in time if \
+        "after {iterations} iterations the residuals are {momentum:.3e} (momentum), {continuity:.3e} (continuity) and \
+         {closure:.3e} (turbulence model), above the tolerance {tolerance:.3e}; allow more iterations, relax more (a smaller factor), or compute the flow in time if \
          it is not steady"
     )]
     NotSteady {
@@ -135,6 +135,8 @@ pub enum FlowError {
         momentum: f64,
         /// Residual of the continuity equation.
         continuity: f64,
+        /// Residual of the turbulence model; 0 without one.
+        closure: f64,
         /// What was asked for.
         tolerance: f64,
     },

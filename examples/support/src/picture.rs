@@ -12,6 +12,7 @@ pub mod comparison;
 pub mod gallery;
 pub mod plot;
 pub mod section;
+pub mod profiles;
 pub mod sketch;
 pub mod solids;
 pub mod summary;

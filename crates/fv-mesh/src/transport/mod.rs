@@ -3,12 +3,15 @@ mod kernels;
 mod sides;
 #[cfg(test)]
 mod tests;
+mod wall_faces;
 mod walls;
+
+pub(crate) use wall_faces::WallFaces;
 
 use crate::kernels::copy_dense;
 use crate::linear::{
     BiCgStabParams, BiCgStabScratch, Dilu, GaussSeidelParams, GaussSeidelScratch, GaussSeidelSweep,
-    LinearError, StencilMatrix, Sweep, SweepOrder, bicgstab, gauss_seidel,
+    LinearError, LinearOperator, StencilMatrix, Sweep, SweepOrder, bicgstab, gauss_seidel, vector,
 };
 use crate::operators::{Operators, fill_dense};
 use crate::{CartesianGrid, Convection, Field, FlowError, Sides, Velocity};
@@ -20,14 +23,26 @@ use sides::CellSides;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransportParams {
     /// Convection scheme. Anything but [`Convection::Upwind`] enters by deferred correction (Khosla & Rubin 1974): the
-    /// matrix is upwind's, the difference is taken from the φ given, so that repeated solves converge to the scheme.
+    /// matrix is upwind's, the difference is taken from the φ given, so that repeated solves converge to the scheme. Where
+    /// the difference d is negative and φ is not, it enters as the sink −d/φ (Patankar 1980), so that what is positive stays so.
     pub scheme: Convection,
     /// Method of the linear solver.
     pub method: TransportMethod,
-    /// Largest ‖b − Aφ‖ over the larger of ‖b‖ and ‖a_P φ‖, taken over the cells that are not pinned.
+    /// Largest relative residual: where nothing is negative, the root mean square of (b_P − Σ a φ)/(a_P φ_P) over the cells; else
+    /// ‖b − Aφ‖ over the larger of ‖b‖ and ‖a_P φ‖, taken over the cells that are not pinned.
     pub tolerance: f64,
+    /// The solver may stop where the residual is this part of the residual of the φ given, too; 0 for never. A steady iteration
+    /// needs no more than 0.1.
+    pub reduction: f64,
     /// Iterations allowed.
     pub max_iterations: usize,
+}
+
+impl TransportParams {
+    /// For steady iterations: convection of second order ([`Convection::Limited`]), residuals brought down to a tenth.
+    pub fn steady() -> Self {
+        Self { scheme: Convection::Limited, reduction: 0.1, ..Self::default() }
+    }
 }
 
 impl Default for TransportParams {
@@ -36,6 +51,7 @@ impl Default for TransportParams {
             scheme: Convection::Upwind,
             method: TransportMethod::BiCgStab,
             tolerance: 1e-9,
+            reduction: 0.0,
             max_iterations: 1000,
         }
     }
@@ -61,7 +77,7 @@ pub enum TransportMethod {
 /// over faces of area A between centres at distance d, Γ_f interpolated linearly. This is ∇·(uφ) − φ∇·u for convection, so
 /// that the matrix is an M-matrix whatever ∇·u is: with upwind, and sources and boundary values that are not negative,
 /// φ is not negative either. With [`Convection::Upwind`] of first order in space where the flow carries, with the other
-/// schemes of second order (their deferred part may break positivity). Solves allocate nothing.
+/// schemes of second order. Solves allocate nothing.
 #[derive(Clone, Debug)]
 pub struct CellTransport<const D: usize> {
     ops: Operators<D>,
@@ -72,6 +88,9 @@ pub struct CellTransport<const D: usize> {
     matrix: StencilMatrix<D>,
     dilu: Dilu,
     b: Vec<f64>,
+    /// 1/(a_P s) and φ/s.
+    units: Vec<f64>,
+    x: Vec<f64>,
     pinned: Vec<bool>,
     bicgstab: BiCgStabScratch,
     gauss_seidel: GaussSeidelScratch,
@@ -109,6 +128,8 @@ impl<const D: usize> CellTransport<D> {
             dilu: Dilu::new(&matrix).map_err(too_large)?,
             matrix,
             b: vec![0.0; n],
+            units: vec![0.0; n],
+            x: vec![0.0; n],
             pinned: vec![false; n],
             bicgstab: BiCgStabScratch::new(n),
             gauss_seidel: GaussSeidelScratch::new(n),
@@ -124,6 +145,19 @@ impl<const D: usize> CellTransport<D> {
     pub fn on<'a>(&'a mut self, velocity: &'a Velocity<D>) -> Result<FlowTransport<'a, D>, FlowError> {
         velocity.components[0].check(self.ops.grid())?;
         Ok(FlowTransport { cells: self, velocity })
+    }
+
+    pub(crate) fn grid(&self) -> &CartesianGrid<D> {
+        self.ops.grid()
+    }
+    /// `field` = `values` and zero gradient across the sides.
+    pub(crate) fn spread(&self, values: &[f64], field: &mut Field<D>) {
+        copy_dense(self.ops.grid(), values, field);
+        self.sides.fill(field, None, None);
+    }
+    /// Fills the ghosts of periodic axes.
+    pub(crate) fn wrap(&self, field: &mut Field<D>) {
+        self.sides.wrap(field.data_mut());
     }
 
     /// The distance of every cell from the nearest wall, to lower where bodies are nearer than the walls of the box.
@@ -215,40 +249,41 @@ impl<const D: usize> CellTransport<D> {
             sides.fill(carried, Some(e.inlet), e.wall);
             ops.convection(velocity, carried, params.scheme, high)?;
             ops.convection(velocity, carried, Convection::Upwind, low)?;
-            for ((b, v), (high, low)) in b.iter_mut().zip(&*volume).zip(high.values().zip(low.values())) {
-                *b += v * (high - low);
+            for (i, (high, low)) in high.values().zip(low.values()).enumerate() {
+                let rest = volume[i] * (high - low);
+                if rest < 0.0 && phi[i] > 0.0 {
+                    centre[i] -= rest / phi[i];
+                } else {
+                    b[i] += rest;
+                }
             }
         }
         Ok(())
     }
 
-    /// Norms of b and of the larger of b and a_P φ, over the cells that are not pinned for the latter.
-    fn scales(&self, phi: &[f64]) -> [f64; 2] {
-        let (mut all, mut given, mut carried) = (0.0, 0.0, 0.0);
-        for (i, b) in self.b.iter().enumerate() {
-            all += b * b;
-            if !self.pinned[i] {
-                let term = self.matrix.diagonal(i) * phi[i];
-                given += b * b;
-                carried += term * term;
-            }
+    /// Norm over the cells that are not pinned of the larger of b and a_P φ.
+    fn scale(&self, phi: &[f64]) -> f64 {
+        let (mut given, mut carried) = (0.0, 0.0);
+        for (i, b) in self.b.iter().enumerate().filter(|&(i, _)| !self.pinned[i]) {
+            let term = self.matrix.diagonal(i) * phi[i];
+            given += b * b;
+            carried += term * term;
         }
-        [all.sqrt(), f64::max(given, carried).sqrt()]
+        f64::max(given, carried).sqrt()
     }
 
-    fn iterate(&mut self, phi: &mut [f64]) -> Result<SolveInfo, LinearError> {
-        let [all, scale] = self.scales(phi);
-        let TransportParams { method, tolerance, max_iterations, .. } = self.params;
-        let absolute = tolerance * scale;
+    /// Solves A x = b until ‖b − A x‖ ≤ `absolute`; gives the iterations and the residuals before and after.
+    fn linear(&mut self, x: &mut [f64], absolute: f64) -> Result<(usize, f64, f64), LinearError> {
+        let TransportParams { method, max_iterations, .. } = self.params;
         let Self { matrix, dilu, b, bicgstab: scratch, gauss_seidel: sweeps, .. } = self;
-        // The solvers tell residuals relative to the whole b.
-        let ratio = if scale > 0.0 { all / scale } else { 0.0 };
+        // The solvers tell residuals relative to b.
+        let all = vector::norm(b);
         let result = match method {
             TransportMethod::BiCgStab => {
                 dilu.refactor(matrix)?;
                 let params = BiCgStabParams { relative: 0.0, absolute, max_iterations };
-                let solved = bicgstab(&*matrix, &mut dilu.with(matrix)?, b, phi, scratch, &params);
-                solved.map(|i| (i.iterations, i.initial_residual, i.residual))
+                let solved = bicgstab(&*matrix, &mut dilu.with(matrix)?, b, x, scratch, &params);
+                solved.map(|i| (i.iterations, all * i.initial_residual, all * i.residual))
             }
             TransportMethod::GaussSeidel => {
                 let params = GaussSeidelParams {
@@ -258,29 +293,71 @@ impl<const D: usize> CellTransport<D> {
                     order: SweepOrder::Symmetric,
                     ..GaussSeidelParams::default()
                 };
-                let solved = gauss_seidel(&*matrix, b, phi, sweeps, &params);
-                solved.map(|i| (i.iterations, i.initial_residual, i.residual))
+                let solved = gauss_seidel(&*matrix, b, x, sweeps, &params);
+                solved.map(|i| (i.iterations, all * i.initial_residual, all * i.residual))
             }
         };
-        match result {
-            Ok((iterations, initial, residual)) => {
-                Ok(SolveInfo { iterations, initial_residual: ratio * initial, residual: ratio * residual })
+        result.map_err(|error| match error {
+            LinearError::NotConverged { iterations, residual, tolerance } => {
+                LinearError::NotConverged { iterations, residual: all * residual, tolerance }
             }
-            Err(LinearError::NotConverged { iterations, residual, .. }) => {
-                Err(LinearError::NotConverged { iterations, residual: ratio * residual, tolerance })
-            }
-            Err(other) => Err(other),
-        }
+            other => other,
+        })
     }
 
-    /// Where no term is negative the solution is not: what the iteration left below zero is set to zero, and swept
-    /// over once, which keeps signs.
-    fn keep_sign(&mut self, phi: &mut [f64], work: usize) {
-        if self.b.iter().any(|b| *b < 0.0) || phi.iter().all(|p| *p >= 0.0) {
-            return;
+    fn iterate(&mut self, phi: &mut [f64]) -> Result<SolveInfo, LinearError> {
+        if phi.iter().chain(&self.b).all(|v| *v >= 0.0) {
+            return self.iterate_positive(phi);
         }
-        phi.iter_mut().for_each(|p| *p = p.max(0.0));
-        let work = &mut self.fields[work].data_mut()[..phi.len()];
+        let scale = self.scale(phi);
+        let TransportParams { tolerance, reduction, .. } = self.params;
+        let mut absolute = tolerance * scale;
+        if reduction > 0.0 {
+            let work = &mut self.fields[2].data_mut()[..phi.len()];
+            self.matrix.residual(&self.b, phi, work);
+            absolute = absolute.max(reduction * vector::norm(work));
+        }
+        relative(self.linear(phi, absolute), scale, tolerance)
+    }
+
+    /// Where no term is negative the solution is not: x = φ/s solves the equations in units of their own diagonal terms a_P s, s the φ
+    /// given after a sweep in either direction. So the residual is a relative one in every cell, however many orders of magnitude φ
+    /// spans, and what the iteration may leave below zero is set to zero and swept over, which keeps signs.
+    fn iterate_positive(&mut self, phi: &mut [f64]) -> Result<SolveInfo, LinearError> {
+        let n = phi.len();
+        let (mut units, mut x) = (std::mem::take(&mut self.units), std::mem::take(&mut self.x));
+        let work = &mut self.fields[2].data_mut()[..n];
+        self.matrix.residual(&self.b, phi, work);
+        x.copy_from_slice(work);
+        self.sweep(phi);
+        let mut initial = 0.0;
+        for i in 0..n {
+            if phi[i] <= 0.0 {
+                phi[i] = 1.0;
+            }
+            units[i] = 1.0 / (self.matrix.diagonal(i) * phi[i]);
+            if !self.pinned[i] {
+                initial += (x[i] * units[i]).powi(2);
+            }
+            self.b[i] *= units[i];
+        }
+        let scaled = self.matrix.scale(&units, phi);
+        let (scale, TransportParams { tolerance, reduction, .. }) = ((n as f64).sqrt(), self.params);
+        let initial = initial.sqrt();
+        x.fill(1.0);
+        let solved = scaled.and_then(|()| self.linear(&mut x, (tolerance * scale).max(reduction * initial)));
+        if x.iter().any(|x| !(*x >= 0.0)) {
+            x.iter_mut().for_each(|x| *x = x.max(0.0));
+            self.sweep(&mut x);
+        }
+        phi.iter_mut().zip(&x).for_each(|(phi, x)| *phi *= x);
+        (self.units, self.x) = (units, x);
+        relative(solved.map(|(iterations, _, after)| (iterations, initial, after)), scale, tolerance)
+    }
+
+    /// One sweep in either direction.
+    fn sweep(&mut self, phi: &mut [f64]) {
+        let work = &mut self.fields[2].data_mut()[..phi.len()];
         self.matrix.sweep(Sweep::Forward, &self.b, phi, work);
         self.matrix.sweep(Sweep::Backward, &self.b, phi, work);
     }
@@ -305,16 +382,31 @@ impl<const D: usize> CellTransport<D> {
             Ok(())
         });
         let solved = rows.and_then(|()| self.iterate(phi));
-        if solved.is_ok() {
-            self.keep_sign(phi, 2);
-            e.pinned.iter().for_each(|&(cell, value)| phi[cell] = value);
-        }
+        e.pinned.iter().for_each(|&(cell, value)| phi[cell] = value);
         solved.map_err(|error| match error {
             LinearError::NotConverged { iterations, residual, tolerance } => {
                 SolveError::NotConverged { iterations, residual, tolerance }
             }
             other => SolveError::Solver(other.to_string()),
         })
+    }
+}
+
+/// Residuals relative to `scale`.
+fn relative(
+    solved: Result<(usize, f64, f64), LinearError>,
+    scale: f64,
+    tolerance: f64,
+) -> Result<SolveInfo, LinearError> {
+    let ratio = if scale > 0.0 { 1.0 / scale } else { 0.0 };
+    match solved {
+        Ok((iterations, before, after)) => {
+            Ok(SolveInfo { iterations, initial_residual: ratio * before, residual: ratio * after })
+        }
+        Err(LinearError::NotConverged { iterations, residual, .. }) => {
+            Err(LinearError::NotConverged { iterations, residual: ratio * residual, tolerance })
+        }
+        Err(other) => Err(other),
     }
 }
 
@@ -336,6 +428,17 @@ impl<const D: usize> Transport for FlowTransport<'_, D> {
         check_length("the strain rate", self.n_cells(), out.len())?;
         let ops = &self.cells.ops;
         fill_dense(ops.grid(), &ops.strain_kernel(&self.velocity.components), out);
+        Ok(())
+    }
+    fn velocity_gradient(&mut self, out: &mut [[[f64; 3]; 3]]) -> Result<(), SolveError> {
+        check_length("the velocity gradient", self.n_cells(), out.len())?;
+        out.fill([[0.0; 3]; 3]);
+        let CellTransport { ops, fields: [field, ..], .. } = &mut *self.cells;
+        for (a, b) in (0..D).flat_map(|a| (0..D).map(move |b| (a, b))) {
+            let made = ops.velocity_gradient(self.velocity, [a, b], field);
+            made.map_err(|e| SolveError::Solver(e.to_string()))?;
+            out.iter_mut().zip(field.values()).for_each(|(out, slope)| out[a][b] = slope);
+        }
         Ok(())
     }
     fn dot_gradients(&mut self, a: &[f64], b: &[f64], out: &mut [f64]) -> Result<(), SolveError> {

@@ -25,6 +25,7 @@
 mod clip;
 mod control_volume;
 mod crowd;
+mod cut_cells;
 mod cut_link;
 mod error;
 mod film;
@@ -51,6 +52,7 @@ mod wall_distance;
 mod wall_rows;
 
 pub use control_volume::ControlVolume;
+pub use cut_cells::cut_cells;
 pub use cut_link::cut_walls;
 pub use error::IbmError;
 pub use film::SmoothFilm;

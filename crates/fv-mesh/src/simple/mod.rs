@@ -3,16 +3,21 @@ mod params;
 mod pressure_correction;
 #[cfg(test)]
 mod tests;
+mod walls;
 
 pub use params::{SimpleInfo, SimpleParams};
 pub(crate) use pressure_correction::PressureCorrection;
+pub use walls::WallStress;
 
+use crate::boundary::Boundaries;
 use crate::flow_state::{FlowState, show_state};
 use crate::kernels;
 use crate::linear::StencilMatrix;
 use crate::momentum_matrix::{self as momentum, Equation, Implicit, MomentumEquations};
 use crate::per_dimension::per_dimension;
 use crate::{CartesianGrid, Convection, Field, FlowError, Fluid, Side};
+use interfaces::{CutCells, Vector, Wrench};
+use walls::{Iteration, SimpleWalls};
 
 /// Step \[s\] that outlets are moved on by in one iteration: they follow the flow inside at once.
 const LONG: f64 = 1e30;
@@ -62,6 +67,9 @@ pub struct Simple<const D: usize> {
     eddy: Option<Field<D>>,
     /// Dense numbers of the nodes whose velocity is given.
     pinned: [Vec<usize>; D],
+    walls: Option<Box<SimpleWalls<D>>>,
+    /// k at the cell centres, for wall functions.
+    energy: Option<Field<D>>,
 }
 
 impl<const D: usize> Simple<D> {
@@ -88,6 +96,8 @@ impl<const D: usize> Simple<D> {
             force: [0.0; D],
             eddy: None,
             pinned: std::array::from_fn(|_| Vec::new()),
+            walls: None,
+            energy: None,
             params,
             state,
         })
@@ -116,6 +126,10 @@ impl<const D: usize> Simple<D> {
     /// Sets the first guess of the velocity to `u(x)` \[m/s\], outlets included; walls and inlets keep theirs.
     pub fn set_velocity(&mut self, u: impl Fn([f64; D]) -> [f64; D]) {
         self.state.set_velocity(u);
+        if let Some(walls) = &self.walls {
+            walls.stop(&self.state.grid, &mut self.state.velocity.components);
+            self.state.fill_velocity();
+        }
     }
 
     /// Sets the body force per mass \[m/s²\].
@@ -130,6 +144,64 @@ impl<const D: usize> Simple<D> {
             (Some(own), Some(eddy)) => own.data_mut().copy_from_slice(eddy.data()),
             (own, eddy) => *own = eddy.cloned(),
         }
+        if let (Some(walls), Some(eddy)) = (&self.walls, &mut self.eddy) {
+            walls.extend(eddy);
+        }
+    }
+
+    /// Sets the turbulence kinetic energy k \[m²/s²\] at the cell centres, from which [`WallStress::LogLaw`] takes the friction
+    /// velocity; `None` takes it away.
+    pub fn set_turbulence_energy(&mut self, k: Option<&Field<D>>) {
+        match (&mut self.energy, k) {
+            (Some(own), Some(k)) => own.data_mut().copy_from_slice(k.data()),
+            (own, k) => *own = k.cloned(),
+        }
+    }
+
+    /// Puts immersed walls at rest into the flow, or takes them out: mass and momentum are balanced over what they leave of
+    /// the control volumes, and `stress` acts on the walls in them. Before this set what the box's sides are; after this the
+    /// first guess and eddy viscosity.
+    ///
+    /// Faces of the box's sides that walls close let nothing pass; inlets pass the open part of what is given.
+    ///
+    /// # Errors
+    /// [`FlowError::Parameter`] for walls on another grid, and those of the sides.
+    pub fn set_walls(&mut self, walls: Option<(&CutCells, WallStress)>) -> Result<(), FlowError> {
+        let FlowState { grid, metrics, boundaries, velocity, pressure, .. } = &mut self.state;
+        let made = match walls {
+            Some((cuts, stress)) => {
+                Some(SimpleWalls::new(cuts, stress, grid, metrics, &boundaries.outlets(grid))?)
+            }
+            None => None,
+        };
+        let mut sides = Boundaries::new(grid, boundaries.sides.clone(), metrics)?;
+        if let Some((cuts, _)) = walls {
+            sides.narrow(grid, |c, index| {
+                let list = &cuts.faces[c];
+                list.binary_search_by_key(&index, |face| face.index).map_or(1.0, |k| list[k].open)
+            });
+        }
+        *boundaries = sides;
+        self.correction = self.params.pressure_solver(grid, metrics, boundaries)?;
+        if let Some(walls) = &made {
+            walls.stop(grid, &mut velocity.components);
+            pressure.data_mut().fill(0.0);
+        }
+        self.walls = made.map(Box::new);
+        self.state.fill_velocity();
+        self.state.fill_pressure();
+        Ok(())
+    }
+
+    /// Friction of the fluid on each body of the walls in the last iteration \[N, N m\], about its centre of mass.
+    pub fn wall_friction(&self) -> Vec<Wrench> {
+        self.walls.as_ref().map_or_else(Vec::new, |walls| walls.friction(self.state.fluid.density))
+    }
+
+    /// What every piece of wall, in the order given, took from the fluid per area in the last iteration \[Pa\].
+    pub fn wall_tractions(&self) -> Vec<Vector> {
+        let density = self.state.fluid.density;
+        self.walls.as_ref().map_or_else(Vec::new, |walls| walls.tractions().map(|t| density * t).collect())
     }
 
     /// Gives the velocity at some nodes, inside bodies at rest for instance: component, storage index in
@@ -161,6 +233,10 @@ impl<const D: usize> Simple<D> {
     fn iterate_here(&mut self) -> Result<SimpleInfo, FlowError> {
         let mut info = SimpleInfo::default();
         let mut scale = 0.0_f64;
+        if let Some(walls) = &mut self.walls {
+            let FlowState { velocity, fluid, .. } = &self.state;
+            walls.update(&velocity.components, self.energy.as_ref(), fluid.viscosity);
+        }
         for c in 0..D {
             let FlowState { grid, metrics, boundaries, velocity, pressure, .. } = &self.state;
             let u = &velocity.components;
@@ -174,7 +250,26 @@ impl<const D: usize> Simple<D> {
                 viscous_share: self.params.viscous_share,
                 eddy: self.eddy.as_ref(),
             };
-            let [terms, inertia] = self.equations.make(c, equation, boundaries, &mut self.matrix);
+            let [mut terms, inertia] = self.equations.make(c, equation, boundaries, &mut self.matrix);
+            if let Some(walls) = &mut self.walls {
+                let iteration = Iteration {
+                    grid,
+                    metrics,
+                    velocity: u,
+                    pressure,
+                    eddy: self.eddy.as_ref(),
+                    scheme: self.equations.scheme,
+                    viscosity: self.state.fluid.viscosity,
+                    density: self.state.fluid.density,
+                    force: self.force[c],
+                    relaxation: self.params.velocity_relaxation,
+                    viscous_share: self.params.viscous_share,
+                };
+                walls.assemble(c, iteration, &mut self.equations, &mut self.matrix, &mut terms);
+                for &cell in &walls.shut[c] {
+                    momentum::pin(&mut self.matrix, cell, 0.0, &mut self.equations.rhs);
+                }
+            }
             for &cell in &self.pinned[c] {
                 momentum::pin(&mut self.matrix, cell, 0.0, &mut self.equations.rhs);
             }
@@ -192,6 +287,9 @@ impl<const D: usize> Simple<D> {
             for &cell in &self.pinned[c] {
                 self.correction.freeze(c, cell);
             }
+            if let Some(walls) = &self.walls {
+                walls.narrow(c, &mut self.correction);
+            }
         }
         if scale > 0.0 {
             info.momentum.iter_mut().for_each(|r| *r /= scale);
@@ -206,17 +304,23 @@ impl<const D: usize> Simple<D> {
         let FlowState { grid, metrics, boundaries, fluid, velocity, pressure, .. } = &mut self.state;
         self.correction.update(boundaries, fluid.viscosity)?;
         let velocity = &mut velocity.components;
+        if let Some(walls) = &self.walls {
+            walls.show_fluxes(velocity);
+        }
         let through = momentum::throughput(grid, metrics, velocity);
         let divergence = self.correction.measure(boundaries, velocity, pressure, fluid.density);
         if !divergence.is_finite() {
             return Err(self.state.diverged(0.0));
         }
         info.continuity = if through > 0.0 { divergence / through } else { 0.0 };
-        if self.pinned.iter().any(|p| !p.is_empty()) {
+        if self.walls.is_some() || self.pinned.iter().any(|p| !p.is_empty()) {
             self.correction.skip_frozen();
         }
         info.pressure_iterations = self.correction.solve(false)?.iterations;
         self.correction.correct(boundaries, velocity);
+        if let Some(walls) = &self.walls {
+            walls.show_nodes(velocity);
+        }
         let gain = self.params.pressure_relaxation * fluid.density;
         // The viscous part of what the divergence takes (Cahouet & Chabat 1988); in SIMPLE proper β has it.
         let viscosity = if self.params.consistent { fluid.viscosity } else { 0.0 };

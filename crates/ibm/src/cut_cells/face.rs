@@ -84,7 +84,11 @@ pub(super) fn rectangle(sides: [f64; 2], d: [f64; 4], middle: f64) -> Open {
         (0..2).for_each(|a| moment[a] += first[a]);
     }
     let centre = if share > 0.0 { moment.map(|m| m / share) } else { [0.5; 2] };
-    Open { share: rounded(share), centre: Vector::new(centre[0] * sides[0], centre[1] * sides[1], 0.0), distance: 0.0 }
+    Open {
+        share: rounded(share),
+        centre: Vector::new(centre[0] * sides[0], centre[1] * sides[1], 0.0),
+        distance: 0.0,
+    }
 }
 
 /// Area of the part of a triangle where a linear function is positive, and its first moments.

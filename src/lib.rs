@@ -10,6 +10,7 @@
 //! | `dem` | rigid bodies, overlap, contact | `bodies` |
 //! | `coupling` | the time loop, output, ledger, restart | `bodies` |
 //! | `mor` | snapshots, POD, POD–Galerkin, shifted POD, interpolation in time and parameters | `mor` |
+//! | `turb` | turbulence models and wall functions | `turb` |
 #![deny(missing_docs)]
 
 #[cfg(feature = "bodies")]
@@ -23,3 +24,5 @@ pub use ibm;
 pub use interfaces;
 #[cfg(feature = "mor")]
 pub use mor;
+#[cfg(feature = "turb")]
+pub use turb;

@@ -2,7 +2,7 @@
 use siltflow::flow::{
     CellTransport, FlowError, Modelled, Projection, Scalar, ScalarSide, ScalarTransport, TransportParams,
 };
-use siltflow::interfaces::{Closure, SolveError, Transport};
+use siltflow::interfaces::{Closure, SolveError, Transport, WallRow};
 
 /// A scalar that flows along, on the cells of a box with periodic sides.
 pub(crate) fn scalar(flow: &Projection<2>, diffusivity: f64) -> Result<Scalar<2>, FlowError> {
@@ -31,14 +31,25 @@ impl Closure for Strain {
     fn eddy_viscosity(&self) -> Option<&[f64]> {
         None
     }
-    fn correct(&mut self, flow: &mut dyn Transport, _: f64, _: Option<f64>) -> Result<(), SolveError> {
+    fn correct(
+        &mut self,
+        flow: &mut dyn Transport,
+        _: &[WallRow],
+        _: f64,
+        _: Option<f64>,
+    ) -> Result<(), SolveError> {
         flow.strain_rate(&mut self.0)
     }
 }
 
 /// The closure in its slot.
 pub(crate) fn modelled(flow: &Projection<2>) -> Result<Modelled<2, Strain>, FlowError> {
-    Modelled::new(Strain(vec![0.0; flow.grid().n_cells()]), flow, TransportParams::default())
+    Modelled::new(
+        Strain(vec![0.0; flow.grid().n_cells()]),
+        flow.grid(),
+        flow.sides(),
+        TransportParams::default(),
+    )
 }
 
 /// The closure, and the equations on the flow's cells.
@@ -57,6 +68,6 @@ pub(crate) fn with_closure(
     flow.predict(dt, [0.0; 2])?;
     flow.project(dt)?;
     flow.finish(dt)?;
-    let corrected = closure.correct(&mut cells.on(flow.velocity())?, flow.fluid().viscosity, Some(dt));
+    let corrected = closure.correct(&mut cells.on(flow.velocity())?, &[], flow.fluid().viscosity, Some(dt));
     corrected.map_err(|source| FlowError::Closure { time: flow.time(), source })
 }

@@ -22,6 +22,7 @@ fn crates_meet_only_through_interfaces() {
         "ibm",
         "dem",
         "mor",
+        "turb",
         "coupling",
         "example-support",
     ] {

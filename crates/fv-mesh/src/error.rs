@@ -124,8 +124,8 @@ pub enum FlowError {
     },
     /// A steady solution was not reached.
     #[error(
-        "after {iterations} iterations the residuals are {momentum:.3e} (momentum) and {continuity:.3e} (continuity), above \
-         the tolerance {tolerance:.3e}; allow more iterations, relax more (a smaller factor), or compute the flow in time if \
+        "after {iterations} iterations the residuals are {momentum:.3e} (momentum), {continuity:.3e} (continuity) and \
+         {closure:.3e} (turbulence model), above the tolerance {tolerance:.3e}; allow more iterations, relax more (a smaller factor), or compute the flow in time if \
          it is not steady"
     )]
     NotSteady {
@@ -135,6 +135,8 @@ pub enum FlowError {
         momentum: f64,
         /// Residual of the continuity equation.
         continuity: f64,
+        /// Residual of the turbulence model; 0 without one.
+        closure: f64,
         /// What was asked for.
         tolerance: f64,
     },

@@ -1,9 +1,8 @@
 //! What acts on a flow beside pressure and viscosity, each slot a type: `()` is nothing and costs nothing.
 use crate::flow_state::{each_cell, each_node};
 use crate::grid::GHOSTS;
-use crate::transport::CellTransport;
-use crate::{Field, FlowError, Projection, Scalar, ScalarTransport, TransportParams, Velocity};
-use interfaces::{Closure, Vector};
+use crate::{ClosureSlot, Field, FlowError, Projection, Scalar, ScalarTransport, Velocity};
+use interfaces::Vector;
 
 /// The slots of [`Projection::advance_with`].
 ///
@@ -23,7 +22,7 @@ pub struct Hooks<B = (), F = (), C = (), S = ()> {
     pub body_force: B,
     /// What immersed bodies do to the velocity: [`ImmersedForcing`].
     pub forcing: F,
-    /// Turbulence model: [`Modelled`].
+    /// Turbulence model: [`Modelled`](crate::Modelled).
     pub closure: C,
     /// Passive or buoyant scalars: [`ScalarTransport`].
     pub scalars: S,
@@ -162,60 +161,6 @@ where
     }
 }
 
-/// What a turbulence model does to a flow; `()` does nothing.
-pub trait ClosureSlot<const D: usize> {
-    /// ν_t of every cell \[m²/s\]; `None` if there is none.
-    fn eddy_viscosity(&self) -> Option<&[f64]>;
-    /// Brings the model up to date with the flow after a step of `dt` \[s\].
-    ///
-    /// # Errors
-    /// [`FlowError::Closure`].
-    fn correct(&mut self, flow: &Projection<D>, dt: f64) -> Result<(), FlowError>;
-}
-
-impl<const D: usize> ClosureSlot<D> for () {
-    #[inline(always)]
-    fn eddy_viscosity(&self) -> Option<&[f64]> {
-        None
-    }
-    #[inline(always)]
-    fn correct(&mut self, _flow: &Projection<D>, _dt: f64) -> Result<(), FlowError> {
-        Ok(())
-    }
-}
-
-/// A [`Closure`] and the equations it may ask for on a flow's cells.
-pub struct Modelled<const D: usize, C> {
-    /// The model.
-    pub closure: C,
-    transport: CellTransport<D>,
-}
-
-impl<const D: usize, C: Closure> Modelled<D, C> {
-    /// The model on the cells of `flow`.
-    ///
-    /// # Errors
-    /// [`FlowError`] for parameters that make no sense.
-    pub fn new(closure: C, flow: &Projection<D>, params: TransportParams) -> Result<Self, FlowError> {
-        Ok(Self { closure, transport: CellTransport::new(flow.grid(), flow.sides(), params)? })
-    }
-    /// The equations on the flow's cells; their wall distance may be changed.
-    pub fn transport_mut(&mut self) -> &mut CellTransport<D> {
-        &mut self.transport
-    }
-}
-
-impl<const D: usize, C: Closure> ClosureSlot<D> for Modelled<D, C> {
-    fn eddy_viscosity(&self) -> Option<&[f64]> {
-        self.closure.eddy_viscosity()
-    }
-    fn correct(&mut self, flow: &Projection<D>, dt: f64) -> Result<(), FlowError> {
-        let mut cells = self.transport.on(flow.velocity())?;
-        let corrected = self.closure.correct(&mut cells, flow.fluid().viscosity, Some(dt));
-        corrected.map_err(|source| FlowError::Closure { time: flow.time(), source })
-    }
-}
-
 impl<const D: usize> Projection<D> {
     /// One whole step of length `dt` with everything in `hooks`: scalars and body force from the flow as it is, predictor,
     /// forcing, projection, and the closure from the flow that results.
@@ -243,8 +188,8 @@ impl<const D: usize> Projection<D> {
         if B::VARIES {
             self.with_sources(|flow, sources| body_force.add(flow, scalars, sources));
         }
-        if let Some(eddy) = closure.eddy_viscosity() {
-            self.add_eddy_stress(eddy, dt)?;
+        if let Some(stress) = closure.stress(self)? {
+            self.add_eddy_stress(stress, dt)?;
         }
         scalars.advance(self.velocity(), self.time(), dt)?;
         self.predict(dt, uniform)?;

@@ -1,4 +1,5 @@
 //! What a closure (a turbulence model) may ask of a flow solver, and what the solver gets from it.
+use crate::WallRow;
 use std::fmt;
 
 /// One convection–diffusion–reaction equation for values φ at the cells, dense, x fastest:
@@ -59,6 +60,11 @@ pub trait Transport {
     /// # Errors
     /// [`SolveError::Length`].
     fn strain_rate(&mut self, out: &mut [f64]) -> Result<(), SolveError>;
+    /// ∂u_a/∂x_b \[1/s\] at the cells' centres in `out[cell][a][b]`; zero along axes that the flow does not have.
+    ///
+    /// # Errors
+    /// [`SolveError::Length`].
+    fn velocity_gradient(&mut self, out: &mut [[[f64; 3]; 3]]) -> Result<(), SolveError>;
     /// ∇a·∇b at the cells' centres, one-sided beside the sides of the flow.
     ///
     /// # Errors
@@ -75,12 +81,31 @@ pub trait Transport {
 pub trait Closure: Send {
     /// ν_t of every cell \[m²/s\]; `None` if there is none.
     fn eddy_viscosity(&self) -> Option<&[f64]>;
-    /// Brings the model up to date with the flow, whose kinematic viscosity is `nu` \[m²/s\]; `dt` \[s\] is the step, or
-    /// `None` for a steady iteration.
+    /// Turbulence kinetic energy of every cell \[m²/s²\], for the rows of the walls; `None` if there is none.
+    fn kinetic_energy(&self) -> Option<&[f64]> {
+        None
+    }
+    /// ν_t on the wall of every row that was last given \[m²/s\], so that the wall's friction is τ_w/ρ = (ν + ν_t) u_t/y. With none
+    /// the fluid sticks to walls as it does without a closure.
+    fn wall_viscosity(&self) -> &[f64] {
+        &[]
+    }
+    /// How far the model's own equations were from being met by what the last call found: their largest relative residual.
+    fn residual(&self) -> f64 {
+        0.0
+    }
+    /// Brings the model up to date with the flow, whose kinematic viscosity is `nu` \[m²/s\] and whose walls are `walls`; `dt` \[s\]
+    /// is the step, or `None` for a steady iteration. A cell beside several walls has several rows.
     ///
     /// # Errors
     /// Those of [`Transport`].
-    fn correct(&mut self, flow: &mut dyn Transport, nu: f64, dt: Option<f64>) -> Result<(), SolveError>;
+    fn correct(
+        &mut self,
+        flow: &mut dyn Transport,
+        walls: &[WallRow],
+        nu: f64,
+        dt: Option<f64>,
+    ) -> Result<(), SolveError>;
 }
 
 impl Closure for () {
@@ -89,7 +114,13 @@ impl Closure for () {
         None
     }
     #[inline(always)]
-    fn correct(&mut self, _: &mut dyn Transport, _: f64, _: Option<f64>) -> Result<(), SolveError> {
+    fn correct(
+        &mut self,
+        _: &mut dyn Transport,
+        _: &[WallRow],
+        _: f64,
+        _: Option<f64>,
+    ) -> Result<(), SolveError> {
         Ok(())
     }
 }

@@ -13,6 +13,8 @@ pub struct WallRow {
     pub area: f64,
     /// Tangential velocity at the centre \[m/s\].
     pub u_t: f64,
+    /// Mean of |∂u_t/∂n| over the cell \[1/s\], from the wall's velocity to that on its far face; `None` where it is not known.
+    pub shear: Option<f64>,
     /// Turbulence kinetic energy at the centre \[m²/s²\]; 0 where there is none.
     pub k: f64,
     /// Kinematic viscosity of the fluid \[m²/s\].

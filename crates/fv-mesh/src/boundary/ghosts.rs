@@ -24,20 +24,6 @@ impl<const D: usize> Boundaries<D> {
         self.fill_cells(phi, 0.0);
     }
 
-    /// Ghost layer of a scalar without gradient across any bounded side.
-    pub(crate) fn fill_even(&self, phi: &mut Field<D>) {
-        let phi = phi.data_mut();
-        for lines in self.lines.iter().filter(|l| !self.sides.periodic(l.axis)) {
-            for o in lines.starts() {
-                for upper in 0..2 {
-                    let (inside, ghost) = lines.ends(o, upper);
-                    phi[ghost] = phi[inside];
-                }
-            }
-        }
-        self.wrap(phi);
-    }
-
     fn fill_cells(&self, p: &mut Field<D>, factor: f64) {
         let p = p.data_mut();
         for (lines, pair) in self.lines.iter().zip(&self.states) {

@@ -75,7 +75,7 @@ impl<const D: usize> MomentumEquations<D> {
         velocity: &[Field<D>; D],
         [c, b]: [usize; 2],
         o: usize,
-        [j, i]: [usize; 2],
+        [i, j]: [usize; 2],
     ) -> [f64; 2] {
         flux(&self.convection, velocity, [c, b], o, [i, j])
     }

@@ -1,9 +1,6 @@
 //! Accelerations that vary in space.
 use super::Projection;
-use crate::flow_state::FlowState;
-use crate::per_dimension::per_dimension;
-use crate::{CartesianGrid, Field, FlowError, kernels};
-use interfaces::SolveError;
+use crate::{CartesianGrid, EddyStress, Field, FlowError};
 
 /// What accelerates the fluid in the next predictor step; its fields are made when first needed.
 #[derive(Default)]
@@ -11,8 +8,6 @@ pub(super) struct Sources<const D: usize> {
     fields: Option<Box<[Field<D>; D]>>,
     /// Is there anything in `fields`?
     given: bool,
-    /// ν_t with ghosts.
-    eddy: Option<Box<Field<D>>>,
     /// The largest ν_t of the last step with a closure \[m²/s\].
     eddy_most: f64,
 }
@@ -37,8 +32,7 @@ impl<const D: usize> Sources<D> {
 
     /// Puts them on another grid of the same size.
     pub(super) fn set_grid(&mut self, grid: &CartesianGrid<D>) {
-        let fields = self.fields.iter_mut().flat_map(|f| f.iter_mut());
-        fields.chain(self.eddy.as_deref_mut()).for_each(|field| field.set_grid(grid));
+        self.fields.iter_mut().flat_map(|f| f.iter_mut()).for_each(|field| field.set_grid(grid));
     }
 
     /// What was given since the last call.
@@ -65,31 +59,14 @@ impl<const D: usize> Projection<D> {
         self.sources.forget();
     }
 
-    /// Adds ∇·[ν_t(∇u + ∇uᵀ)] of the eddy viscosity ν_t \[m²/s\] (dense) to the next predictor step of `dt`.
-    pub(crate) fn add_eddy_stress(&mut self, eddy: &[f64], dt: f64) -> Result<(), FlowError> {
-        let n = self.state.grid.n_cells();
-        if eddy.len() != n {
-            let source = SolveError::Length { what: "the eddy viscosity", expected: n, found: eddy.len() };
-            return Err(FlowError::Closure { time: self.state.time, source });
-        }
-        self.sources.eddy_most = eddy.iter().copied().fold(0.0, f64::max);
+    /// Adds ∇·[ν_t(∇u + ∇uᵀ)] and the friction of walls to the next predictor step of `dt`.
+    pub(crate) fn add_eddy_stress(&mut self, stress: &EddyStress<D>, dt: f64) -> Result<(), FlowError> {
+        stress.eddy.check(&self.state.grid)?;
+        self.sources.eddy_most = stress.most;
         self.choose_implicit(dt)?;
-        let grid = &self.state.grid;
-        let field = self.sources.eddy.get_or_insert_with(|| Box::new(Field::zeros(grid)));
-        kernels::copy_dense(grid, eddy, field);
-        self.state.boundaries.fill_even(field);
-        per_dimension!(self, Projection, add_eddy_stress_here() -> ());
-        Ok(())
-    }
-
-    fn add_eddy_stress_here(&mut self) {
-        let Some(field) = self.sources.eddy.take() else { return };
         self.with_sources(|flow, sources| {
-            let FlowState { grid, metrics, velocity, .. } = &flow.state;
-            for (c, source) in sources.iter_mut().enumerate() {
-                kernels::add_eddy_stress(grid, metrics, c, &velocity.components, &field, source);
-            }
+            sources.iter_mut().enumerate().for_each(|(c, source)| stress.add(c, &flow.state, source));
         });
-        self.sources.eddy = Some(field);
+        Ok(())
     }
 }

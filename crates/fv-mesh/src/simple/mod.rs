@@ -1,4 +1,5 @@
 //! The steady flow algorithm.
+mod immersed;
 mod params;
 mod pressure_correction;
 #[cfg(test)]
@@ -9,14 +10,13 @@ pub use params::{SimpleInfo, SimpleParams};
 pub(crate) use pressure_correction::PressureCorrection;
 pub use walls::WallStress;
 
-use crate::boundary::Boundaries;
 use crate::flow_state::{FlowState, show_state};
 use crate::kernels;
 use crate::linear::StencilMatrix;
 use crate::momentum_matrix::{self as momentum, Equation, Implicit, MomentumEquations};
 use crate::per_dimension::per_dimension;
-use crate::{CartesianGrid, Convection, Field, FlowError, Fluid, Side};
-use interfaces::{CutCells, Vector, Wrench};
+use crate::{CartesianGrid, Convection, EddyStress, Field, FlowError, Fluid, Modelled, Side};
+use interfaces::Closure;
 use walls::{Iteration, SimpleWalls};
 
 /// Step \[s\] that outlets are moved on by in one iteration: they follow the flow inside at once.
@@ -64,7 +64,7 @@ pub struct Simple<const D: usize> {
     correction: PressureCorrection<D>,
     delta: [Vec<f64>; D],
     force: [f64; D],
-    eddy: Option<Field<D>>,
+    stress: Option<EddyStress<D>>,
     /// Dense numbers of the nodes whose velocity is given.
     pinned: [Vec<usize>; D],
     walls: Option<Box<SimpleWalls<D>>>,
@@ -94,7 +94,7 @@ impl<const D: usize> Simple<D> {
             correction: params.pressure_solver(grid, metrics, boundaries)?,
             delta: std::array::from_fn(|_| vec![0.0; n]),
             force: [0.0; D],
-            eddy: None,
+            stress: None,
             pinned: std::array::from_fn(|_| Vec::new()),
             walls: None,
             energy: None,
@@ -140,68 +140,10 @@ impl<const D: usize> Simple<D> {
     /// Sets the kinematic eddy viscosity ν_t \[m²/s\] at the cell centres; `None` takes it away. Ghost values are used as
     /// they are: half the sum of a ghost and the cell inside is ν_t on the side.
     pub fn set_eddy_viscosity(&mut self, eddy: Option<&Field<D>>) {
-        match (&mut self.eddy, eddy) {
-            (Some(own), Some(eddy)) => own.data_mut().copy_from_slice(eddy.data()),
-            (own, eddy) => *own = eddy.cloned(),
+        self.stress = eddy.map(|eddy| EddyStress::of(eddy.clone()));
+        if let (Some(walls), Some(stress)) = (&self.walls, &mut self.stress) {
+            walls.extend(&mut stress.eddy);
         }
-        if let (Some(walls), Some(eddy)) = (&self.walls, &mut self.eddy) {
-            walls.extend(eddy);
-        }
-    }
-
-    /// Sets the turbulence kinetic energy k \[m²/s²\] at the cell centres, from which [`WallStress::LogLaw`] takes the friction
-    /// velocity; `None` takes it away.
-    pub fn set_turbulence_energy(&mut self, k: Option<&Field<D>>) {
-        match (&mut self.energy, k) {
-            (Some(own), Some(k)) => own.data_mut().copy_from_slice(k.data()),
-            (own, k) => *own = k.cloned(),
-        }
-    }
-
-    /// Puts immersed walls at rest into the flow, or takes them out: mass and momentum are balanced over what they leave of
-    /// the control volumes, and `stress` acts on the walls in them. Before this set what the box's sides are; after this the
-    /// first guess and eddy viscosity.
-    ///
-    /// Faces of the box's sides that walls close let nothing pass; inlets pass the open part of what is given.
-    ///
-    /// # Errors
-    /// [`FlowError::Parameter`] for walls on another grid, and those of the sides.
-    pub fn set_walls(&mut self, walls: Option<(&CutCells, WallStress)>) -> Result<(), FlowError> {
-        let FlowState { grid, metrics, boundaries, velocity, pressure, .. } = &mut self.state;
-        let made = match walls {
-            Some((cuts, stress)) => {
-                Some(SimpleWalls::new(cuts, stress, grid, metrics, &boundaries.outlets(grid))?)
-            }
-            None => None,
-        };
-        let mut sides = Boundaries::new(grid, boundaries.sides.clone(), metrics)?;
-        if let Some((cuts, _)) = walls {
-            sides.narrow(grid, |c, index| {
-                let list = &cuts.faces[c];
-                list.binary_search_by_key(&index, |face| face.index).map_or(1.0, |k| list[k].open)
-            });
-        }
-        *boundaries = sides;
-        self.correction = self.params.pressure_solver(grid, metrics, boundaries)?;
-        if let Some(walls) = &made {
-            walls.stop(grid, &mut velocity.components);
-            pressure.data_mut().fill(0.0);
-        }
-        self.walls = made.map(Box::new);
-        self.state.fill_velocity();
-        self.state.fill_pressure();
-        Ok(())
-    }
-
-    /// Friction of the fluid on each body of the walls in the last iteration \[N, N m\], about its centre of mass.
-    pub fn wall_friction(&self) -> Vec<Wrench> {
-        self.walls.as_ref().map_or_else(Vec::new, |walls| walls.friction(self.state.fluid.density))
-    }
-
-    /// What every piece of wall, in the order given, took from the fluid per area in the last iteration \[Pa\].
-    pub fn wall_tractions(&self) -> Vec<Vector> {
-        let density = self.state.fluid.density;
-        self.walls.as_ref().map_or_else(Vec::new, |walls| walls.tractions().map(|t| density * t).collect())
     }
 
     /// Gives the velocity at some nodes, inside bodies at rest for instance: component, storage index in
@@ -248,7 +190,7 @@ impl<const D: usize> Simple<D> {
                 force: self.force[c],
                 relaxation: self.params.velocity_relaxation,
                 viscous_share: self.params.viscous_share,
-                eddy: self.eddy.as_ref(),
+                eddy: self.stress.as_ref().map(|s| &s.eddy),
             };
             let [mut terms, inertia] = self.equations.make(c, equation, boundaries, &mut self.matrix);
             if let Some(walls) = &mut self.walls {
@@ -257,7 +199,7 @@ impl<const D: usize> Simple<D> {
                     metrics,
                     velocity: u,
                     pressure,
-                    eddy: self.eddy.as_ref(),
+                    eddy: self.stress.as_ref().map(|s| &s.eddy),
                     scheme: self.equations.scheme,
                     viscosity: self.state.fluid.viscosity,
                     density: self.state.fluid.density,
@@ -269,6 +211,9 @@ impl<const D: usize> Simple<D> {
                 for &cell in &walls.shut[c] {
                     momentum::pin(&mut self.matrix, cell, 0.0, &mut self.equations.rhs);
                 }
+            }
+            if let Some(stress) = &self.stress {
+                stress.add_friction(c, u, &mut self.matrix, &mut self.equations.rhs);
             }
             for &cell in &self.pinned[c] {
                 momentum::pin(&mut self.matrix, cell, 0.0, &mut self.equations.rhs);
@@ -324,7 +269,7 @@ impl<const D: usize> Simple<D> {
         let gain = self.params.pressure_relaxation * fluid.density;
         // The viscous part of what the divergence takes (Cahouet & Chabat 1988); in SIMPLE proper β has it.
         let viscosity = if self.params.consistent { fluid.viscosity } else { 0.0 };
-        let eddy = self.eddy.as_ref().filter(|_| self.params.consistent);
+        let eddy = self.stress.as_ref().map(|s| &s.eddy).filter(|_| self.params.consistent);
         self.correction.scale(gain, viscosity, eddy);
         kernels::add_dense(grid, &self.correction.phi, pressure);
         self.state.fill_velocity();
@@ -334,21 +279,74 @@ impl<const D: usize> Simple<D> {
         Ok(info)
     }
 
+    /// One iteration with a turbulence model: the flow's with what the model says, then the model's with the flow that results.
+    /// The residuals are those of [`iterate`](Self::iterate), and the model's.
+    ///
+    /// # Errors
+    /// Those of [`iterate`](Self::iterate), and [`FlowError::Closure`].
+    pub fn iterate_with<C: Closure>(&mut self, model: &mut Modelled<D, C>) -> Result<SimpleInfo, FlowError> {
+        let viscosity = self.state.fluid.viscosity;
+        let modelled = model.refresh(viscosity, 0.0)?;
+        if modelled {
+            std::mem::swap(&mut self.stress, &mut model.stress);
+            self.look_at(model);
+        }
+        let iterated = self.iterate();
+        if modelled {
+            std::mem::swap(&mut self.stress, &mut model.stress);
+        }
+        let mut info = iterated?;
+        match &mut self.walls {
+            Some(walls) => {
+                walls.fill_rows(viscosity);
+                walls.reach_in(&mut self.state.velocity.components);
+                let updated = model.update(&self.state.velocity, walls.wall_rows(), viscosity, 0.0, None);
+                walls.stop(&self.state.grid, &mut self.state.velocity.components);
+                updated?;
+            }
+            None => model.update(&self.state.velocity, &[], viscosity, 0.0, None)?,
+        }
+        info.closure = model.closure.residual();
+        Ok(info)
+    }
+
     /// Iterates until all residuals are at most `tolerance`.
     ///
     /// # Errors
     /// [`FlowError::NotSteady`] with the residuals after `max_iterations`; else those of [`iterate`](Self::iterate).
     pub fn solve(&mut self, max_iterations: usize, tolerance: f64) -> Result<SimpleInfo, FlowError> {
+        self.repeat(max_iterations, tolerance, Self::iterate)
+    }
+
+    /// The same with a turbulence model.
+    ///
+    /// # Errors
+    /// As [`solve`](Self::solve), and those of [`iterate_with`](Self::iterate_with).
+    pub fn solve_with<C: Closure>(
+        &mut self,
+        model: &mut Modelled<D, C>,
+        max_iterations: usize,
+        tolerance: f64,
+    ) -> Result<SimpleInfo, FlowError> {
+        self.repeat(max_iterations, tolerance, |flow| flow.iterate_with(model))
+    }
+
+    fn repeat(
+        &mut self,
+        max_iterations: usize,
+        tolerance: f64,
+        mut iterate: impl FnMut(&mut Self) -> Result<SimpleInfo, FlowError>,
+    ) -> Result<SimpleInfo, FlowError> {
         let mut info = SimpleInfo { continuity: f64::INFINITY, ..SimpleInfo::default() };
         for _ in 0..max_iterations {
-            info = self.iterate()?;
+            info = iterate(self)?;
             if info.largest() <= tolerance {
                 return Ok(info);
             }
         }
         let momentum = info.momentum.into_iter().fold(0.0, f64::max);
-        let SimpleInfo { iterations, continuity, .. } = info;
-        Err(FlowError::NotSteady { iterations, momentum, continuity, tolerance })
+        let SimpleInfo { iterations, continuity, closure, .. } = info;
+        Err(FlowError::NotSteady { iterations, momentum, continuity, closure, tolerance })
     }
 
     /// β where a box is one cell wide between two openings.

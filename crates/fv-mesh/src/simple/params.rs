@@ -96,6 +96,8 @@ pub struct SimpleInfo {
     pub momentum: [f64; 3],
     /// Σ |∇·u*| V over Σ |u*| A, A the faces.
     pub continuity: f64,
+    /// That of the turbulence model; 0 without one.
+    pub closure: f64,
     /// Iterations of the momentum solver, all components together.
     pub sweeps: usize,
     /// Iterations of the pressure solver.
@@ -105,6 +107,6 @@ pub struct SimpleInfo {
 impl SimpleInfo {
     /// The largest residual.
     pub fn largest(&self) -> f64 {
-        self.momentum.into_iter().fold(self.continuity, f64::max)
+        self.momentum.into_iter().fold(self.continuity.max(self.closure), f64::max)
     }
 }

@@ -3,12 +3,15 @@ mod kernels;
 mod sides;
 #[cfg(test)]
 mod tests;
+mod wall_faces;
 mod walls;
+
+pub(crate) use wall_faces::WallFaces;
 
 use crate::kernels::copy_dense;
 use crate::linear::{
     BiCgStabParams, BiCgStabScratch, Dilu, GaussSeidelParams, GaussSeidelScratch, GaussSeidelSweep,
-    LinearError, StencilMatrix, Sweep, SweepOrder, bicgstab, gauss_seidel,
+    LinearError, LinearOperator, StencilMatrix, Sweep, SweepOrder, bicgstab, gauss_seidel,
 };
 use crate::operators::{Operators, fill_dense};
 use crate::{CartesianGrid, Convection, Field, FlowError, Sides, Velocity};
@@ -20,14 +23,25 @@ use sides::CellSides;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransportParams {
     /// Convection scheme. Anything but [`Convection::Upwind`] enters by deferred correction (Khosla & Rubin 1974): the
-    /// matrix is upwind's, the difference is taken from the φ given, so that repeated solves converge to the scheme.
+    /// matrix is upwind's, the difference is taken from the φ given, so that repeated solves converge to the scheme. Where
+    /// the difference d is negative and φ is not, it enters as the sink −d/φ (Patankar 1980), so that what is positive stays so.
     pub scheme: Convection,
     /// Method of the linear solver.
     pub method: TransportMethod,
     /// Largest ‖b − Aφ‖ over the larger of ‖b‖ and ‖a_P φ‖, taken over the cells that are not pinned.
     pub tolerance: f64,
+    /// The solver may stop where the residual is this part of the residual of the φ given, too; 0 for never. A steady iteration
+    /// needs no more than 0.1.
+    pub reduction: f64,
     /// Iterations allowed.
     pub max_iterations: usize,
+}
+
+impl TransportParams {
+    /// For steady iterations: convection of second order ([`Convection::Limited`]), residuals brought down to a tenth.
+    pub fn steady() -> Self {
+        Self { scheme: Convection::Limited, reduction: 0.1, ..Self::default() }
+    }
 }
 
 impl Default for TransportParams {
@@ -36,6 +50,7 @@ impl Default for TransportParams {
             scheme: Convection::Upwind,
             method: TransportMethod::BiCgStab,
             tolerance: 1e-9,
+            reduction: 0.0,
             max_iterations: 1000,
         }
     }
@@ -61,7 +76,7 @@ pub enum TransportMethod {
 /// over faces of area A between centres at distance d, Γ_f interpolated linearly. This is ∇·(uφ) − φ∇·u for convection, so
 /// that the matrix is an M-matrix whatever ∇·u is: with upwind, and sources and boundary values that are not negative,
 /// φ is not negative either. With [`Convection::Upwind`] of first order in space where the flow carries, with the other
-/// schemes of second order (their deferred part may break positivity). Solves allocate nothing.
+/// schemes of second order. Solves allocate nothing.
 #[derive(Clone, Debug)]
 pub struct CellTransport<const D: usize> {
     ops: Operators<D>,
@@ -73,11 +88,16 @@ pub struct CellTransport<const D: usize> {
     dilu: Dilu,
     b: Vec<f64>,
     pinned: Vec<bool>,
+    /// Cells without fluid at their centre, and those from which their values are taken.
+    dry: Vec<Dry>,
     bicgstab: BiCgStabScratch,
     gauss_seidel: GaussSeidelScratch,
     /// Γ or a, φ or b, and two terms.
     fields: [Field<D>; 4],
 }
+
+/// A cell without fluid at its centre, and the weights of the cells around from which its value is taken.
+pub(crate) type Dry = (usize, Vec<(usize, f64)>);
 
 /// A [`CellTransport`] on a velocity: what a closure sees.
 #[derive(Debug)]
@@ -110,6 +130,7 @@ impl<const D: usize> CellTransport<D> {
             matrix,
             b: vec![0.0; n],
             pinned: vec![false; n],
+            dry: Vec::new(),
             bicgstab: BiCgStabScratch::new(n),
             gauss_seidel: GaussSeidelScratch::new(n),
             fields: std::array::from_fn(|_| Field::zeros(grid)),
@@ -124,6 +145,58 @@ impl<const D: usize> CellTransport<D> {
     pub fn on<'a>(&'a mut self, velocity: &'a Velocity<D>) -> Result<FlowTransport<'a, D>, FlowError> {
         velocity.components[0].check(self.ops.grid())?;
         Ok(FlowTransport { cells: self, velocity })
+    }
+
+    /// Takes these cells out of the equations: nothing passes between them and others.
+    pub(crate) fn set_walls(&mut self, dry: Vec<Dry>) {
+        self.dry = dry;
+    }
+    pub(crate) fn has_walls(&self) -> bool {
+        !self.dry.is_empty()
+    }
+
+    /// Closes the faces of cells without fluid.
+    fn shut(&mut self) {
+        let (cells, periodic) = (self.ops.grid().cells(), self.ops.metrics().periodic);
+        let (_, lower, upper) = self.matrix.parts_mut();
+        for (cell, _) in &self.dry {
+            let at = self.ops.grid().cell(*cell);
+            let mut step = 1;
+            for a in 0..D {
+                let (i, n) = (at[a], cells[a]);
+                let turn = step * (n - 1);
+                if i + 1 < n || periodic[a] {
+                    lower[a][if i + 1 < n { cell + step } else { cell - turn }] = 0.0;
+                }
+                if i > 0 || periodic[a] {
+                    upper[a][if i > 0 { cell - step } else { cell + turn }] = 0.0;
+                }
+                (lower[a][*cell], upper[a][*cell]) = (0.0, 0.0);
+                step *= n;
+            }
+        }
+    }
+
+    /// Gives cells without fluid the values around them.
+    fn extend(&self, phi: &mut [f64]) {
+        for (cell, from) in &self.dry {
+            if !from.is_empty() {
+                phi[*cell] = from.iter().map(|&(o, w)| w * phi[o]).sum();
+            }
+        }
+    }
+
+    pub(crate) fn grid(&self) -> &CartesianGrid<D> {
+        self.ops.grid()
+    }
+    /// `field` = `values` and zero gradient across the sides.
+    pub(crate) fn spread(&self, values: &[f64], field: &mut Field<D>) {
+        copy_dense(self.ops.grid(), values, field);
+        self.sides.fill(field, None, None);
+    }
+    /// Fills the ghosts of periodic axes.
+    pub(crate) fn wrap(&self, field: &mut Field<D>) {
+        self.sides.wrap(field.data_mut());
     }
 
     /// The distance of every cell from the nearest wall, to lower where bodies are nearer than the walls of the box.
@@ -184,12 +257,11 @@ impl<const D: usize> CellTransport<D> {
 
     /// Matrix and right-hand side without relaxation, pins and blends.
     fn assemble(&mut self, velocity: &Velocity<D>, e: &Equation<'_>, phi: &[f64]) -> Result<(), FlowError> {
-        let Self { ops, sides, params, volume, matrix, b, fields, .. } = self;
+        let Self { ops, sides, matrix, fields: [gamma, ..], .. } = self;
         let (grid, metrics) = (ops.grid(), ops.metrics());
-        let [gamma, carried, high, low] = fields;
         copy_dense(grid, e.diffusivity, gamma);
         sides.fill(gamma, None, None);
-        let (centre, mut lower, mut upper) = matrix.parts_mut();
+        let (_, lower, upper) = matrix.parts_mut();
         for axis in 0..D {
             let (gamma, velocity) = (&*gamma, &velocity.components[axis]);
             let kernel = Neighbour::<false, D> { grid, metrics, axis, gamma, velocity };
@@ -197,6 +269,11 @@ impl<const D: usize> CellTransport<D> {
             let kernel = Neighbour::<true, D> { grid, metrics, axis, gamma, velocity };
             fill_dense(grid, &kernel, upper[axis]);
         }
+        self.shut();
+        let Self { ops, sides, params, volume, matrix, b, fields, .. } = self;
+        let (grid, metrics) = (ops.grid(), ops.metrics());
+        let [_, carried, high, low] = fields;
+        let (centre, mut lower, mut upper) = matrix.parts_mut();
         centre.fill(0.0);
         b.copy_from_slice(e.source);
         b.iter_mut().zip(&*volume).for_each(|(b, v)| *b *= v);
@@ -215,8 +292,13 @@ impl<const D: usize> CellTransport<D> {
             sides.fill(carried, Some(e.inlet), e.wall);
             ops.convection(velocity, carried, params.scheme, high)?;
             ops.convection(velocity, carried, Convection::Upwind, low)?;
-            for ((b, v), (high, low)) in b.iter_mut().zip(&*volume).zip(high.values().zip(low.values())) {
-                *b += v * (high - low);
+            for (i, (high, low)) in high.values().zip(low.values()).enumerate() {
+                let rest = volume[i] * (high - low);
+                if rest < 0.0 && phi[i] > 0.0 {
+                    centre[i] -= rest / phi[i];
+                } else {
+                    b[i] += rest;
+                }
             }
         }
         Ok(())
@@ -238,8 +320,13 @@ impl<const D: usize> CellTransport<D> {
 
     fn iterate(&mut self, phi: &mut [f64]) -> Result<SolveInfo, LinearError> {
         let [all, scale] = self.scales(phi);
-        let TransportParams { method, tolerance, max_iterations, .. } = self.params;
-        let absolute = tolerance * scale;
+        let TransportParams { method, tolerance, reduction, max_iterations, .. } = self.params;
+        let mut absolute = tolerance * scale;
+        if reduction > 0.0 {
+            let work = &mut self.fields[2].data_mut()[..phi.len()];
+            self.matrix.residual(&self.b, phi, work);
+            absolute = absolute.max(reduction * work.iter().map(|r| r * r).sum::<f64>().sqrt());
+        }
         let Self { matrix, dilu, b, bicgstab: scratch, gauss_seidel: sweeps, .. } = self;
         // The solvers tell residuals relative to the whole b.
         let ratio = if scale > 0.0 { all / scale } else { 0.0 };
@@ -302,12 +389,17 @@ impl<const D: usize> CellTransport<D> {
                 self.matrix.pin(cell, value, &mut self.b)?;
                 (phi[cell], self.pinned[cell]) = (value, true);
             }
+            for &(cell, _) in &self.dry {
+                self.matrix.pin(cell, phi[cell], &mut self.b)?;
+                self.pinned[cell] = true;
+            }
             Ok(())
         });
         let solved = rows.and_then(|()| self.iterate(phi));
         if solved.is_ok() {
             self.keep_sign(phi, 2);
             e.pinned.iter().for_each(|&(cell, value)| phi[cell] = value);
+            self.extend(phi);
         }
         solved.map_err(|error| match error {
             LinearError::NotConverged { iterations, residual, tolerance } => {
@@ -336,6 +428,17 @@ impl<const D: usize> Transport for FlowTransport<'_, D> {
         check_length("the strain rate", self.n_cells(), out.len())?;
         let ops = &self.cells.ops;
         fill_dense(ops.grid(), &ops.strain_kernel(&self.velocity.components), out);
+        Ok(())
+    }
+    fn velocity_gradient(&mut self, out: &mut [[[f64; 3]; 3]]) -> Result<(), SolveError> {
+        check_length("the velocity gradient", self.n_cells(), out.len())?;
+        out.fill([[0.0; 3]; 3]);
+        let CellTransport { ops, fields: [field, ..], .. } = &mut *self.cells;
+        for (a, b) in (0..D).flat_map(|a| (0..D).map(move |b| (a, b))) {
+            let made = ops.velocity_gradient(self.velocity, [a, b], field);
+            made.map_err(|e| SolveError::Solver(e.to_string()))?;
+            out.iter_mut().zip(field.values()).for_each(|(out, slope)| out[a][b] = slope);
+        }
         Ok(())
     }
     fn dot_gradients(&mut self, a: &[f64], b: &[f64], out: &mut [f64]) -> Result<(), SolveError> {

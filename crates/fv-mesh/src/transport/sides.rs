@@ -85,6 +85,11 @@ impl<const D: usize> CellSides<D> {
                 }
             }
         }
+        self.wrap(data);
+    }
+
+    /// Fills the ghosts of periodic axes.
+    pub(super) fn wrap(&self, data: &mut [f64]) {
         for (lines, _) in self.lines.iter().zip(&self.kinds).filter(|(_, k)| k.is_none()) {
             lines.wrap(data);
         }
@@ -123,23 +128,23 @@ impl<const D: usize> CellSides<D> {
 
 /// What the face of `side`, normal to axis `a`, at `x` is.
 fn kind<const D: usize>(side: &Side, a: usize, x: [f64; 3]) -> Result<Kind, FlowError> {
-    match side {
-        Side::Inlet(_) => Ok(Kind::Inlet),
-        Side::Wall(_) => Ok(Kind::Wall),
-        Side::Patches(patches) => {
-            let inside = |p: &Patch, b: usize| b == a || p.lower[b] <= x[b] && x[b] <= p.upper[b];
-            let patch = patches.iter().find(|p| (0..D).all(|b| inside(p, b)));
-            match patch {
-                Some(patch) => kind::<D>(&patch.side, a, x),
-                None => Err(FlowError::Boundary {
-                    what: format!(
-                        "patches on a side of axis {a} that leave out the face at {x:?} m; cover the whole side"
-                    ),
-                }),
-            }
-        }
-        _ => Ok(Kind::Open),
+    match part_at::<D>(side, a, x) {
+        Some(Side::Inlet(_)) => Ok(Kind::Inlet),
+        Some(Side::Wall(_)) => Ok(Kind::Wall),
+        Some(_) => Ok(Kind::Open),
+        None => Err(FlowError::Boundary {
+            what: format!(
+                "patches on a side of axis {a} that leave out the face at {x:?} m; cover the whole side"
+            ),
+        }),
     }
+}
+
+/// The part of `side`, normal to axis `a`, that holds the face at `x`; `None` where patches leave it out.
+pub(super) fn part_at<const D: usize>(side: &Side, a: usize, x: [f64; 3]) -> Option<&Side> {
+    let Side::Patches(patches) = side else { return Some(side) };
+    let inside = |p: &Patch, b: usize| b == a || p.lower[b] <= x[b] && x[b] <= p.upper[b];
+    patches.iter().find(|p| (0..D).all(|b| inside(p, b))).map(|p| &p.side)
 }
 
 /// Weights of the cells nearest to a side in the ghost that mirrors the first: the parabola through three, the line

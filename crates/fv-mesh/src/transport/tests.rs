@@ -354,7 +354,7 @@ fn bad_equations_are_errors() {
     assert!(flow.dot_gradients(&one, &one, &mut [0.0; 2]).is_err());
     assert_eq!((flow.n_cells(), flow.cell_volume(4)), (6, grid.cell_volume([1, 1])));
     assert!(().eddy_viscosity().is_none());
-    ().correct(&mut flow, 1.0, None).unwrap();
+    ().correct(&mut flow, &[], 1.0, None).unwrap();
     let other = CartesianGrid::new([2, 3], [1.0; 2]).unwrap();
     assert!(cells.on(&Velocity::zeros(&other, &sides)).is_err());
 }

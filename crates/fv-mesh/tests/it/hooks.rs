@@ -4,7 +4,7 @@ use fv_mesh::{
     Boussinesq, CartesianGrid, Fluid, ForceField, Hooks, Modelled, Projection, Scalar, ScalarSide, Side,
     TransportParams,
 };
-use interfaces::{Closure, SolveError, Transport, Vector, VelocityField};
+use interfaces::{Closure, SolveError, Transport, Vector, VelocityField, WallRow};
 use std::f64::consts::TAU;
 
 fn vortices(nu: f64) -> Projection<2> {
@@ -51,7 +51,13 @@ impl Closure for Uniform {
     fn eddy_viscosity(&self) -> Option<&[f64]> {
         Some(&self.0)
     }
-    fn correct(&mut self, flow: &mut dyn Transport, _: f64, _: Option<f64>) -> Result<(), SolveError> {
+    fn correct(
+        &mut self,
+        flow: &mut dyn Transport,
+        _: &[WallRow],
+        _: f64,
+        _: Option<f64>,
+    ) -> Result<(), SolveError> {
         let mut strain = vec![0.0; flow.n_cells()];
         flow.strain_rate(&mut strain)?;
         assert!(strain.iter().all(|s| s.is_finite()));
@@ -66,14 +72,18 @@ fn a_force_is_not_felt_twice_after_a_refused_step() {
     let field = || Hooks::none().with_body_force(ForceField(|x: [f64; 2], _t: f64| [x[1].sin(), 0.0]));
     assert!(tried.advance_with(-1.0, &mut field()).is_err());
     let n = tried.grid().n_cells();
-    let modelled = Modelled::new(Uniform(vec![1e3; n]), &tried, TransportParams::default()).unwrap();
+    let modelled =
+        Modelled::new(Uniform(vec![1e3; n]), tried.grid(), tried.sides(), TransportParams::default())
+            .unwrap();
     assert!(tried.advance_with(0.02, &mut field().with_closure(modelled)).is_err());
     for _ in 0..3 {
         tried.advance_with(0.02, &mut field()).unwrap();
         plain.advance_with(0.02, &mut field()).unwrap();
     }
     assert_eq!(difference(&tried, &plain), 0.0);
-    let short = Modelled::new(Uniform(vec![1e-3; n - 1]), &tried, TransportParams::default()).unwrap();
+    let short =
+        Modelled::new(Uniform(vec![1e-3; n - 1]), tried.grid(), tried.sides(), TransportParams::default())
+            .unwrap();
     let error = tried.advance_with(0.02, &mut Hooks::none().with_closure(short)).unwrap_err().to_string();
     assert!(error.contains("480 cells"), "{error}");
 }
@@ -83,7 +93,7 @@ fn a_uniform_eddy_viscosity_is_a_viscosity() {
     // ∇·(∇u)ᵀ is a gradient times div u = 0: in a box without walls the discrete operators agree to round-off.
     let (mut thick, mut thin) = (vortices(0.05), vortices(0.02));
     let closure = Uniform(vec![0.03; thin.grid().n_cells()]);
-    let modelled = Modelled::new(closure, &thin, TransportParams::default()).unwrap();
+    let modelled = Modelled::new(closure, thin.grid(), thin.sides(), TransportParams::default()).unwrap();
     let mut hooks = Hooks::none().with_closure(modelled);
     thick.project(1.0).unwrap();
     thin.project(1.0).unwrap();

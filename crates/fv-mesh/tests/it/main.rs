@@ -4,3 +4,4 @@ mod exact;
 mod hooks;
 mod norms;
 mod stress;
+mod wall_friction;

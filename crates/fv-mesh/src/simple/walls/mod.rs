@@ -1,4 +1,5 @@
 //! Immersed walls in the steady algorithm: conservative balances over what they leave of the control volumes.
+mod beside;
 mod gradients;
 mod openings;
 mod rows;
@@ -10,9 +11,11 @@ use crate::linear::StencilMatrix;
 use crate::metrics::Metrics;
 use crate::momentum_matrix::MomentumEquations;
 use crate::simple::PressureCorrection;
+use crate::transport::Dry;
 use crate::{CartesianGrid, Convection, Field, FlowError};
+use beside::{Beside, Ghost};
 use gradients::Gradients;
-use interfaces::{CutCells, Vector, Wrench};
+use interfaces::{CutCells, Vector, WallRow, Wrench};
 use openings::Openings;
 use rows::{Flow, Row};
 use std::collections::HashSet;
@@ -31,6 +34,10 @@ pub(crate) struct SimpleWalls<const D: usize> {
     sides: [Vec<(usize, f64)>; D],
     /// Cells without fluid at their centre, and the weights of those around from which their ν_t is taken.
     dry: Vec<(usize, Vec<(usize, f64)>)>,
+    /// The cells that wall functions see.
+    beside: Beside,
+    /// Nodes in the solid beside nodes in the fluid.
+    ghosts: [Vec<Ghost>; D],
     sums: Vec<f64>,
     n_bodies: usize,
 }
@@ -93,10 +100,14 @@ impl<const D: usize> SimpleWalls<D> {
             }
         }
         let stresses = Stresses::new(&openings, law, &rows, &mut gradients);
+        let beside = Beside::new(&openings);
+        let ghosts = std::array::from_fn(|c| beside::ghosts(&openings, c, law.sticks(), &mut gradients[c]));
         let n_bodies = cuts.walls.iter().map(|w| w.body + 1).max().unwrap_or(0);
         let longest = rows.iter().map(Vec::len).max().unwrap_or(0);
         Ok(Self {
             dry: dry(&openings),
+            beside,
+            ghosts,
             sums: vec![0.0; longest],
             rows,
             gradients,
@@ -160,6 +171,8 @@ impl<const D: usize> SimpleWalls<D> {
             *terms -= volume(index) * (equations.tendency(index).abs() + slope(index).abs() + it.force.abs());
         }
         let centre = matrix.parts_mut().0;
+        // Whatever the rows of the solid are, they can be solved.
+        self.shut[c].iter().for_each(|&cell| centre[cell] = 1.0);
         for ((sum, rate), row) in self.sums.iter().zip(rates).zip(rows) {
             *terms += volume(row.index) * (sum.abs() - equations.tendency(row.index).abs());
             equations.rhs[row.cell] = sum - slope(row.index) + it.force;
@@ -193,6 +206,33 @@ impl<const D: usize> SimpleWalls<D> {
         }
     }
 
+    /// The cells without fluid at their centre, by dense numbers.
+    pub(super) fn dry_cells(&self, grid: &CartesianGrid<D>) -> Vec<Dry> {
+        let dense = |o: usize| grid.cell_at(o).map(|cell| grid.index(cell));
+        let list = |from: &[(usize, f64)]| from.iter().filter_map(|&(o, w)| Some((dense(o)?, w))).collect();
+        self.dry.iter().filter_map(|(cell, from)| Some((dense(*cell)?, list(from)))).collect()
+    }
+
+    /// Fills the rows of wall functions.
+    pub(super) fn fill_rows(&mut self, viscosity: f64) {
+        self.beside.fill(&self.stresses, viscosity);
+    }
+
+    pub(super) fn wall_rows(&self) -> &[WallRow] {
+        &self.beside.rows
+    }
+
+    /// Lets the velocity go on smoothly into the solid, for gradients beside it.
+    pub(super) fn reach_in(&self, velocity: &mut [Field<D>; D]) {
+        for (c, u) in velocity.iter_mut().enumerate() {
+            let data = u.data_mut();
+            for ghost in &self.ghosts[c] {
+                data[ghost.node] =
+                    ghost.terms.iter().map(|&(o, w)| w * data[o]).sum::<f64>() + ghost.constant;
+            }
+        }
+    }
+
     /// Stops what is in the solid.
     pub(super) fn stop(&self, grid: &CartesianGrid<D>, velocity: &mut [Field<D>; D]) {
         for (list, u) in self.shut.iter().zip(velocity) {
@@ -203,7 +243,7 @@ impl<const D: usize> SimpleWalls<D> {
     /// Gives cells in the solid the values around them.
     pub(super) fn extend(&self, values: &mut Field<D>) {
         let data = values.data_mut();
-        for (cell, from) in &self.dry {
+        for (cell, from) in self.dry.iter().filter(|(_, from)| !from.is_empty()) {
             data[*cell] = from.iter().map(|&(o, w)| w * data[o]).sum();
         }
     }
@@ -230,11 +270,11 @@ fn dry<const D: usize>(openings: &Openings<D>) -> Vec<(usize, Vec<(usize, f64)>)
     let cells = (0..grid.n_cells()).map(|cell| grid.place(grid.cell(cell)));
     cells
         .filter(|&o| !openings.wet[o])
-        .filter_map(|cell| {
+        .map(|cell| {
             let from: Vec<usize> =
                 gradients::around(openings, cell).filter(|&o| inner(o) && openings.wet[o]).collect();
             let weight = 1.0 / from.len().max(1) as f64;
-            (!from.is_empty()).then(|| (cell, from.into_iter().map(|o| (o, weight)).collect()))
+            (cell, from.into_iter().map(|o| (o, weight)).collect())
         })
         .collect()
 }

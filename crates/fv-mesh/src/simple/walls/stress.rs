@@ -98,6 +98,8 @@ pub(super) struct Stresses<const D: usize> {
     /// Per probe: what the wall takes from the fluid per area and density \[m²/s²\], and that over the velocity.
     pub(super) traction: Vec<Vector>,
     friction: Vec<f64>,
+    /// C_μ^¼ √k there, where k is known \[m/s\].
+    speeds: Vec<Option<f64>>,
     /// Per probe: the force per density \[m⁴/s²\] on it in the last iteration.
     pub(super) force: Vec<Vector>,
 }
@@ -118,6 +120,7 @@ impl<const D: usize> Stresses<D> {
             shares: std::array::from_fn(|_| Vec::new()),
             traction: vec![Vector::zeros(); n],
             friction: vec![0.0; n],
+            speeds: vec![None; n],
             force: vec![Vector::zeros(); n],
         };
         for wall in openings.walls {
@@ -196,9 +199,30 @@ impl<const D: usize> Stresses<D> {
             let k = k.map(|k| {
                 self.cells[probe.cells.0..probe.cells.1].iter().map(|&(o, w)| w * k.data()[o]).sum()
             });
+            self.speeds[p] = k.map(|k: f64| C_MU * k.max(0.0).sqrt());
             self.friction[p] = friction(kappa, e, [probe.y, u.norm()], k, nu);
             self.traction[p] = u * self.friction[p];
         }
+    }
+
+    /// Tangential velocity and shear at distance `y` from the wall that go with its friction; by the logarithmic law where that
+    /// is known.
+    pub(super) fn seen(&self, probe: usize, y: f64, nu: f64) -> (f64, Option<f64>) {
+        let WallStress::LogLaw { kappa, e, .. } = self.law else {
+            let slope = self.force[probe].norm() / (nu * self.probes[probe].area);
+            return (slope * y, Some(slope));
+        };
+        let stress = self.traction[probe].norm();
+        let friction = stress.sqrt();
+        // What the law with k, or without, makes of this distance.
+        let speed = self.speeds[probe].unwrap_or(friction);
+        let star = speed * y / nu;
+        let linear = stress * y / nu;
+        if star < e.recip().max(1.0) || speed == 0.0 {
+            return (linear, Some(stress / nu));
+        }
+        let law = stress / (kappa * speed) * (e * star).ln();
+        (law.min(linear), Some(stress / (nu + kappa * speed * y)))
     }
 
     /// Adds the stress to the equations of component `c`: right-hand sides and diagonals.

@@ -1,0 +1,62 @@
+//! What an eddy viscosity does to the momentum.
+use crate::flow_state::FlowState;
+use crate::linear::StencilMatrix;
+use crate::{Field, kernels};
+
+/// The stress of an eddy viscosity ν_t: ∇·[ν_t(∇u + ∇uᵀ)], and the friction of walls where a model gives it.
+#[derive(Clone, Debug)]
+pub struct EddyStress<const D: usize> {
+    /// ν_t at the centres with its ghosts; half the sum of a ghost and the cell inside is ν_t on the side.
+    pub(crate) eddy: Field<D>,
+    /// Of each component.
+    pub(crate) friction: [Vec<Friction>; D],
+    /// The largest ν_t \[m²/s\], of the cells or on walls.
+    pub(crate) most: f64,
+}
+
+/// −`rate` (u − `wall`) at a node \[m/s²\].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Friction {
+    /// Number of the dense cell of the node.
+    pub(crate) cell: usize,
+    /// Storage index of the node.
+    pub(crate) place: usize,
+    /// \[1/s\].
+    pub(crate) rate: f64,
+    /// Velocity of the wall \[m/s\].
+    pub(crate) wall: f64,
+}
+
+impl<const D: usize> EddyStress<D> {
+    /// That of ν_t with its ghosts, without friction.
+    pub(crate) fn of(eddy: Field<D>) -> Self {
+        let most = eddy.data().iter().copied().fold(0.0, f64::max);
+        Self { eddy, friction: std::array::from_fn(|_| Vec::new()), most }
+    }
+
+    /// Adds the acceleration of component `c` to `source`.
+    pub(crate) fn add(&self, c: usize, state: &FlowState<D>, source: &mut Field<D>) {
+        let FlowState { grid, metrics, velocity, .. } = state;
+        let (u, eddy) = (&velocity.components, &self.eddy);
+        kernels::add_eddy_stress(grid, metrics, c, u, eddy, source);
+        let (u, source) = (u[c].data(), source.data_mut());
+        for f in &self.friction[c] {
+            source[f.place] -= f.rate * (u[f.place] - f.wall);
+        }
+    }
+
+    /// Adds the friction to the equations A δ = `rhs` of component `c`, implicitly.
+    pub(crate) fn add_friction(
+        &self,
+        c: usize,
+        velocity: &[Field<D>; D],
+        matrix: &mut StencilMatrix<D>,
+        rhs: &mut [f64],
+    ) {
+        let (u, centre) = (velocity[c].data(), matrix.parts_mut().0);
+        for f in &self.friction[c] {
+            centre[f.cell] += f.rate;
+            rhs[f.cell] -= f.rate * (u[f.place] - f.wall);
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Turbulence models in a flow.
+use crate::metrics::Metrics;
+use crate::transport::{CellTransport, WallFaces};
+use crate::{CartesianGrid, EddyStress, Field, FlowError, Projection, Sides, TransportParams, Velocity};
+use interfaces::{Closure, SolveError, WallRow};
+
+/// What a turbulence model does to a flow; `()` does nothing.
+pub trait ClosureSlot<const D: usize> {
+    /// The stress of the model; `None` if there is none.
+    ///
+    /// # Errors
+    /// [`FlowError::Closure`].
+    fn stress(&mut self, flow: &Projection<D>) -> Result<Option<&EddyStress<D>>, FlowError>;
+    /// Brings the model up to date with the flow after a step of `dt` \[s\].
+    ///
+    /// # Errors
+    /// [`FlowError::Closure`].
+    fn correct(&mut self, flow: &Projection<D>, dt: f64) -> Result<(), FlowError>;
+}
+
+impl<const D: usize> ClosureSlot<D> for () {
+    #[inline(always)]
+    fn stress(&mut self, _flow: &Projection<D>) -> Result<Option<&EddyStress<D>>, FlowError> {
+        Ok(None)
+    }
+    #[inline(always)]
+    fn correct(&mut self, _flow: &Projection<D>, _dt: f64) -> Result<(), FlowError> {
+        Ok(())
+    }
+}
+
+/// A [`Closure`], the equations it may ask for on a flow's cells, and the walls of the box as it sees them.
+///
+/// Where the model gives ν_t on walls, the friction τ_w/ρ = (ν + ν_t) u_t/y of every wall face is taken from the two velocity nodes
+/// of each component beside it, half from each, and nothing else passes through the wall.
+pub struct Modelled<const D: usize, C> {
+    /// The model.
+    pub closure: C,
+    transport: CellTransport<D>,
+    walls: WallFaces<D>,
+    pub(crate) stress: Option<EddyStress<D>>,
+    /// The rows of the box's walls, then those of immersed ones.
+    rows: Vec<WallRow>,
+}
+
+impl<const D: usize, C: Closure> Modelled<D, C> {
+    /// The model on the cells of `grid` between `sides`.
+    ///
+    /// # Errors
+    /// [`FlowError`] for parameters that make no sense.
+    pub fn new(
+        closure: C,
+        grid: &CartesianGrid<D>,
+        sides: &Sides<D>,
+        params: TransportParams,
+    ) -> Result<Self, FlowError> {
+        let metrics = Metrics::new(grid, std::array::from_fn(|a| sides.periodic(a)));
+        Ok(Self {
+            closure,
+            transport: CellTransport::new(grid, sides, params)?,
+            walls: WallFaces::new(grid, &metrics, sides),
+            stress: None,
+            rows: Vec::new(),
+        })
+    }
+    /// The equations on the flow's cells.
+    pub fn transport(&self) -> &CellTransport<D> {
+        &self.transport
+    }
+    /// The equations on the flow's cells; their wall distance may be changed.
+    pub fn transport_mut(&mut self) -> &mut CellTransport<D> {
+        &mut self.transport
+    }
+    /// The cells beside the walls of the box, then those beside immersed walls, as the model last saw them.
+    pub fn wall_rows(&self) -> &[WallRow] {
+        &self.rows
+    }
+
+    /// Makes the stress of what the model says now. Is there any?
+    pub(crate) fn refresh(&mut self, viscosity: f64, time: f64) -> Result<bool, FlowError> {
+        let Some(eddy) = self.closure.eddy_viscosity() else { return Ok(false) };
+        let (grid, on_walls) = (self.transport.grid(), self.closure.wall_viscosity());
+        let failed = |what, expected, found| {
+            Err(FlowError::Closure { time, source: SolveError::Length { what, expected, found } })
+        };
+        if eddy.len() != grid.n_cells() {
+            return failed("the eddy viscosity", grid.n_cells(), eddy.len());
+        }
+        let rows = self.walls.rows().len();
+        let on_walls =
+            if on_walls.len() == self.rows.len() { &on_walls[..rows.min(on_walls.len())] } else { on_walls };
+        if !on_walls.is_empty() && on_walls.len() != rows {
+            return failed("the eddy viscosity on walls", rows, on_walls.len());
+        }
+        let stress = self.stress.get_or_insert_with(|| EddyStress::of(Field::zeros(grid)));
+        stress.most = eddy.iter().chain(on_walls).copied().fold(0.0, f64::max);
+        self.transport.spread(eddy, &mut stress.eddy);
+        if on_walls.is_empty() {
+            stress.friction.iter_mut().for_each(Vec::clear);
+        } else {
+            self.walls.rub(on_walls, viscosity, stress);
+            self.transport.wrap(&mut stress.eddy);
+        }
+        Ok(true)
+    }
+
+    /// Brings the model up to date with `velocity`.
+    pub(crate) fn update(
+        &mut self,
+        velocity: &Velocity<D>,
+        immersed: &[WallRow],
+        viscosity: f64,
+        time: f64,
+        dt: Option<f64>,
+    ) -> Result<(), FlowError> {
+        let rows = self.walls.fill(velocity, self.closure.kinetic_energy(), viscosity);
+        self.rows.clear();
+        self.rows.extend(rows.iter().chain(immersed));
+        let mut cells = self.transport.on(velocity)?;
+        let corrected = self.closure.correct(&mut cells, &self.rows, viscosity, dt);
+        corrected.map_err(|source| FlowError::Closure { time, source })
+    }
+}
+
+impl<const D: usize, C: Closure> ClosureSlot<D> for Modelled<D, C> {
+    fn stress(&mut self, flow: &Projection<D>) -> Result<Option<&EddyStress<D>>, FlowError> {
+        let given = self.refresh(flow.fluid().viscosity, flow.time())?;
+        Ok(self.stress.as_ref().filter(|_| given))
+    }
+    fn correct(&mut self, flow: &Projection<D>, dt: f64) -> Result<(), FlowError> {
+        self.update(flow.velocity(), &[], flow.fluid().viscosity, flow.time(), Some(dt))
+    }
+}

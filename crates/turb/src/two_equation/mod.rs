@@ -1,0 +1,382 @@
+//! Models of two transport equations: one for k, one for ω or ε.
+mod k_epsilon;
+mod law;
+mod realizable;
+mod sst;
+#[cfg(test)]
+mod tests;
+mod wilcox;
+
+pub use k_epsilon::StandardKEpsilon;
+pub use law::{Invariants, Law, Local, Scale, Terms};
+pub use realizable::Realizable;
+pub use sst::Sst;
+pub use wilcox::Wilcox;
+
+use crate::error::positive;
+use crate::wall::WallLayer;
+use crate::{Inflow, TurbulenceError, WallFunctions, YPlus};
+use interfaces::{Checkpoint, Closure, Equation, RestartError, SolveError, SolveInfo, Transport, WallRow};
+
+/// k–ω of Wilcox (1988).
+pub type KOmega = TwoEquation<Wilcox>;
+/// k–ε of Launder & Spalding (1974).
+pub type KEpsilon = TwoEquation<StandardKEpsilon>;
+/// Realizable k–ε of Shih et al. (1995).
+pub type RealizableKEpsilon = TwoEquation<Realizable>;
+/// k–ω SST of Menter, Kuntz & Langtry (2003).
+pub type KOmegaSst = TwoEquation<Sst>;
+
+/// How a [`TwoEquation`] model is iterated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Controls {
+    /// Under-relaxation of k in steady iterations, in (0, 1]. Default 0.8.
+    pub relax_k: f64,
+    /// Under-relaxation of ω or ε in steady iterations, in (0, 1]. Default 0.8.
+    pub relax_scale: f64,
+}
+
+impl Default for Controls {
+    fn default() -> Self {
+        Self { relax_k: 0.8, relax_scale: 0.8 }
+    }
+}
+
+/// A model of two equations,
+///
+/// ```text
+/// ∂k/∂t + ∇·(uk) − ∇·((ν + σ_k ν_t)∇k) = P − sink_k k
+/// ∂s/∂t + ∇·(us) − ∇·((ν + σ_s ν_t)∇s) = source_s − sink_s s,     s = ω or ε
+/// ```
+///
+/// whose terms its [`Law`] says. What is produced is explicit and not negative, what is consumed implicit, so that k and s stay
+/// positive by construction; [`floored`](Self::floored) counts the cells where round-off or a linear solver that stopped early
+/// made it necessary to set a value. Beside walls [`WallFunctions`] give s, the production of k and the wall's friction.
+#[derive(Clone, Debug)]
+pub struct TwoEquation<L> {
+    law: L,
+    controls: Controls,
+    inflow: Inflow,
+    layer: WallLayer,
+    k: Vec<f64>,
+    scale: Vec<f64>,
+    eddy: Vec<f64>,
+    work: Work,
+    /// What the last solves of s and k did.
+    solves: [SolveInfo; 2],
+    floored: usize,
+    y_plus: YPlus,
+}
+
+/// Lists of one entry per cell.
+#[derive(Clone, Debug, Default)]
+struct Work {
+    strain: Vec<f64>,
+    /// ∇k·∇s.
+    cross: Vec<f64>,
+    /// What the law wants to know again.
+    auxiliary: Vec<f64>,
+    gradient: Vec<[[f64; 3]; 3]>,
+    terms: [Vec<f64>; 3],
+}
+
+/// The least value of k \[m²/s²\] and of ω or ε.
+const FLOOR: f64 = 1e-30;
+
+impl<L: Law> TwoEquation<L> {
+    /// The model `law` on `cells` cells, all as `inflow`, which is also what enters.
+    ///
+    /// # Errors
+    /// [`TurbulenceError::Value`] for constants or an inflow that make no sense.
+    pub fn new(law: L, cells: usize, inflow: Inflow) -> Result<Self, TurbulenceError> {
+        law.check()?;
+        inflow.check()?;
+        let of = |wanted: bool| if wanted { vec![0.0; cells] } else { Vec::new() };
+        let mut new = Self {
+            controls: Controls::default(),
+            inflow,
+            layer: WallLayer::new(WallFunctions::default()),
+            k: vec![0.0; cells],
+            scale: vec![0.0; cells],
+            eddy: vec![0.0; cells],
+            work: Work {
+                strain: of(true),
+                cross: of(L::CROSS_DIFFUSION),
+                auxiliary: of(L::AUXILIARY),
+                gradient: if L::GRADIENT { vec![[[0.0; 3]; 3]; cells] } else { Vec::new() },
+                terms: std::array::from_fn(|_| of(true)),
+            },
+            solves: [SolveInfo::default(); 2],
+            floored: 0,
+            y_plus: YPlus::default(),
+            law,
+        };
+        new.fill(inflow)?;
+        Ok(new)
+    }
+
+    /// The same with these wall functions.
+    ///
+    /// # Errors
+    /// [`TurbulenceError::Value`].
+    pub fn with_wall_functions(mut self, functions: WallFunctions) -> Result<Self, TurbulenceError> {
+        functions.check()?;
+        self.layer = WallLayer::new(functions);
+        Ok(self)
+    }
+
+    /// The same with these controls.
+    ///
+    /// # Errors
+    /// [`TurbulenceError::Value`].
+    pub fn with_controls(mut self, controls: Controls) -> Result<Self, TurbulenceError> {
+        for (name, value) in
+            [("the relaxation factor of k", controls.relax_k), ("that of ω or ε", controls.relax_scale)]
+        {
+            if !(value > 0.0 && value <= 1.0) {
+                return Err(TurbulenceError::Value { name, value, range: "above 0 and at most 1" });
+            }
+        }
+        self.controls = controls;
+        Ok(self)
+    }
+
+    /// Sets every cell to `state`; what enters stays.
+    ///
+    /// # Errors
+    /// [`TurbulenceError::Value`].
+    pub fn fill(&mut self, state: Inflow) -> Result<(), TurbulenceError> {
+        state.check()?;
+        self.k.fill(state.k);
+        self.scale.fill(L::SCALE.of(&state));
+        self.eddy.fill(state.k / state.omega);
+        Ok(())
+    }
+
+    /// Sets k \[m²/s²\] and ω \[1/s\] or ε \[m²/s³\] of every cell.
+    ///
+    /// # Errors
+    /// [`TurbulenceError`] for lists of the wrong length or with values that are not positive.
+    pub fn set(&mut self, k: &[f64], scale: &[f64]) -> Result<(), TurbulenceError> {
+        for (what, from, to) in [("k", k, &mut self.k), ("ω or ε", scale, &mut self.scale)] {
+            if from.len() != to.len() {
+                return Err(TurbulenceError::Length { what, expected: to.len(), found: from.len() });
+            }
+            from.iter().try_for_each(|&v| positive(what, v))?;
+            to.copy_from_slice(from);
+        }
+        for (eddy, (k, s)) in self.eddy.iter_mut().zip(k.iter().zip(scale)) {
+            *eddy = match L::SCALE {
+                Scale::Omega => k / s,
+                Scale::Epsilon => 0.09 * k * k / s,
+            };
+        }
+        Ok(())
+    }
+
+    /// k of every cell \[m²/s²\].
+    pub fn k(&self) -> &[f64] {
+        &self.k
+    }
+    /// ω \[1/s\] or ε \[m²/s³\] of every cell.
+    pub fn scale(&self) -> &[f64] {
+        &self.scale
+    }
+    /// ν_t of every cell \[m²/s\].
+    pub fn nu_t(&self) -> &[f64] {
+        &self.eddy
+    }
+    /// The model's constants.
+    pub fn law(&self) -> &L {
+        &self.law
+    }
+    /// y+ of the cells beside walls, as of the last call.
+    pub fn y_plus(&self) -> YPlus {
+        self.y_plus
+    }
+    /// Values that had to be set to the least one in the last call.
+    pub fn floored(&self) -> usize {
+        self.floored
+    }
+    /// What the last solves of ω or ε, and of k, did.
+    pub fn solves(&self) -> [SolveInfo; 2] {
+        self.solves
+    }
+
+    /// What the law sees of cell `i`.
+    #[inline(always)]
+    fn local(&self, i: usize, distance: f64, nu: f64) -> Local {
+        let Work { strain, cross, auxiliary, .. } = &self.work;
+        Local {
+            k: self.k[i],
+            scale: self.scale[i],
+            eddy: self.eddy[i],
+            strain: strain[i],
+            cross: if L::CROSS_DIFFUSION { cross[i] } else { 0.0 },
+            // Of cells in solids.
+            distance: distance.max(1e-100),
+            nu,
+            auxiliary: if L::AUXILIARY { auxiliary[i] } else { 0.0 },
+        }
+    }
+
+    /// Strain rate, cross diffusion, and what the law makes of them.
+    fn prepare(&mut self, flow: &mut dyn Transport, nu: f64) -> Result<(), SolveError> {
+        if L::GRADIENT {
+            flow.velocity_gradient(&mut self.work.gradient)?;
+            let Work { strain, gradient, .. } = &mut self.work;
+            strain.iter_mut().zip(&*gradient).for_each(|(s, g)| *s = Invariants::of(g).strain);
+        } else {
+            flow.strain_rate(&mut self.work.strain)?;
+        }
+        if L::CROSS_DIFFUSION {
+            flow.dot_gradients(&self.k, &self.scale, &mut self.work.cross)?;
+        }
+        for w in &self.layer.cells {
+            if let Some(shear) = w.shear {
+                self.work.strain[w.cell] = shear;
+            }
+        }
+        if L::AUXILIARY {
+            let distance = flow.wall_distance();
+            for (i, &d) in distance.iter().enumerate() {
+                let local = self.local(i, d, nu);
+                let invariants = self.work.gradient.get(i).map(Invariants::of).unwrap_or_default();
+                self.work.auxiliary[i] = self.law.auxiliary(&local, invariants);
+            }
+            for w in self.layer.cells.iter().filter(|_| L::GRADIENT) {
+                if let Some(shear) = w.shear {
+                    let local = self.local(w.cell, distance[w.cell], nu);
+                    self.work.auxiliary[w.cell] = self.law.auxiliary(&local, Invariants::shear(shear));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn solve_scale(
+        &mut self,
+        flow: &mut dyn Transport,
+        nu: f64,
+        dt: Option<f64>,
+    ) -> Result<SolveInfo, SolveError> {
+        let mut terms = std::mem::take(&mut self.work.terms);
+        for (i, &d) in flow.wall_distance().iter().enumerate() {
+            self.law.scale_terms(&self.local(i, d, nu)).put(&mut terms, i);
+        }
+        let inlet = L::SCALE.of(&self.inflow);
+        let relax = if dt.is_some() { 1.0 } else { self.controls.relax_scale };
+        let equation = Equation { pinned: &self.layer.pins, ..equation(&terms, inlet, relax, dt) };
+        let solved = tolerant(flow.solve(&equation, &mut self.scale), dt);
+        self.work.terms = terms;
+        self.floored += floor(&mut self.scale);
+        solved
+    }
+
+    fn solve_k(
+        &mut self,
+        flow: &mut dyn Transport,
+        nu: f64,
+        dt: Option<f64>,
+    ) -> Result<SolveInfo, SolveError> {
+        let mut terms = std::mem::take(&mut self.work.terms);
+        let distance = flow.wall_distance();
+        for (i, &d) in distance.iter().enumerate() {
+            let local = self.local(i, d, nu);
+            self.law.k_terms(&local, local.eddy * local.strain * local.strain).put(&mut terms, i);
+        }
+        for w in &self.layer.cells {
+            let local = self.local(w.cell, distance[w.cell], nu);
+            let resolved = local.eddy * local.strain * local.strain;
+            let mut of_cell = self.law.k_terms(&local, w.production + (1.0 - w.share) * resolved);
+            of_cell.sink += w.conductance / flow.cell_volume(w.cell);
+            of_cell.put(&mut terms, w.cell);
+        }
+        let relax = if dt.is_some() { 1.0 } else { self.controls.relax_k };
+        let solved = tolerant(flow.solve(&equation(&terms, self.inflow.k, relax, dt), &mut self.k), dt);
+        self.work.terms = terms;
+        self.floored += floor(&mut self.k);
+        solved
+    }
+}
+
+fn equation(terms: &[Vec<f64>; 3], inlet: f64, relax: f64, dt: Option<f64>) -> Equation<'_> {
+    let [diffusivity, source, sink] = terms;
+    Equation { diffusivity, source, sink, pinned: &[], blend: &[], inlet, wall: None, dt, relax }
+}
+
+/// A steady iteration need not be exact.
+fn tolerant(solved: Result<SolveInfo, SolveError>, dt: Option<f64>) -> Result<SolveInfo, SolveError> {
+    match solved {
+        Err(SolveError::NotConverged { iterations, residual, .. })
+            if dt.is_none() && residual.is_finite() =>
+        {
+            Ok(SolveInfo { iterations, residual, initial_residual: residual })
+        }
+        other => other,
+    }
+}
+
+/// Sets what is below the least value to it, and counts.
+fn floor(list: &mut [f64]) -> usize {
+    let mut count = 0;
+    for v in list.iter_mut().filter(|v| !(**v >= FLOOR)) {
+        *v = FLOOR;
+        count += 1;
+    }
+    count
+}
+
+impl<L: Law> Closure for TwoEquation<L> {
+    fn eddy_viscosity(&self) -> Option<&[f64]> {
+        Some(&self.eddy)
+    }
+    fn kinetic_energy(&self) -> Option<&[f64]> {
+        Some(&self.k)
+    }
+    fn wall_viscosity(&self) -> &[f64] {
+        &self.layer.viscosity
+    }
+    fn residual(&self) -> f64 {
+        f64::max(self.solves[0].initial_residual, self.solves[1].initial_residual)
+    }
+
+    fn correct(
+        &mut self,
+        flow: &mut dyn Transport,
+        walls: &[WallRow],
+        nu: f64,
+        dt: Option<f64>,
+    ) -> Result<(), SolveError> {
+        let (expected, found) = (flow.n_cells(), self.k.len());
+        if expected != found {
+            return Err(SolveError::Length { what: "the turbulence model", expected, found });
+        }
+        self.floored = 0;
+        self.layer.update(walls, &self.k, nu, L::SCALE)?;
+        self.prepare(flow, nu)?;
+        self.solves[0] = self.solve_scale(flow, nu, dt)?;
+        self.solves[1] = self.solve_k(flow, nu, dt)?;
+        for (i, &d) in flow.wall_distance().iter().enumerate() {
+            self.eddy[i] = self.law.eddy_viscosity(&self.local(i, d, nu));
+        }
+        self.layer.refresh(walls, &self.k, nu);
+        self.y_plus = self.layer.y_plus(walls, nu);
+        Ok(())
+    }
+}
+
+impl<L> Checkpoint for TwoEquation<L> {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        sink("k", &self.k);
+        sink("scale", &self.scale);
+        sink("eddy", &self.eddy);
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        for (name, list) in [("k", &mut self.k), ("scale", &mut self.scale), ("eddy", &mut self.eddy)] {
+            let saved = RestartError::take(source, name, list.len())?;
+            list.copy_from_slice(saved);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,178 @@
+use super::*;
+use crate::testing::Uniform;
+use proptest::prelude::*;
+
+const INFLOW: Inflow = Inflow { k: 2.0, omega: 3.0 };
+
+/// −d ln k/d ln t once the start is forgotten, of turbulence that nothing feeds.
+fn decay<L: Law>(law: L) -> f64 {
+    let mut flow = Uniform::new([[0.0; 3]; 3], 1);
+    let mut model = TwoEquation::new(law, 1, INFLOW).unwrap();
+    // k(t) = k₀ (1 + t/(n t₀))^−n with t₀ = k/ε at the start: from this origin it is a power of time.
+    let turnover = 1.0 / (0.09 * INFLOW.omega);
+    let (mut time, mut at) = (0.0, Vec::new());
+    while time < 200.0 * turnover {
+        let dt = 5e-4 * (turnover + time);
+        model.correct(&mut flow, &[], 1e-9, Some(dt)).unwrap();
+        time += dt;
+        at.push((time, model.k()[0]));
+    }
+    // With the origin as unknown: t + t₁ is linear in k^(−1/n); n from the slopes of 1/(d ln k/dt), which is −(t + t₁)/n.
+    let slope = |i: usize| {
+        let ((t0, k0), (t1, k1)) = (at[i], at[i + 1]);
+        (0.5 * (t0 + t1), (t1 - t0) / (k1 / k0).ln())
+    };
+    let ((ta, a), (tb, b)) = (slope(at.len() / 2), slope(at.len() - 2));
+    -(tb - ta) / (b - a)
+}
+
+#[test]
+fn decay_has_the_exponent_of_the_model() {
+    let near = |found: f64, exact: f64| assert!((found / exact - 1.0).abs() < 2e-3, "{found} {exact}");
+    near(decay(StandardKEpsilon::default()), 1.0 / 0.92);
+    near(decay(Wilcox::default()), 1.2);
+    near(decay(Wilcox::openfoam()), 0.09 / 0.072);
+    near(decay(Realizable::default()), 1.0 / 0.9);
+    // Far from walls SST is k–ε in disguise.
+    near(decay(Sst::default()), 0.09 / 0.0828);
+}
+
+/// Homogeneous shear: k and the scale grow without bound, at the rate that P/ε = (C₂ − 1)/(C₁ − 1) says.
+#[test]
+fn shear_flow_reaches_the_equilibrium_of_the_model() {
+    let shear = 7.0;
+    let mut flow = Uniform::new([[0.0, shear, 0.0], [0.0; 3], [0.0; 3]], 1);
+    let mut model = TwoEquation::new(StandardKEpsilon::default(), 1, INFLOW).unwrap();
+    for _ in 0..20_000 {
+        model.correct(&mut flow, &[], 1e-9, Some(1e-3)).unwrap();
+    }
+    let ratio = model.nu_t()[0] * shear * shear / model.scale()[0];
+    assert!((ratio / (0.92 / 0.44) - 1.0).abs() < 2e-3, "{ratio}");
+}
+
+#[test]
+fn sst_blends_from_one_model_to_the_other() {
+    let sst = Sst::default();
+    let near =
+        Local { k: 1.0, scale: 100.0, eddy: 0.01, strain: 1.0, distance: 1e-3, nu: 1e-5, ..Local::default() };
+    let far = Local { distance: 1e3, ..near };
+    assert_eq!((sst.f_1(&near), sst.f_2(&near)), (1.0, 1.0));
+    assert!(sst.f_1(&far) < 1e-12 && sst.f_2(&far) < 1e-6);
+    // The limiter: ν_t = a₁k/|S| where |S| is large beside walls, k/ω elsewhere.
+    let sheared = |c: Local| Local { strain: 1e3, ..c };
+    assert_eq!(sst.eddy_viscosity(&sheared(near)), 0.31 / 1e3);
+    assert_eq!(sst.eddy_viscosity(&sheared(far)), 0.01);
+    // Cross diffusion of either sign is a term that is not negative.
+    let crossed = |cross: f64| sst.scale_terms(&Local { cross, auxiliary: 0.3, ..near });
+    let (plus, minus, none) = (crossed(50.0), crossed(-50.0), crossed(0.0));
+    let term = 2.0 * 0.7 * 0.856 * 50.0 / 100.0;
+    assert!((plus.source - none.source - term).abs() < 1e-13 && plus.sink == none.sink);
+    assert!(((minus.sink - none.sink) * 100.0 - term).abs() < 1e-13 && minus.source == none.source);
+}
+
+/// ν_t/ν and C_μ of the reference run's wall cell (realizable k–ε, mesh c): from its k+, y+ and u+.
+#[test]
+fn realizable_has_the_eddy_viscosity_of_the_reference_run() {
+    let (y, k, strain) = (52.604_748_67, 3.462_002_653, 0.156_107);
+    let epsilon = WallFunctions::default().epsilon(y, k, 1.0);
+    let law = Realizable::default();
+    let mut cell = Local { k, scale: epsilon, strain, nu: 1.0, ..Local::default() };
+    cell.auxiliary = law.auxiliary(&cell, Invariants::shear(strain));
+    let found = law.eddy_viscosity(&cell);
+    assert!((found / 8.925_587_185 - 1.0).abs() < 2e-3, "{found}");
+    // A strain that is not plane: of axisymmetric expansion √6 W = 1 and φ = 0.
+    let i = Invariants::of(&[[2.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]]);
+    assert!((6.0_f64.sqrt() * i.third - 1.0).abs() < 1e-12);
+    assert!((law.auxiliary(&cell, i) - 6.0).abs() < 1e-6);
+}
+
+/// A row whose k is in equilibrium with its friction: ν_t on the wall is that of the law of the wall, the pinned values are the
+/// wall functions', and production is dissipation.
+#[test]
+fn rows_get_wall_functions() {
+    let f = WallFunctions::default();
+    let (nu, y_plus, u_tau) = (1e-5, 80.0, 0.4);
+    let (y, u_t, k) = (y_plus * nu / u_tau, u_tau * f.u_plus(y_plus), u_tau * u_tau / 0.3);
+    let row = |cell, area| WallRow { cell, y, area, u_t, shear: Some(u_t / (2.0 * y)), ..WallRow::default() };
+    // Cell 1 has two walls.
+    let rows = [row(1, 0.5), row(0, 1.0), row(1, 1.5)];
+    let mut layer = WallLayer::new(f);
+    layer.update(&rows, &[k, k, 5.0], nu, Scale::Omega).unwrap();
+    layer.refresh(&rows, &[k, k, 5.0], nu);
+    layer.update(&rows, &[k, k, 5.0], nu, Scale::Omega).unwrap();
+    for nu_t in &layer.viscosity {
+        assert!(((nu + nu_t) * u_t / y / (u_tau * u_tau) - 1.0).abs() < 1e-12);
+    }
+    assert_eq!(layer.pins.len(), 2);
+    for (w, (cell, value)) in layer.cells.iter().zip(&layer.pins) {
+        assert_eq!(w.cell, *cell);
+        assert!((value / f.omega(y, k, nu) - 1.0).abs() < 1e-14);
+        assert!((w.production / (0.3_f64.powi(2) * k * f.omega(y, k, nu)) - 1.0).abs() < 0.02);
+        assert!((w.shear.unwrap() * 2.0 * y / u_t - 1.0).abs() < 1e-14 && w.share > 1.0 - 1e-12);
+    }
+    let statistics = layer.y_plus(&rows, nu);
+    assert!((statistics.mean / y_plus - 1.0).abs() < 1e-12 && statistics.rows == 3);
+    let bad = layer.update(&[WallRow { cell: 9, y, ..WallRow::default() }], &[k; 3], nu, Scale::Omega);
+    assert!(matches!(bad, Err(SolveError::Value { .. })));
+}
+
+#[test]
+fn bad_input_is_an_error() {
+    let new = |law: Wilcox, inflow| KOmega::new(law, 3, inflow).map(|_| ());
+    assert!(new(Wilcox { beta: 0.0, ..Wilcox::default() }, INFLOW).is_err());
+    assert!(new(Wilcox::default(), Inflow { k: -1.0, ..INFLOW }).is_err());
+    assert!(new(Wilcox::default(), Inflow { omega: f64::NAN, ..INFLOW }).is_err());
+    let mut model = KOmega::new(Wilcox::default(), 3, INFLOW).unwrap();
+    assert!(model.set(&[1.0; 2], &[1.0; 3]).is_err() && model.set(&[0.0; 3], &[1.0; 3]).is_err());
+    model.set(&[3.0; 3], &[2.0; 3]).unwrap();
+    assert_eq!(model.nu_t(), [1.5; 3]);
+    let other = model.correct(&mut Uniform::new([[0.0; 3]; 3], 2), &[], 1e-5, None);
+    assert!(matches!(other, Err(SolveError::Length { expected: 2, found: 3, .. })));
+    let controls = Controls { relax_k: 1.5, ..Controls::default() };
+    assert!(KOmega::new(Wilcox::default(), 3, INFLOW).unwrap().with_controls(controls).is_err());
+}
+
+#[test]
+fn a_checkpoint_goes_on_as_if_nothing_had_been() {
+    let mut flow = Uniform::new([[0.0, 2.0, 0.0], [0.0; 3], [0.0; 3]], 2);
+    let mut model = KOmegaSst::new(Sst::default(), 2, INFLOW).unwrap();
+    let mut step = |model: &mut KOmegaSst| model.correct(&mut flow, &[], 1e-5, Some(0.1)).unwrap();
+    step(&mut model);
+    let mut saved = Vec::new();
+    model.save(&mut |name, list| saved.push((name.to_owned(), list.to_vec())));
+    let mut other = KOmegaSst::new(Sst::default(), 2, INFLOW).unwrap();
+    let find = |name: &str| saved.iter().find(|(n, _)| n == name).map(|(_, l)| l.as_slice());
+    other.restore(&find).unwrap();
+    step(&mut model);
+    step(&mut other);
+    assert_eq!((model.k(), model.scale(), model.nu_t()), (other.k(), other.scale(), other.nu_t()));
+}
+
+fn all_positive<L: Law>(law: L, g: [[f64; 3]; 3], inflow: Inflow, rows: &[WallRow]) -> bool {
+    let mut flow = Uniform::new(g, 2);
+    flow.distance = vec![1e-3, 2.0];
+    let mut model = TwoEquation::new(law, 2, inflow).unwrap();
+    [None, Some(1e-2), None].into_iter().all(|dt| {
+        model.correct(&mut flow, rows, 1e-5, dt).unwrap();
+        let lists = [model.k(), model.scale(), model.nu_t()];
+        lists.into_iter().flatten().all(|v| v.is_finite() && *v >= 0.0)
+            && model.wall_viscosity().iter().all(|v| v.is_finite() && *v >= 0.0)
+            && model.floored() == 0
+    })
+}
+
+proptest! {
+    /// Whatever the strain, the state and the wall, k, ω, ε and ν_t are positive, and nothing had to be set.
+    #[test]
+    fn positivity(
+        g in prop::array::uniform3(prop::array::uniform3(-1e4..1e4f64)),
+        k in -8.0..3.0f64, omega in -3.0..7.0f64, u_t in 0.0..100.0f64, y in -7.0..-1.0f64,
+    ) {
+        let inflow = Inflow { k: 10f64.powf(k), omega: 10f64.powf(omega) };
+        let rows = [WallRow { cell: 0, y: 10f64.powf(y), area: 1.0, u_t, ..WallRow::default() }];
+        prop_assert!(all_positive(Wilcox::default(), g, inflow, &rows));
+        prop_assert!(all_positive(StandardKEpsilon::default(), g, inflow, &rows));
+        prop_assert!(all_positive(Realizable::default(), g, inflow, &rows));
+        prop_assert!(all_positive(Sst::default(), g, inflow, &rows));
+    }
+}

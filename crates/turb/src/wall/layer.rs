@@ -1,0 +1,127 @@
+//! Wall functions on rows.
+use super::functions::share;
+use crate::{Scale, WallFunctions, YPlus};
+use interfaces::{SolveError, WallRow};
+
+/// The cells beside walls.
+#[derive(Clone, Debug)]
+pub(crate) struct WallLayer {
+    pub(crate) functions: WallFunctions,
+    laminar: f64,
+    /// Rows, those of a cell together.
+    order: Vec<usize>,
+    pub(crate) cells: Vec<WallCell>,
+    /// Cells and the value of ω or ε there.
+    pub(crate) pins: Vec<(usize, f64)>,
+    /// ν_t on the wall of every row \[m²/s\].
+    pub(crate) viscosity: Vec<f64>,
+}
+
+/// A cell beside one or several walls, and what these do to it: means over its rows, weighted by area.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct WallCell {
+    pub(crate) cell: usize,
+    /// Its rows in `order`.
+    first: usize,
+    rows: usize,
+    /// Part of the logarithmic layer.
+    pub(crate) share: f64,
+    /// Production there, times the part \[m²/s³\].
+    pub(crate) production: f64,
+    /// Σ A ν/y of the viscous sublayer's flux of k, times its part \[m³/s\].
+    pub(crate) conductance: f64,
+    /// |∂u_t/∂n| \[1/s\].
+    pub(crate) shear: Option<f64>,
+}
+
+impl WallLayer {
+    pub(crate) fn new(functions: WallFunctions) -> Self {
+        Self {
+            laminar: functions.y_plus_laminar(),
+            functions,
+            order: Vec::new(),
+            cells: Vec::new(),
+            pins: Vec::new(),
+            viscosity: Vec::new(),
+        }
+    }
+
+    /// Sorts the rows by cell, if they are not as they were.
+    fn sort(&mut self, rows: &[WallRow], n: usize) -> Result<(), SolveError> {
+        let Self { order, cells, viscosity, .. } = self;
+        let known = order.len() == rows.len()
+            && cells.iter().all(|w| order[w.first..][..w.rows].iter().all(|&r| rows[r].cell == w.cell));
+        if known {
+            return Ok(());
+        }
+        if let Some(row) = rows.iter().find(|r| r.cell >= n || !(r.y.is_finite() && r.y > 0.0)) {
+            let (what, range) = ("the distance of a row from its wall", "positive, in a cell of the flow");
+            return Err(SolveError::Value { what, cell: Some(row.cell), value: row.y, range });
+        }
+        order.clear();
+        order.extend(0..rows.len());
+        order.sort_by_key(|&r| rows[r].cell);
+        cells.clear();
+        for (i, &r) in order.iter().enumerate() {
+            match cells.last_mut() {
+                Some(last) if last.cell == rows[r].cell => last.rows += 1,
+                _ => cells.push(WallCell { cell: rows[r].cell, first: i, rows: 1, ..WallCell::default() }),
+            }
+        }
+        viscosity.clear();
+        viscosity.resize(rows.len(), 0.0);
+        Ok(())
+    }
+
+    /// What the walls do, from the velocity in the rows, k of every cell and the ν_t on walls of before.
+    pub(crate) fn update(
+        &mut self,
+        rows: &[WallRow],
+        k: &[f64],
+        nu: f64,
+        scale: Scale,
+    ) -> Result<(), SolveError> {
+        self.sort(rows, k.len())?;
+        let Self { functions: f, laminar, order, cells, pins, viscosity, .. } = self;
+        pins.clear();
+        for w in cells.iter_mut() {
+            let own = &order[w.first..][..w.rows];
+            let (k, area) = (k[w.cell], own.iter().map(|&r| rows[r].area).sum::<f64>());
+            let mut value = 0.0;
+            (w.share, w.production, w.conductance, w.shear) = (0.0, 0.0, 0.0, Some(0.0));
+            for &r in own {
+                let row = &rows[r];
+                let part = if area > 0.0 { row.area / area } else { 1.0 / own.len() as f64 };
+                let share = share(f.y_star(row.y, k, nu), *laminar);
+                let friction = (nu + viscosity[r]) * row.u_t / row.y;
+                value += part
+                    * match scale {
+                        Scale::Omega => f.omega(row.y, k, nu),
+                        Scale::Epsilon => f.epsilon(row.y, k, nu),
+                    };
+                w.share += part * share;
+                w.production += part * share * f.production(row.y, k, friction);
+                w.conductance += (1.0 - share) * row.area * nu / row.y;
+                w.shear = w.shear.zip(row.shear).map(|(sum, shear)| sum + part * shear);
+            }
+            pins.push((w.cell, value));
+        }
+        Ok(())
+    }
+
+    /// Brings ν_t on the walls up to date with k.
+    pub(crate) fn refresh(&mut self, rows: &[WallRow], k: &[f64], nu: f64) {
+        for (viscosity, row) in self.viscosity.iter_mut().zip(rows) {
+            let y_star = self.functions.y_star(row.y, k[row.cell], nu);
+            *viscosity = nu * self.functions.ratio_above(y_star, self.laminar);
+        }
+    }
+
+    /// y+ of the rows.
+    pub(crate) fn y_plus(&self, rows: &[WallRow], nu: f64) -> YPlus {
+        YPlus::of(rows.iter().zip(&self.viscosity).map(|(row, nu_t)| {
+            let friction = (nu + nu_t) * row.u_t / row.y;
+            (row.y * friction.sqrt() / nu, row.area)
+        }))
+    }
+}

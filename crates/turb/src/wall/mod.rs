@@ -1,0 +1,8 @@
+//! Wall functions.
+mod functions;
+mod layer;
+mod statistics;
+
+pub use functions::WallFunctions;
+pub(crate) use layer::WallLayer;
+pub use statistics::YPlus;

@@ -11,8 +11,8 @@ const NEAREST: f64 = 0.3;
 #[derive(Default)]
 pub(super) struct Beside {
     pub(super) rows: Vec<WallRow>,
-    /// The piece of wall of each.
-    probes: Vec<usize>,
+    /// The piece of wall of each, and how far from it the cell ends \[m\].
+    probes: Vec<(usize, f64)>,
 }
 
 impl Beside {
@@ -43,22 +43,20 @@ impl Beside {
             let at = openings.at(index);
             let extent: f64 =
                 (0..D).map(|a| wall.normal[a].abs() * openings.metrics.axes[a].width[at[a]]).sum();
-            new.rows.push(WallRow {
-                cell,
-                y: y.max(NEAREST * extent),
-                area: wall.area,
-                ..WallRow::default()
-            });
-            new.probes.push(probe);
+            let y = y.max(NEAREST * extent);
+            new.rows.push(WallRow { cell, y, area: wall.area, ..WallRow::default() });
+            new.probes.push((probe, y + 0.5 * extent));
         }
         new
     }
 
     /// What the flow is there: the velocity that has the wall's friction by the logarithmic law.
     pub(super) fn fill<const D: usize>(&mut self, stresses: &Stresses<D>, nu: f64) {
-        for (row, &probe) in self.rows.iter_mut().zip(&self.probes) {
+        for (row, &(probe, end)) in self.rows.iter_mut().zip(&self.probes) {
             row.nu = nu;
-            (row.u_t, row.shear) = stresses.seen(probe, row.y, nu);
+            row.u_t = stresses.seen(probe, row.y, nu);
+            // Of the whole cell, as from differences over it.
+            row.shear = Some(stresses.seen(probe, end, nu) / end);
         }
     }
 }

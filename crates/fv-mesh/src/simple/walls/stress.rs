@@ -205,24 +205,18 @@ impl<const D: usize> Stresses<D> {
         }
     }
 
-    /// Tangential velocity and shear at distance `y` from the wall that go with its friction; by the logarithmic law where that
-    /// is known.
-    pub(super) fn seen(&self, probe: usize, y: f64, nu: f64) -> (f64, Option<f64>) {
+    /// Tangential velocity at distance `y` from the wall that goes with its friction, by the law where there is one.
+    pub(super) fn seen(&self, probe: usize, y: f64, nu: f64) -> f64 {
         let WallStress::LogLaw { kappa, e, .. } = self.law else {
-            let slope = self.force[probe].norm() / (nu * self.probes[probe].area);
-            return (slope * y, Some(slope));
+            return self.force[probe].norm() / self.probes[probe].area * y / nu;
         };
         let stress = self.traction[probe].norm();
-        let friction = stress.sqrt();
-        // What the law with k, or without, makes of this distance.
-        let speed = self.speeds[probe].unwrap_or(friction);
-        let star = speed * y / nu;
-        let linear = stress * y / nu;
-        if star < e.recip().max(1.0) || speed == 0.0 {
-            return (linear, Some(stress / nu));
+        let speed = self.speeds[probe].unwrap_or_else(|| stress.sqrt());
+        let (linear, star) = (stress * y / nu, speed * y / nu);
+        if e * star <= 1.0 {
+            return linear;
         }
-        let law = stress / (kappa * speed) * (e * star).ln();
-        (law.min(linear), Some(stress / (nu + kappa * speed * y)))
+        (stress / (kappa * speed) * (e * star).ln()).min(linear)
     }
 
     /// Adds the stress to the equations of component `c`: right-hand sides and diagonals.

@@ -18,6 +18,7 @@ mod snapshots;
 mod strategies;
 mod stretched;
 mod suspension;
+mod turbulence;
 mod wall_rows;
 mod walls;
 mod window;

@@ -27,6 +27,7 @@ pub mod sphere_stream;
 pub mod startup_theory;
 pub mod suspension;
 pub mod table;
+pub mod turbulent_flows;
 pub mod unfolded;
 pub mod wake;
 pub mod walled_flows;

@@ -11,6 +11,7 @@ mod colour;
 pub mod comparison;
 pub mod gallery;
 pub mod plot;
+pub mod profiles;
 pub mod sketch;
 pub mod solids;
 pub mod summary;

@@ -45,7 +45,7 @@ mod operator;
 mod stencil;
 #[cfg(test)]
 mod tests;
-mod vector;
+pub(crate) mod vector;
 
 pub use bicgstab::{BiCgStabInfo, BiCgStabParams, BiCgStabScratch, bicgstab};
 pub use cholesky::SparseCholesky;

@@ -11,7 +11,7 @@ pub(crate) use wall_faces::WallFaces;
 use crate::kernels::copy_dense;
 use crate::linear::{
     BiCgStabParams, BiCgStabScratch, Dilu, GaussSeidelParams, GaussSeidelScratch, GaussSeidelSweep,
-    LinearError, LinearOperator, StencilMatrix, Sweep, SweepOrder, bicgstab, gauss_seidel,
+    LinearError, LinearOperator, StencilMatrix, Sweep, SweepOrder, bicgstab, gauss_seidel, vector,
 };
 use crate::operators::{Operators, fill_dense};
 use crate::{CartesianGrid, Convection, Field, FlowError, Sides, Velocity};
@@ -28,7 +28,8 @@ pub struct TransportParams {
     pub scheme: Convection,
     /// Method of the linear solver.
     pub method: TransportMethod,
-    /// Largest ‖b − Aφ‖ over the larger of ‖b‖ and ‖a_P φ‖, taken over the cells that are not pinned.
+    /// Largest relative residual: where nothing is negative, the root mean square of (b_P − Σ a φ)/(a_P φ_P) over the cells; else
+    /// ‖b − Aφ‖ over the larger of ‖b‖ and ‖a_P φ‖, taken over the cells that are not pinned.
     pub tolerance: f64,
     /// The solver may stop where the residual is this part of the residual of the φ given, too; 0 for never. A steady iteration
     /// needs no more than 0.1.
@@ -87,6 +88,9 @@ pub struct CellTransport<const D: usize> {
     matrix: StencilMatrix<D>,
     dilu: Dilu,
     b: Vec<f64>,
+    /// 1/(a_P s) and φ/s.
+    units: Vec<f64>,
+    x: Vec<f64>,
     pinned: Vec<bool>,
     /// Cells without fluid at their centre, and those from which their values are taken.
     dry: Vec<Dry>,
@@ -129,6 +133,8 @@ impl<const D: usize> CellTransport<D> {
             dilu: Dilu::new(&matrix).map_err(too_large)?,
             matrix,
             b: vec![0.0; n],
+            units: vec![0.0; n],
+            x: vec![0.0; n],
             pinned: vec![false; n],
             dry: Vec::new(),
             bicgstab: BiCgStabScratch::new(n),
@@ -304,38 +310,29 @@ impl<const D: usize> CellTransport<D> {
         Ok(())
     }
 
-    /// Norms of b and of the larger of b and a_P φ, over the cells that are not pinned for the latter.
-    fn scales(&self, phi: &[f64]) -> [f64; 2] {
-        let (mut all, mut given, mut carried) = (0.0, 0.0, 0.0);
-        for (i, b) in self.b.iter().enumerate() {
-            all += b * b;
-            if !self.pinned[i] {
-                let term = self.matrix.diagonal(i) * phi[i];
-                given += b * b;
-                carried += term * term;
-            }
+    /// Norm over the cells that are not pinned of the larger of b and a_P φ.
+    fn scale(&self, phi: &[f64]) -> f64 {
+        let (mut given, mut carried) = (0.0, 0.0);
+        for (i, b) in self.b.iter().enumerate().filter(|&(i, _)| !self.pinned[i]) {
+            let term = self.matrix.diagonal(i) * phi[i];
+            given += b * b;
+            carried += term * term;
         }
-        [all.sqrt(), f64::max(given, carried).sqrt()]
+        f64::max(given, carried).sqrt()
     }
 
-    fn iterate(&mut self, phi: &mut [f64]) -> Result<SolveInfo, LinearError> {
-        let [all, scale] = self.scales(phi);
-        let TransportParams { method, tolerance, reduction, max_iterations, .. } = self.params;
-        let mut absolute = tolerance * scale;
-        if reduction > 0.0 {
-            let work = &mut self.fields[2].data_mut()[..phi.len()];
-            self.matrix.residual(&self.b, phi, work);
-            absolute = absolute.max(reduction * work.iter().map(|r| r * r).sum::<f64>().sqrt());
-        }
+    /// Solves A x = b until ‖b − A x‖ ≤ `absolute`; gives the iterations and the residuals before and after.
+    fn linear(&mut self, x: &mut [f64], absolute: f64) -> Result<(usize, f64, f64), LinearError> {
+        let TransportParams { method, max_iterations, .. } = self.params;
         let Self { matrix, dilu, b, bicgstab: scratch, gauss_seidel: sweeps, .. } = self;
-        // The solvers tell residuals relative to the whole b.
-        let ratio = if scale > 0.0 { all / scale } else { 0.0 };
+        // The solvers tell residuals relative to b.
+        let all = vector::norm(b);
         let result = match method {
             TransportMethod::BiCgStab => {
                 dilu.refactor(matrix)?;
                 let params = BiCgStabParams { relative: 0.0, absolute, max_iterations };
-                let solved = bicgstab(&*matrix, &mut dilu.with(matrix)?, b, phi, scratch, &params);
-                solved.map(|i| (i.iterations, i.initial_residual, i.residual))
+                let solved = bicgstab(&*matrix, &mut dilu.with(matrix)?, b, x, scratch, &params);
+                solved.map(|i| (i.iterations, all * i.initial_residual, all * i.residual))
             }
             TransportMethod::GaussSeidel => {
                 let params = GaussSeidelParams {
@@ -345,29 +342,71 @@ impl<const D: usize> CellTransport<D> {
                     order: SweepOrder::Symmetric,
                     ..GaussSeidelParams::default()
                 };
-                let solved = gauss_seidel(&*matrix, b, phi, sweeps, &params);
-                solved.map(|i| (i.iterations, i.initial_residual, i.residual))
+                let solved = gauss_seidel(&*matrix, b, x, sweeps, &params);
+                solved.map(|i| (i.iterations, all * i.initial_residual, all * i.residual))
             }
         };
-        match result {
-            Ok((iterations, initial, residual)) => {
-                Ok(SolveInfo { iterations, initial_residual: ratio * initial, residual: ratio * residual })
+        result.map_err(|error| match error {
+            LinearError::NotConverged { iterations, residual, tolerance } => {
+                LinearError::NotConverged { iterations, residual: all * residual, tolerance }
             }
-            Err(LinearError::NotConverged { iterations, residual, .. }) => {
-                Err(LinearError::NotConverged { iterations, residual: ratio * residual, tolerance })
-            }
-            Err(other) => Err(other),
-        }
+            other => other,
+        })
     }
 
-    /// Where no term is negative the solution is not: what the iteration left below zero is set to zero, and swept
-    /// over once, which keeps signs.
-    fn keep_sign(&mut self, phi: &mut [f64], work: usize) {
-        if self.b.iter().any(|b| *b < 0.0) || phi.iter().all(|p| *p >= 0.0) {
-            return;
+    fn iterate(&mut self, phi: &mut [f64]) -> Result<SolveInfo, LinearError> {
+        if phi.iter().chain(&self.b).all(|v| *v >= 0.0) {
+            return self.iterate_positive(phi);
         }
-        phi.iter_mut().for_each(|p| *p = p.max(0.0));
-        let work = &mut self.fields[work].data_mut()[..phi.len()];
+        let scale = self.scale(phi);
+        let TransportParams { tolerance, reduction, .. } = self.params;
+        let mut absolute = tolerance * scale;
+        if reduction > 0.0 {
+            let work = &mut self.fields[2].data_mut()[..phi.len()];
+            self.matrix.residual(&self.b, phi, work);
+            absolute = absolute.max(reduction * vector::norm(work));
+        }
+        relative(self.linear(phi, absolute), scale, tolerance)
+    }
+
+    /// Where no term is negative the solution is not: x = φ/s solves the equations in units of their own diagonal terms a_P s, s the φ
+    /// given after a sweep in either direction. So the residual is a relative one in every cell, however many orders of magnitude φ
+    /// spans, and what the iteration may leave below zero is set to zero and swept over, which keeps signs.
+    fn iterate_positive(&mut self, phi: &mut [f64]) -> Result<SolveInfo, LinearError> {
+        let n = phi.len();
+        let (mut units, mut x) = (std::mem::take(&mut self.units), std::mem::take(&mut self.x));
+        let work = &mut self.fields[2].data_mut()[..n];
+        self.matrix.residual(&self.b, phi, work);
+        x.copy_from_slice(work);
+        self.sweep(phi);
+        let mut initial = 0.0;
+        for i in 0..n {
+            if phi[i] <= 0.0 {
+                phi[i] = 1.0;
+            }
+            units[i] = 1.0 / (self.matrix.diagonal(i) * phi[i]);
+            if !self.pinned[i] {
+                initial += (x[i] * units[i]).powi(2);
+            }
+            self.b[i] *= units[i];
+        }
+        let scaled = self.matrix.scale(&units, phi);
+        let (scale, TransportParams { tolerance, reduction, .. }) = ((n as f64).sqrt(), self.params);
+        let initial = initial.sqrt();
+        x.fill(1.0);
+        let solved = scaled.and_then(|()| self.linear(&mut x, (tolerance * scale).max(reduction * initial)));
+        if x.iter().any(|x| !(*x >= 0.0)) {
+            x.iter_mut().for_each(|x| *x = x.max(0.0));
+            self.sweep(&mut x);
+        }
+        phi.iter_mut().zip(&x).for_each(|(phi, x)| *phi *= x);
+        (self.units, self.x) = (units, x);
+        relative(solved.map(|(iterations, _, after)| (iterations, initial, after)), scale, tolerance)
+    }
+
+    /// One sweep in either direction.
+    fn sweep(&mut self, phi: &mut [f64]) {
+        let work = &mut self.fields[2].data_mut()[..phi.len()];
         self.matrix.sweep(Sweep::Forward, &self.b, phi, work);
         self.matrix.sweep(Sweep::Backward, &self.b, phi, work);
     }
@@ -396,17 +435,32 @@ impl<const D: usize> CellTransport<D> {
             Ok(())
         });
         let solved = rows.and_then(|()| self.iterate(phi));
-        if solved.is_ok() {
-            self.keep_sign(phi, 2);
-            e.pinned.iter().for_each(|&(cell, value)| phi[cell] = value);
-            self.extend(phi);
-        }
+        e.pinned.iter().for_each(|&(cell, value)| phi[cell] = value);
+        self.extend(phi);
         solved.map_err(|error| match error {
             LinearError::NotConverged { iterations, residual, tolerance } => {
                 SolveError::NotConverged { iterations, residual, tolerance }
             }
             other => SolveError::Solver(other.to_string()),
         })
+    }
+}
+
+/// Residuals relative to `scale`.
+fn relative(
+    solved: Result<(usize, f64, f64), LinearError>,
+    scale: f64,
+    tolerance: f64,
+) -> Result<SolveInfo, LinearError> {
+    let ratio = if scale > 0.0 { 1.0 / scale } else { 0.0 };
+    match solved {
+        Ok((iterations, before, after)) => {
+            Ok(SolveInfo { iterations, initial_residual: ratio * before, residual: ratio * after })
+        }
+        Err(LinearError::NotConverged { iterations, residual, .. }) => {
+            Err(LinearError::NotConverged { iterations, residual: ratio * residual, tolerance })
+        }
+        Err(other) => Err(other),
     }
 }
 

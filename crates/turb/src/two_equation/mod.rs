@@ -30,15 +30,15 @@ pub type KOmegaSst = TwoEquation<Sst>;
 /// How a [`TwoEquation`] model is iterated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Controls {
-    /// Under-relaxation of k in steady iterations, in (0, 1]. Default 0.8.
+    /// Under-relaxation of k in steady iterations, in (0, 1]. Default 0.9.
     pub relax_k: f64,
-    /// Under-relaxation of ω or ε in steady iterations, in (0, 1]. Default 0.8.
+    /// Under-relaxation of ω or ε in steady iterations, in (0, 1]. Default 0.9.
     pub relax_scale: f64,
 }
 
 impl Default for Controls {
     fn default() -> Self {
-        Self { relax_k: 0.8, relax_scale: 0.8 }
+        Self { relax_k: 0.9, relax_scale: 0.9 }
     }
 }
 
@@ -57,6 +57,9 @@ pub struct TwoEquation<L> {
     law: L,
     controls: Controls,
     inflow: Inflow,
+    /// Cells whose k and s are given.
+    given: [Vec<(usize, f64)>; 2],
+    pins: Vec<(usize, f64)>,
     layer: WallLayer,
     k: Vec<f64>,
     scale: Vec<f64>,
@@ -95,6 +98,8 @@ impl<L: Law> TwoEquation<L> {
         let mut new = Self {
             controls: Controls::default(),
             inflow,
+            given: [const { Vec::new() }; 2],
+            pins: Vec::new(),
             layer: WallLayer::new(WallFunctions::default()),
             k: vec![0.0; cells],
             scale: vec![0.0; cells],
@@ -174,6 +179,21 @@ impl<L: Law> TwoEquation<L> {
         Ok(())
     }
 
+    /// Gives k and the scale of some cells, such as those behind an inlet whose turbulence is not the same everywhere. What was
+    /// given before is free again.
+    ///
+    /// # Errors
+    /// [`TurbulenceError::Value`] for a state that makes no sense.
+    pub fn give(&mut self, cells: impl IntoIterator<Item = (usize, Inflow)>) -> Result<(), TurbulenceError> {
+        self.given.iter_mut().for_each(Vec::clear);
+        for (cell, state) in cells {
+            state.check()?;
+            self.given[0].push((cell, state.k));
+            self.given[1].push((cell, L::SCALE.of(&state)));
+        }
+        Ok(())
+    }
+
     /// k of every cell \[m²/s²\].
     pub fn k(&self) -> &[f64] {
         &self.k
@@ -221,7 +241,7 @@ impl<L: Law> TwoEquation<L> {
     }
 
     /// Strain rate, cross diffusion, and what the law makes of them.
-    fn prepare(&mut self, flow: &mut dyn Transport, nu: f64) -> Result<(), SolveError> {
+    fn prepare(&mut self, flow: &mut dyn Transport, nu: f64, dt: Option<f64>) -> Result<(), SolveError> {
         if L::GRADIENT {
             flow.velocity_gradient(&mut self.work.gradient)?;
             let Work { strain, gradient, .. } = &mut self.work;
@@ -238,11 +258,15 @@ impl<L: Law> TwoEquation<L> {
             }
         }
         if L::AUXILIARY {
+            // Steady iterations of SST may else go round in circles where F₁ changes abruptly.
+            let part = if dt.is_some() { 1.0 } else { 0.5 };
             let distance = flow.wall_distance();
             for (i, &d) in distance.iter().enumerate() {
                 let local = self.local(i, d, nu);
                 let invariants = self.work.gradient.get(i).map(Invariants::of).unwrap_or_default();
-                self.work.auxiliary[i] = self.law.auxiliary(&local, invariants);
+                let new = self.law.auxiliary(&local, invariants);
+                let old = &mut self.work.auxiliary[i];
+                *old += part * (new - *old);
             }
             for w in self.layer.cells.iter().filter(|_| L::GRADIENT) {
                 if let Some(shear) = w.shear {
@@ -266,7 +290,10 @@ impl<L: Law> TwoEquation<L> {
         }
         let inlet = L::SCALE.of(&self.inflow);
         let relax = if dt.is_some() { 1.0 } else { self.controls.relax_scale };
-        let equation = Equation { pinned: &self.layer.pins, ..equation(&terms, inlet, relax, dt) };
+        self.pins.clear();
+        self.pins.extend_from_slice(&self.layer.pins);
+        self.pins.extend_from_slice(&self.given[1]);
+        let equation = Equation { pinned: &self.pins, ..equation(&terms, inlet, relax, dt) };
         let solved = tolerant(flow.solve(&equation, &mut self.scale), dt);
         self.work.terms = terms;
         self.floored += floor(&mut self.scale);
@@ -293,7 +320,8 @@ impl<L: Law> TwoEquation<L> {
             of_cell.put(&mut terms, w.cell);
         }
         let relax = if dt.is_some() { 1.0 } else { self.controls.relax_k };
-        let solved = tolerant(flow.solve(&equation(&terms, self.inflow.k, relax, dt), &mut self.k), dt);
+        let equation = Equation { pinned: &self.given[0], ..equation(&terms, self.inflow.k, relax, dt) };
+        let solved = tolerant(flow.solve(&equation, &mut self.k), dt);
         self.work.terms = terms;
         self.floored += floor(&mut self.k);
         solved
@@ -354,7 +382,7 @@ impl<L: Law> Closure for TwoEquation<L> {
         }
         self.floored = 0;
         self.layer.update(walls, &self.k, nu, L::SCALE)?;
-        self.prepare(flow, nu)?;
+        self.prepare(flow, nu, dt)?;
         self.solves[0] = self.solve_scale(flow, nu, dt)?;
         self.solves[1] = self.solve_k(flow, nu, dt)?;
         for (i, &d) in flow.wall_distance().iter().enumerate() {

@@ -24,11 +24,25 @@ pub struct WallFunctions {
     pub c_mu: f64,
     /// β₁ of ω in the viscous sublayer. Default 0.075.
     pub beta_1: f64,
+    /// |S| of the cells beside walls. Default [`WallShear::Mean`].
+    pub shear: WallShear,
+}
+
+/// What a model is told of |S| in a cell beside a wall.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WallShear {
+    /// The mean over the cell, from the velocity on its far face to the wall's: what a finite-volume gradient is, and what OpenFOAM
+    /// takes. It is larger than the shear at the centre, so models whose ν_t depends on |S| (SST, realizable k–ε) have a ν_t that
+    /// is too low in this cell.
+    #[default]
+    Mean,
+    /// C_μ^¼ √k/(κy) of the logarithmic layer.
+    Logarithmic,
 }
 
 impl Default for WallFunctions {
     fn default() -> Self {
-        Self { kappa: 0.41, e: 9.8, c_mu: 0.09, beta_1: 0.075 }
+        Self { kappa: 0.41, e: 9.8, c_mu: 0.09, beta_1: 0.075, shear: WallShear::Mean }
     }
 }
 
@@ -104,9 +118,14 @@ impl WallFunctions {
         viscous.hypot(self.c_mu.sqrt().sqrt().powi(3) * k * k.sqrt() / (self.kappa * y))
     }
 
+    /// ∂u/∂y \[1/s\] in the logarithmic layer: C_μ^¼ √k/(κy).
+    pub fn log_shear(&self, y: f64, k: f64) -> f64 {
+        self.c_mu.sqrt().sqrt() * k.max(0.0).sqrt() / (self.kappa * y)
+    }
+
     /// Production of k \[m²/s³\] in the logarithmic layer, `friction` = τ_w/ρ \[m²/s²\].
     pub fn production(&self, y: f64, k: f64, friction: f64) -> f64 {
-        friction * self.c_mu.sqrt().sqrt() * k.max(0.0).sqrt() / (self.kappa * y)
+        friction * self.log_shear(y, k)
     }
 
     /// 1 − e^−(y*/y+_lam)⁴: 0 in the viscous sublayer, 1 in the logarithmic layer.

@@ -1,6 +1,6 @@
 //! Wall functions on rows.
 use super::functions::share;
-use crate::{Scale, WallFunctions, YPlus};
+use crate::{Scale, WallFunctions, WallShear, YPlus};
 use interfaces::{SolveError, WallRow};
 
 /// The cells beside walls.
@@ -102,7 +102,13 @@ impl WallLayer {
                 w.share += part * share;
                 w.production += part * share * f.production(row.y, k, friction);
                 w.conductance += (1.0 - share) * row.area * nu / row.y;
-                w.shear = w.shear.zip(row.shear).map(|(sum, shear)| sum + part * shear);
+                let shear = match f.shear {
+                    WallShear::Mean => row.shear,
+                    WallShear::Logarithmic => {
+                        row.shear.map(|mean| share * f.log_shear(row.y, k) + (1.0 - share) * mean)
+                    }
+                };
+                w.shear = w.shear.zip(shear).map(|(sum, shear)| sum + part * shear);
             }
             pins.push((w.cell, value));
         }

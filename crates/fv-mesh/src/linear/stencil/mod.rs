@@ -3,6 +3,7 @@ mod chain;
 mod dilu;
 mod matrix;
 mod product;
+mod scale;
 mod sweep;
 
 pub use dilu::{Dilu, DiluPreconditioner};

@@ -38,6 +38,12 @@ fn check<const D: usize>(cells: [usize; D], periodic: [bool; D]) {
         Ilu0::new(&csr).unwrap().solve(&b, &mut s).unwrap();
         assert!(close(&r, &s), "{what}");
     }
+    let (rows, columns) = (noise(n, 13), noise(n, 14));
+    let mut scaled = a.clone();
+    scaled.scale(&rows, &columns).unwrap();
+    let inside: Vec<f64> = columns.iter().zip(&x).map(|(c, x)| c * x).collect();
+    let outside: Vec<f64> = product(&a, &inside).iter().zip(&rows).map(|(y, r)| r * y).collect();
+    assert!(close(&product(&scaled, &x), &outside), "{what}");
     // All solve the same system.
     let b = product(&csr, &x);
     let (u, info) = solve_bicgstab(&a, &mut m, &b).unwrap();

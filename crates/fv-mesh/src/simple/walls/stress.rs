@@ -27,8 +27,8 @@ pub enum WallStress {
 }
 
 impl WallStress {
-    /// The logarithmic law with κ = 0.41 and E = 9.8, seen from 1.5 cells.
-    pub const LOG_LAW: Self = Self::LogLaw { kappa: 0.41, e: 9.8, distance: 1.5 };
+    /// The logarithmic law with κ = 0.41 and E = 9.8, seen from three quarters of a cell.
+    pub const LOG_LAW: Self = Self::LogLaw { kappa: 0.41, e: 9.8, distance: 0.75 };
 
     pub(super) fn sticks(self) -> bool {
         self == Self::NoSlip

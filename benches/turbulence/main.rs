@@ -1,0 +1,20 @@
+//! Turbulence models in flows whose walls are sides of the box: against body-fitted runs of others, direct numerical simulation, and
+//! measurements; what they cost, and what they bear. On one thread: `cargo bench --bench turbulence`, or with the names of cases after `--`.
+//! Pictures go to `out/turbulence`.
+mod channel;
+mod plate;
+mod robust;
+mod step;
+
+use example_support::{Outcome, run_cases};
+
+fn main() -> Outcome<()> {
+    run_cases(&[
+        ("channel", channel::against_simple_foam),
+        ("dns", channel::against_dns),
+        ("plate", plate::flat_plate),
+        ("step", step::backward_facing_step),
+        ("cost", robust::cost),
+        ("robust", robust::bad_starts),
+    ])
+}

@@ -1,0 +1,111 @@
+//! Turbulence models in flows between walls, against body-fitted runs of others and direct numerical simulation.
+use example_support::turbulent_flows::{
+    ChannelProfile, Drive, between_walls, developed_channel, duct, iterate, numbers,
+};
+use siltflow::flow::Axis;
+use siltflow::turb::{Inflow, Law, Realizable, Sst, StandardKEpsilon, WallFunctions, Wilcox, YPlus};
+
+/// y, y+, u+, k+, ω+ and ν_t/ν of OpenFOAM's simpleFoam.
+fn reference(text: &str) -> Vec<[f64; 6]> {
+    numbers(text)
+}
+
+/// Deviations of the friction, of u and of ν_t (2-norm over the cells; of the rms).
+fn deviations(ours: &ChannelProfile, reference: &[[f64; 6]], nu: f64) -> [f64; 3] {
+    let [y, y_plus, ..] = reference[0];
+    let u_tau = y_plus * nu / y;
+    let (mut u, mut nu_t, mut scale) = (0.0, 0.0, 0.0);
+    let half = reference.iter().take(ours.y.len());
+    for (j, r) in half.clone().enumerate() {
+        assert!((ours.y[j] - r[0]).abs() < 1e-6, "cell {j} at {} and {}", ours.y[j], r[0]);
+        u += (ours.u[j] - r[2] * u_tau).powi(2);
+        nu_t += (ours.nu_t[j] / nu - r[5]).powi(2);
+        scale += r[5] * r[5];
+    }
+    [(ours.u_tau / u_tau).powi(2) - 1.0, (u / half.len() as f64).sqrt(), (nu_t / scale).sqrt()]
+}
+
+fn compare<L: Law>(law: L, text: &str) {
+    let nu = 1e-6;
+    let start = Inflow::from_length(1.0, 0.05, 0.07).unwrap();
+    let y = between_walls(40, 1.0, 3e-3).unwrap();
+    let ours = developed_channel(law, WallFunctions::default(), y, nu, Drive::Bulk(1.0), start).unwrap();
+    let [friction, u, nu_t] = deviations(&ours, &reference(text), nu);
+    assert!(friction.abs() < 3e-3 && u < 1e-3 && nu_t < 2e-3, "{friction} {u} {nu_t}");
+    assert!(ours.y_plus.warnings().is_empty() && ours.y_plus.rows == 4);
+}
+
+/// The same equations, wall functions and cells: what is left is round-off of the printed figures and convergence.
+#[test]
+fn a_channel_at_re_1e6_is_that_of_simple_foam() {
+    compare(Sst::default(), include_str!("../data/turbulence/channel_kOmegaSST_c.csv"));
+    compare(Wilcox::openfoam(), include_str!("../data/turbulence/channel_kOmega_c.csv"));
+    compare(StandardKEpsilon::default(), include_str!("../data/turbulence/channel_kEpsilon_c.csv"));
+    compare(Realizable::default(), include_str!("../data/turbulence/channel_realizableKE_c.csv"));
+}
+
+/// Wall-resolved, against DNS at Re_τ 590: friction within 3 %, the logarithmic layer within 5 %.
+#[test]
+fn a_wall_resolved_channel_has_the_friction_of_dns() {
+    let re = 587.19;
+    let dns = numbers::<2>(include_str!("../data/turbulence/dns_590.csv"));
+    let y = between_walls(96, 2.0, 0.6 / re).unwrap();
+    let start = Inflow { k: 1.0, omega: 10.0 };
+    let ours =
+        developed_channel(Sst::default(), WallFunctions::default(), y, 1.0 / re, Drive::Force(1.0), start)
+            .unwrap();
+    let friction = (18.654 / ours.bulk).powi(2) - 1.0;
+    assert!(friction.abs() < 0.03, "{friction}");
+    let mut seen = 0;
+    for (y, u) in
+        ours.y.iter().zip(&ours.u).map(|(y, u)| (y * re, u)).filter(|p| p.0 > 30.0 && p.0 < 0.3 * re)
+    {
+        let i = dns.partition_point(|p| p[0] < y);
+        let ([y0, u0], [y1, u1]) = (dns[i - 1], dns[i]);
+        let exact = u0 + (u1 - u0) * (y - y0) / (y1 - y0);
+        assert!((u / exact - 1.0).abs() < 0.05, "{y} {u} {exact}");
+        seen += 1;
+    }
+    assert!(seen > 10);
+    assert!((ours.y_plus.mean - 0.3).abs() < 1e-3);
+}
+
+/// A duct converges in no more iterations than simpleFoam takes (116–160), and the flow in it is positive everywhere.
+#[test]
+fn a_duct_converges() {
+    fn converges<L: Law>(law: L) {
+        let inflow = Inflow::from_length(1.0, 0.05, 0.07).unwrap();
+        let (mut flow, mut model) = duct(law, [100, 40], 3e-3, inflow).unwrap();
+        flow.set_velocity(|_| [1.0, 0.0]);
+        let (info, done) = iterate(&mut flow, &mut model, 160, 1e-5).unwrap();
+        assert!(done && model.closure.floored() == 0, "{info:?}");
+        assert!(model.closure.k().iter().chain(model.closure.scale()).all(|v| *v > 0.0));
+        let YPlus { least, most, .. } = model.closure.y_plus();
+        assert!(least > 40.0 && most < 90.0);
+    }
+    converges(Sst::default());
+    converges(StandardKEpsilon::default());
+}
+
+/// From rest, from a hundred times the k, with cells far too small and far too large.
+#[test]
+fn bad_starts_converge_all_the_same() {
+    fn run<L: Law>(law: L, first: f64, cells: usize, start: Inflow) {
+        let inflow = Inflow::from_length(1.0, 0.05, 0.07).unwrap();
+        let (mut flow, mut model) = duct(law, [30, cells], first, inflow).unwrap();
+        model.closure.fill(start).unwrap();
+        let (info, done) = iterate(&mut flow, &mut model, 600, 1e-4).unwrap();
+        assert!(done, "{info:?} {}", model.closure.y_plus());
+    }
+    let start = Inflow::from_length(1.0, 0.05, 0.07).unwrap();
+    run(Sst::default(), 3e-3, 40, Inflow { k: 100.0 * start.k, ..start });
+    run(StandardKEpsilon::default(), 0.05, 20, start);
+}
+
+#[test]
+fn an_axis_between_walls_is_symmetric() {
+    let y = between_walls(40, 1.0, 3e-3).unwrap();
+    assert!((y.width(0) - 3e-3).abs() < 1e-12 && (y.width(39) - 3e-3).abs() < 1e-12);
+    assert_eq!((y.cells(), y.upper()), (40, 1.0));
+    assert!(Axis::largest_ratio(&y) < 1.2);
+}

@@ -104,7 +104,15 @@ impl<const D: usize> Boundaries<D> {
 
     /// Closes what immersed walls close of the sides: `open(a, index)` is the open share of the face of axis `a` with this
     /// storage index. Through inlets the velocity given passes in the open part, outlets are open or not.
-    pub(crate) fn narrow(&mut self, grid: &CartesianGrid<D>, open: impl Fn(usize, usize) -> f64) {
+    ///
+    /// # Errors
+    /// [`FlowError::MassBalance`] if what enters cannot leave.
+    pub(crate) fn narrow(
+        &mut self,
+        grid: &CartesianGrid<D>,
+        metrics: &Metrics<D>,
+        open: impl Fn(usize, usize) -> f64,
+    ) -> Result<(), FlowError> {
         let stride = grid.stride();
         for (a, (lines, pair)) in self.lines.iter().zip(&mut self.states).enumerate() {
             for (upper, state) in pair.iter_mut().flat_map(|p| p.iter_mut()).enumerate() {
@@ -121,6 +129,7 @@ impl<const D: usize> Boundaries<D> {
                 }
             }
         }
+        self.balance(metrics)
     }
 
     /// Axes and storage indices of the faces through which what flows is not given.

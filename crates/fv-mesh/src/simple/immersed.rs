@@ -34,10 +34,10 @@ impl<const D: usize> Simple<D> {
         };
         let mut sides = Boundaries::new(grid, boundaries.sides.clone(), metrics)?;
         if let Some((cuts, _)) = walls {
-            sides.narrow(grid, |c, index| {
+            sides.narrow(grid, metrics, |c, index| {
                 let list = &cuts.faces[c];
                 list.binary_search_by_key(&index, |face| face.index).map_or(1.0, |k| list[k].open)
-            });
+            })?;
         }
         *boundaries = sides;
         self.correction = self.params.pressure_solver(grid, metrics, boundaries)?;
@@ -54,6 +54,11 @@ impl<const D: usize> Simple<D> {
     /// Friction of the fluid on each body of the walls in the last iteration \[N, N m\], about its centre of mass.
     pub fn wall_friction(&self) -> Vec<Wrench> {
         self.walls.as_ref().map_or_else(Vec::new, |walls| walls.friction(self.state.fluid.density))
+    }
+
+    /// Force of the pressure on each body of the walls \[N, N m\], about its centre of mass: −Σ p A n over the cells with wall.
+    pub fn wall_pressure_force(&self) -> Vec<Wrench> {
+        self.walls.as_ref().map_or_else(Vec::new, |walls| walls.pressure_force(&self.state.pressure))
     }
 
     /// What every piece of wall, in the order given, took from the fluid per area in the last iteration \[Pa\].

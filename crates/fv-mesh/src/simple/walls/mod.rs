@@ -257,6 +257,16 @@ impl<const D: usize> SimpleWalls<D> {
         out
     }
 
+    /// Force of the pressure on each body \[N\], about its centre of mass: that of every cell acts on the wall in it.
+    pub(super) fn pressure_force(&self, pressure: &Field<D>) -> Vec<Wrench> {
+        let mut out = vec![Wrench::default(); self.n_bodies];
+        for probe in &self.stresses.probes {
+            let force = probe.normal * (-pressure.data()[probe.cell] * probe.area);
+            out[probe.body] += Wrench::at(force, probe.arm);
+        }
+        out
+    }
+
     /// Per piece of wall: what the wall takes from the fluid per area and density \[m²/s²\] in the last iteration.
     pub(super) fn tractions(&self) -> impl Iterator<Item = Vector> + '_ {
         self.stresses.force.iter().zip(&self.stresses.probes).map(|(force, probe)| force / probe.area)

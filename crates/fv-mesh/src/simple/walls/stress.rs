@@ -70,7 +70,9 @@ pub(super) struct Probe {
     ranges: [(usize, usize, f64); 3],
     /// Range in `cells`.
     cells: (usize, usize),
-    normal: Vector,
+    /// Storage index of its cell.
+    pub(super) cell: usize,
+    pub(super) normal: Vector,
     velocity: Vector,
     pub(super) area: f64,
     pub(super) body: usize,
@@ -158,6 +160,7 @@ impl<const D: usize> Stresses<D> {
             y: 0.0,
             ranges: [(0, 0, 0.0); 3],
             cells: (0, 0),
+            cell: index,
             normal: wall.normal,
             velocity: wall.velocity,
             area: wall.area,

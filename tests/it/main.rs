@@ -15,6 +15,7 @@ mod removal;
 mod restart;
 mod skipping;
 mod snapshots;
+mod steady_walls;
 mod strategies;
 mod stretched;
 mod suspension;

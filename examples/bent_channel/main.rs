@@ -44,7 +44,7 @@ struct Cli {
     cells: usize,
     #[arg(long, default_value_t = 1e6)]
     re: f64,
-    #[arg(long, default_value_t = 500)]
+    #[arg(long, default_value_t = 1000)]
     iterations: usize,
     /// Where pictures and the flow go
     #[arg(long, default_value = "target/bent_channel")]

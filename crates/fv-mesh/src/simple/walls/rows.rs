@@ -6,6 +6,9 @@ use crate::metrics::Metrics;
 use crate::momentum_matrix::MomentumEquations;
 use crate::{CartesianGrid, Convection, Field};
 
+/// Faces with a smaller open share carry by first order: what is extrapolated from them would not settle.
+const SLIVER: f64 = 0.1;
+
 /// One control volume: the halves of two cells.
 pub(super) struct Row<const D: usize> {
     /// Dense number and storage index of its face.
@@ -49,6 +52,8 @@ struct Link<const D: usize> {
     step: [f64; D],
     /// Where between the nodes, as a share of the step along the axis.
     share: f64,
+    /// One of the nodes has next to no volume: what is carried is the upwind node's.
+    sliver: bool,
     /// How the carriers' velocity changes along the component's axis: their gradients and the step between them.
     across: [Option<u32>; 2],
     between: [f64; D],
@@ -260,6 +265,7 @@ impl<const D: usize> Edge<D> {
             from_other: std::array::from_fn(|a| middle[a] - y[a]),
             step,
             share: (to_edge[b] / step[b]).clamp(0.0, 1.0),
+            sliver: [index, other].iter().any(|&o| openings.open[c].data()[o] < SLIVER),
             across: if b == c { [None; 2] } else { [slot(b, pair[0]), slot(b, pair[1])] },
             between: std::array::from_fn(|a| w[a] - v[a]),
         });
@@ -314,6 +320,7 @@ impl<const D: usize> Link<D> {
             u[0] + self.share * (u[1] - u[0]) + 0.5 * (dot(g[0], &side) + dot(g[1], &side))
         };
         match scheme {
+            _ if self.sliver => u[upwind],
             Convection::Upwind => u[upwind],
             Convection::LinearUpwind => linear(upwind),
             Convection::Central => mean(),

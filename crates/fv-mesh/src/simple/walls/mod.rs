@@ -39,6 +39,7 @@ pub(crate) struct SimpleWalls<const D: usize> {
     /// Nodes in the solid beside nodes in the fluid.
     ghosts: [Vec<Ghost>; D],
     sums: Vec<f64>,
+    rates: Vec<f64>,
     n_bodies: usize,
 }
 
@@ -109,6 +110,7 @@ impl<const D: usize> SimpleWalls<D> {
             beside,
             ghosts,
             sums: vec![0.0; longest],
+            rates: vec![0.0; longest],
             rows,
             gradients,
             stresses,
@@ -149,11 +151,8 @@ impl<const D: usize> SimpleWalls<D> {
             equations,
             gradients: &self.gradients,
         };
-        let mut rates = Vec::with_capacity(rows.len());
-        for (sum, row) in self.sums.iter_mut().zip(rows) {
-            let [terms, rate] = row.write(c, &flow, it.viscous_share, matrix);
-            *sum = terms;
-            rates.push(rate);
+        for ((sum, rate), row) in self.sums.iter_mut().zip(&mut self.rates).zip(rows) {
+            [*sum, *rate] = row.write(c, &flow, it.viscous_share, matrix);
         }
         self.stresses.add(c, rows, u, it.viscosity, &mut self.sums, matrix);
         let (s, p) = (it.grid.stride()[c], it.pressure.data());
@@ -173,7 +172,7 @@ impl<const D: usize> SimpleWalls<D> {
         let centre = matrix.parts_mut().0;
         // Whatever the rows of the solid are, they can be solved.
         self.shut[c].iter().for_each(|&cell| centre[cell] = 1.0);
-        for ((sum, rate), row) in self.sums.iter().zip(rates).zip(rows) {
+        for ((sum, rate), row) in self.sums.iter().zip(&self.rates).zip(rows) {
             *terms += volume(row.index) * (sum.abs() - equations.tendency(row.index).abs());
             equations.rhs[row.cell] = sum - slope(row.index) + it.force;
             centre[row.cell] += (1.0 / it.relaxation - 1.0) * rate;

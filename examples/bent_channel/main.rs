@@ -167,10 +167,20 @@ fn run<C: Closure>(cli: &Cli, duct: Duct, grid: CartesianGrid<2>, closure: C, na
     let eddy = model.closure.eddy_viscosity().unwrap_or_default();
     std::fs::create_dir_all(&cli.out)?;
     compare::report(&flow, eddy, duct, name, &cli.out)?;
+    let centred = |c: usize| -> Vec<f64> {
+        let (u, [_, rows]) = (flow.velocity().field(c), grid.cells());
+        let mean = |k: usize| {
+            let [i, j] = grid.cell(k);
+            let here = u.row(j)[i];
+            let next = if c == 0 { u.row(j).get(i + 1) } else { u.row((j + 1).min(rows - 1)).get(i) };
+            0.5 * (here + next.unwrap_or(&here))
+        };
+        (0..grid.n_cells()).map(mean).collect()
+    };
     let file = CellWriter::new(&grid)
         .scalar("p", flow.pressure().values())
         .scalar("nu_t", eddy.iter().copied())
-        .vector("u", [flow.centred_velocity(0), flow.centred_velocity(1)]);
+        .vector("u", [centred(0), centred(1)]);
     let path = cli.out.join(format!("flow.{}", file.extension()));
     file.write(&mut std::io::BufWriter::new(std::fs::File::create(path)?))?;
     Ok(())

@@ -101,7 +101,7 @@ fn read(model: &str, station: &str) -> Outcome<Vec<Vec<f64>>> {
 }
 
 /// Prints the differences and draws the profiles.
-pub fn report(flow: &Simple<2>, eddy: &[f64], duct: Duct, model: &str, out: &Path) -> Outcome<()> {
+pub(crate) fn report(flow: &Simple<2>, eddy: &[f64], duct: Duct, model: &str, out: &Path) -> Outcome<()> {
     let probe = Probe { flow, eddy, duct };
     let mut panels = Vec::new();
     println!("station   U_t off by [% of U_in]   ν_t off by [% of its rms]");

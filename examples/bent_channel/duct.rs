@@ -5,11 +5,11 @@ use std::f64::consts::FRAC_PI_2;
 /// Everything outside a duct of height 1 m. Before it is turned, it comes along +x at y = −2 … −1, and bends between the radii 1
 /// and 2 about the origin.
 #[derive(Clone, Copy)]
-pub struct Duct {
+pub(crate) struct Duct {
     /// Angle of the bend, 0 to π.
-    pub bend: f64,
+    pub(crate) bend: f64,
     /// Angle by which everything is turned.
-    pub turn: f64,
+    pub(crate) turn: f64,
 }
 
 impl Duct {
@@ -19,7 +19,7 @@ impl Duct {
         [c * x + s * y, c * y - s * x]
     }
     /// Into the world.
-    pub fn world(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn world(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (s, c) = self.turn.sin_cos();
         [c * x - s * y, s * x + c * y]
     }
@@ -29,7 +29,7 @@ impl Duct {
         [[angle.cos(), angle.sin()], [-angle.sin(), angle.cos()]]
     }
     /// The point at `s` \[m\] along the centreline from the bend's start and at radius `r`.
-    pub fn point(&self, s: f64, r: f64) -> [f64; 2] {
+    pub(crate) fn point(&self, s: f64, r: f64) -> [f64; 2] {
         let length = 1.5 * self.bend;
         self.world(if s < 0.0 {
             [s, -r]
@@ -42,19 +42,19 @@ impl Duct {
         })
     }
     /// The way along the duct there.
-    pub fn along(&self, s: f64) -> [f64; 2] {
+    pub(crate) fn along(&self, s: f64) -> [f64; 2] {
         let angle = (s / 1.5).clamp(0.0, self.bend);
         self.world([angle.cos(), angle.sin()])
     }
     /// The way along the duct at a place in it.
-    pub fn along_at(&self, x: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn along_at(&self, x: [f64; 2]) -> [f64; 2] {
         let [x, y] = self.own(x);
         let angle =
             if x < 0.0 && y < 0.0 { 0.0 } else { (y.atan2(x) + FRAC_PI_2).rem_euclid(4.0 * FRAC_PI_2) };
         self.along(1.5 * angle.min(self.bend))
     }
     /// Distance from the nearest wall, positive in the fluid.
-    pub fn distance(&self, x: [f64; 2]) -> f64 {
+    pub(crate) fn distance(&self, x: [f64; 2]) -> f64 {
         let [x, y] = self.own(x);
         let mut off = f64::INFINITY;
         if x <= 0.0 {

@@ -16,6 +16,7 @@ mod restart;
 mod scenes;
 mod skipping;
 mod snapshots;
+mod steady_walls;
 mod strategies;
 mod stretched;
 mod suspension;

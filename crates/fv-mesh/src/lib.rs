@@ -77,7 +77,7 @@ pub use pressure::PressureSolver;
 pub use projection::{Prediction, Projection};
 pub use sample::{Extreme, Integrals, Line, Norms, Plane, Probes, Quantity, SampleError, Sampler};
 pub use scalar::{Given, Scalar, ScalarBoundaries, ScalarPatch, ScalarSide, ScalarTransport};
-pub use simple::{Simple, SimpleInfo, SimpleParams};
+pub use simple::{Simple, SimpleInfo, SimpleParams, WallStress};
 pub use statistics::FlowStatistics;
 pub use transport::{CellTransport, FlowTransport, TransportMethod, TransportParams};
 pub use velocity::Velocity;

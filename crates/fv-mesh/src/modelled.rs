@@ -39,6 +39,8 @@ pub struct Modelled<const D: usize, C> {
     transport: CellTransport<D>,
     walls: WallFaces<D>,
     pub(crate) stress: Option<EddyStress<D>>,
+    /// The rows of the box's walls, then those of immersed ones.
+    rows: Vec<WallRow>,
 }
 
 impl<const D: usize, C: Closure> Modelled<D, C> {
@@ -58,6 +60,7 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
             transport: CellTransport::new(grid, sides, params)?,
             walls: WallFaces::new(grid, &metrics, sides),
             stress: None,
+            rows: Vec::new(),
         })
     }
     /// The equations on the flow's cells.
@@ -68,9 +71,9 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
     pub fn transport_mut(&mut self) -> &mut CellTransport<D> {
         &mut self.transport
     }
-    /// The cells beside the walls of the box, as the model last saw them.
+    /// The cells beside the walls of the box, then those beside immersed walls, as the model last saw them.
     pub fn wall_rows(&self) -> &[WallRow] {
-        self.walls.rows()
+        &self.rows
     }
 
     /// Makes the stress of what the model says now. Is there any?
@@ -84,6 +87,8 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
             return failed("the eddy viscosity", grid.n_cells(), eddy.len());
         }
         let rows = self.walls.rows().len();
+        let on_walls =
+            if on_walls.len() == self.rows.len() { &on_walls[..rows.min(on_walls.len())] } else { on_walls };
         if !on_walls.is_empty() && on_walls.len() != rows {
             return failed("the eddy viscosity on walls", rows, on_walls.len());
         }
@@ -103,13 +108,16 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
     pub(crate) fn update(
         &mut self,
         velocity: &Velocity<D>,
+        immersed: &[WallRow],
         viscosity: f64,
         time: f64,
         dt: Option<f64>,
     ) -> Result<(), FlowError> {
         let rows = self.walls.fill(velocity, self.closure.kinetic_energy(), viscosity);
+        self.rows.clear();
+        self.rows.extend(rows.iter().chain(immersed));
         let mut cells = self.transport.on(velocity)?;
-        let corrected = self.closure.correct(&mut cells, rows, viscosity, dt);
+        let corrected = self.closure.correct(&mut cells, &self.rows, viscosity, dt);
         corrected.map_err(|source| FlowError::Closure { time, source })
     }
 }
@@ -120,6 +128,6 @@ impl<const D: usize, C: Closure> ClosureSlot<D> for Modelled<D, C> {
         Ok(self.stress.as_ref().filter(|_| given))
     }
     fn correct(&mut self, flow: &Projection<D>, dt: f64) -> Result<(), FlowError> {
-        self.update(flow.velocity(), flow.fluid().viscosity, flow.time(), Some(dt))
+        self.update(flow.velocity(), &[], flow.fluid().viscosity, flow.time(), Some(dt))
     }
 }

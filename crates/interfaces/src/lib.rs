@@ -18,6 +18,7 @@
 #![deny(missing_docs)]
 
 mod bodies;
+mod cut_cells;
 mod cut_walls;
 mod film;
 mod geometry;
@@ -33,6 +34,7 @@ pub mod vtk;
 mod wall_row;
 
 pub use bodies::{Bodies, BodyId, Dynamics, Freedom, Inertia, Kinematics, Load};
+pub use cut_cells::{CutCells, OpenFace, WallPiece};
 pub use cut_walls::{CutComponent, CutFace, CutNode, CutWalls, Link, SolidPoint};
 pub use film::UnresolvedFilm;
 pub use geometry::{Aabb, Periods, Point, Pose, Rotation, Twist, Vector, Wrench};

@@ -102,6 +102,48 @@ impl<const D: usize> Boundaries<D> {
         Ok(())
     }
 
+    /// Closes what immersed walls close of the sides: `open(a, index)` is the open share of the face of axis `a` with this
+    /// storage index. Through inlets the velocity given passes in the open part, outlets are open or not.
+    ///
+    /// # Errors
+    /// [`FlowError::MassBalance`] if what enters cannot leave.
+    pub(crate) fn narrow(
+        &mut self,
+        grid: &CartesianGrid<D>,
+        metrics: &Metrics<D>,
+        open: impl Fn(usize, usize) -> f64,
+    ) -> Result<(), FlowError> {
+        let stride = grid.stride();
+        for (a, (lines, pair)) in self.lines.iter().zip(&mut self.states).enumerate() {
+            for (upper, state) in pair.iter_mut().flat_map(|p| p.iter_mut()).enumerate() {
+                state.open = vec![1.0; lines.len()];
+                for (l, o) in lines.starts().enumerate().filter(|&(l, _)| lines.inside(l)) {
+                    let share = open(a, o + upper * lines.cells * stride[a]);
+                    if share == 0.0 {
+                        state.kind[l] = FaceKind::Closed;
+                        (state.normal[l], state.given[l]) = (0.0, 0.0);
+                    }
+                    if state.kind[l] == FaceKind::Inlet {
+                        state.open[l] = share;
+                    }
+                }
+            }
+        }
+        self.balance(metrics)
+    }
+
+    /// Axes and storage indices of the faces through which what flows is not given.
+    pub(crate) fn outlets(&self, grid: &CartesianGrid<D>) -> std::collections::HashSet<(usize, usize)> {
+        let mut out = std::collections::HashSet::new();
+        for (a, (lines, pair)) in self.lines.iter().zip(&self.states).enumerate() {
+            for (upper, state) in pair.iter().flat_map(|p| p.iter()).enumerate() {
+                let free = lines.starts().enumerate().filter(|&(l, _)| !state.kind[l].is_fixed());
+                out.extend(free.map(|(_, o)| (a, o + upper * lines.cells * grid.stride()[a])));
+            }
+        }
+        out
+    }
+
     /// The same on a grid of the same size.
     pub(crate) fn set_grid(&mut self, grid: &CartesianGrid<D>) {
         self.grid = grid.clone();

@@ -60,7 +60,7 @@ impl<const D: usize> Boundaries<D> {
                 for l in (0..lines.len()).filter(|&l| lines.inside(l)) {
                     let along = state.laws.iter().filter_map(|law| law.value.get(l));
                     fastest = along.chain([&state.normal[l]]).fold(fastest, |top, u| top.max(u.abs()));
-                    let face = lines.face_area(metrics, l);
+                    let face = state.open.get(l).unwrap_or(&1.0) * lines.face_area(metrics, l);
                     let outward = [-1.0, 1.0][upper] * face * state.normal[l];
                     net += outward;
                     inflow += (-outward).max(0.0);

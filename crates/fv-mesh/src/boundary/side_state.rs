@@ -44,6 +44,8 @@ pub(super) struct SideState<const D: usize> {
     pub(super) normal: Vec<f64>,
     /// What is given of it, before inlets are balanced.
     pub(super) given: Vec<f64>,
+    /// Share of every inlet that immersed walls leave open; empty without them.
+    pub(super) open: Vec<f64>,
     /// By how much it changed in this step through what is given.
     pub(super) normal_change: Vec<f64>,
     /// Pressure on the side where it is given.
@@ -116,6 +118,7 @@ impl<const D: usize> SideState<D> {
             kind,
             normal: list(),
             given: list(),
+            open: Vec::new(),
             normal_change: list(),
             pressure,
             laws,

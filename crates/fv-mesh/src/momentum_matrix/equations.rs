@@ -1,7 +1,7 @@
 //! One momentum equation after the other.
 use super::{Implicit, MomentumSolver, Terms, assemble, fold_ends};
 use crate::boundary::Boundaries;
-use crate::kernels::{Advance, Momentum, add_eddy_stress};
+use crate::kernels::{Advance, Momentum, add_eddy_stress, flux};
 use crate::linear::StencilMatrix;
 use crate::metrics::Metrics;
 use crate::{CartesianGrid, Convection, Field, Fluid};
@@ -13,6 +13,7 @@ pub(crate) struct MomentumEquations<const D: usize> {
     fluid: Fluid,
     convection: Momentum<D>,
     implicit: Implicit,
+    pub(crate) scheme: Convection,
     /// For the central scheme.
     central: Implicit,
     /// H, and memory for the sweep that makes it.
@@ -54,6 +55,7 @@ impl<const D: usize> MomentumEquations<D> {
         Self {
             convection: Momentum::new(grid, metrics, Convection::Central),
             implicit: central,
+            scheme: Convection::Central,
             central,
             tendency: Field::zeros(grid),
             scratch: Field::zeros(grid),
@@ -66,8 +68,26 @@ impl<const D: usize> MomentumEquations<D> {
         }
     }
 
+    /// Momentum flux per area that convection and viscosity (per ν) carry through the edge of component c below node `o` along
+    /// b, as in the right-hand side.
+    pub(crate) fn edge_flux(
+        &self,
+        velocity: &[Field<D>; D],
+        [c, b]: [usize; 2],
+        o: usize,
+        [i, j]: [usize; 2],
+    ) -> [f64; 2] {
+        flux(&self.convection, velocity, [c, b], o, [i, j])
+    }
+
+    /// H of the equation made last at the node with this storage index.
+    pub(crate) fn tendency(&self, index: usize) -> f64 {
+        self.tendency.data()[index]
+    }
+
     pub(crate) fn set_convection(&mut self, scheme: Convection) {
         self.convection = Momentum::new(&self.grid, &self.metrics, scheme);
+        self.scheme = scheme;
         self.implicit = if scheme == Convection::Central { self.central } else { Implicit::Upwind };
     }
 

@@ -1,11 +1,14 @@
 //! The steady flow algorithm.
+mod immersed;
 mod params;
 mod pressure_correction;
 #[cfg(test)]
 mod tests;
+mod walls;
 
 pub use params::{SimpleInfo, SimpleParams};
 pub(crate) use pressure_correction::PressureCorrection;
+pub use walls::WallStress;
 
 use crate::flow_state::{FlowState, show_state};
 use crate::kernels;
@@ -15,6 +18,7 @@ use crate::per_dimension::per_dimension;
 use crate::poisson::PoissonError;
 use crate::{CartesianGrid, Convection, EddyStress, Field, FlowError, Fluid, Modelled, Side};
 use interfaces::Closure;
+use walls::{Iteration, SimpleWalls};
 
 /// Step \[s\] that outlets are moved on by in one iteration: they follow the flow inside at once.
 const LONG: f64 = 1e30;
@@ -64,6 +68,9 @@ pub struct Simple<const D: usize> {
     stress: Option<EddyStress<D>>,
     /// Dense numbers of the nodes whose velocity is given.
     pinned: [Vec<usize>; D],
+    walls: Option<Box<SimpleWalls<D>>>,
+    /// k at the cell centres, for wall functions.
+    energy: Option<Field<D>>,
 }
 
 impl<const D: usize> Simple<D> {
@@ -90,6 +97,8 @@ impl<const D: usize> Simple<D> {
             force: [0.0; D],
             stress: None,
             pinned: std::array::from_fn(|_| Vec::new()),
+            walls: None,
+            energy: None,
             params,
             state,
         })
@@ -118,6 +127,10 @@ impl<const D: usize> Simple<D> {
     /// Sets the first guess of the velocity to `u(x)` \[m/s\], outlets included; walls and inlets keep theirs.
     pub fn set_velocity(&mut self, u: impl Fn([f64; D]) -> [f64; D]) {
         self.state.set_velocity(u);
+        if let Some(walls) = &self.walls {
+            walls.stop(&self.state.grid, &mut self.state.velocity.components);
+            self.state.fill_velocity();
+        }
     }
 
     /// Sets the body force per mass \[m/s²\].
@@ -129,6 +142,9 @@ impl<const D: usize> Simple<D> {
     /// they are: half the sum of a ghost and the cell inside is ν_t on the side.
     pub fn set_eddy_viscosity(&mut self, eddy: Option<&Field<D>>) {
         self.stress = eddy.map(|eddy| EddyStress::of(eddy.clone()));
+        if let (Some(walls), Some(stress)) = (&self.walls, &mut self.stress) {
+            walls.extend(&mut stress.eddy);
+        }
     }
 
     /// Gives the velocity at some nodes, inside bodies at rest for instance: component, storage index in
@@ -160,6 +176,10 @@ impl<const D: usize> Simple<D> {
     fn iterate_here(&mut self) -> Result<SimpleInfo, FlowError> {
         let mut info = SimpleInfo::default();
         let mut scale = 0.0_f64;
+        if let Some(walls) = &mut self.walls {
+            let FlowState { velocity, fluid, .. } = &self.state;
+            walls.update(&velocity.components, self.energy.as_ref(), fluid.viscosity);
+        }
         for c in 0..D {
             let FlowState { grid, metrics, boundaries, velocity, pressure, .. } = &self.state;
             let u = &velocity.components;
@@ -173,7 +193,26 @@ impl<const D: usize> Simple<D> {
                 viscous_share: self.params.viscous_share,
                 eddy: self.stress.as_ref().map(|s| &s.eddy),
             };
-            let [terms, inertia] = self.equations.make(c, equation, boundaries, &mut self.matrix);
+            let [mut terms, inertia] = self.equations.make(c, equation, boundaries, &mut self.matrix);
+            if let Some(walls) = &mut self.walls {
+                let iteration = Iteration {
+                    grid,
+                    metrics,
+                    velocity: u,
+                    pressure,
+                    eddy: self.stress.as_ref().map(|s| &s.eddy),
+                    scheme: self.equations.scheme,
+                    viscosity: self.state.fluid.viscosity,
+                    density: self.state.fluid.density,
+                    force: self.force[c],
+                    relaxation: self.params.velocity_relaxation,
+                    viscous_share: self.params.viscous_share,
+                };
+                walls.assemble(c, iteration, &mut self.equations, &mut self.matrix, &mut terms);
+                for &cell in &walls.shut[c] {
+                    momentum::pin(&mut self.matrix, cell, 0.0, &mut self.equations.rhs);
+                }
+            }
             if let Some(stress) = &self.stress {
                 stress.add_friction(c, u, &mut self.matrix, &mut self.equations.rhs);
             }
@@ -194,6 +233,9 @@ impl<const D: usize> Simple<D> {
             for &cell in &self.pinned[c] {
                 self.correction.freeze(c, cell);
             }
+            if let Some(walls) = &self.walls {
+                walls.narrow(c, &mut self.correction);
+            }
         }
         if scale > 0.0 {
             info.momentum.iter_mut().for_each(|r| *r /= scale);
@@ -208,13 +250,16 @@ impl<const D: usize> Simple<D> {
         let FlowState { grid, metrics, boundaries, fluid, velocity, pressure, .. } = &mut self.state;
         self.correction.update(boundaries, fluid.viscosity)?;
         let velocity = &mut velocity.components;
+        if let Some(walls) = &self.walls {
+            walls.show_fluxes(velocity);
+        }
         let through = momentum::throughput(grid, metrics, velocity);
         let divergence = self.correction.measure(boundaries, velocity, pressure, fluid.density);
         if !divergence.is_finite() {
             return Err(self.state.diverged(0.0));
         }
         info.continuity = if through > 0.0 { divergence / through } else { 0.0 };
-        if self.pinned.iter().any(|p| !p.is_empty()) {
+        if self.walls.is_some() || self.pinned.iter().any(|p| !p.is_empty()) {
             self.correction.skip_frozen();
         }
         info.pressure_iterations = match self.correction.solve(false) {
@@ -224,6 +269,9 @@ impl<const D: usize> Simple<D> {
             Err(error) => return Err(error.into()),
         };
         self.correction.correct(boundaries, velocity);
+        if let Some(walls) = &self.walls {
+            walls.show_nodes(velocity);
+        }
         let gain = self.params.pressure_relaxation * fluid.density;
         // The viscous part of what the divergence takes (Cahouet & Chabat 1988); in SIMPLE proper β has it.
         let viscosity = if self.params.consistent { fluid.viscosity } else { 0.0 };
@@ -247,13 +295,23 @@ impl<const D: usize> Simple<D> {
         let modelled = model.refresh(viscosity, 0.0)?;
         if modelled {
             std::mem::swap(&mut self.stress, &mut model.stress);
+            self.look_at(model);
         }
         let iterated = self.iterate();
         if modelled {
             std::mem::swap(&mut self.stress, &mut model.stress);
         }
         let mut info = iterated?;
-        model.update(&self.state.velocity, viscosity, 0.0, None)?;
+        match &mut self.walls {
+            Some(walls) => {
+                walls.fill_rows(viscosity);
+                walls.reach_in(&mut self.state.velocity.components);
+                let updated = model.update(&self.state.velocity, walls.wall_rows(), viscosity, 0.0, None);
+                walls.stop(&self.state.grid, &mut self.state.velocity.components);
+                updated?;
+            }
+            None => model.update(&self.state.velocity, &[], viscosity, 0.0, None)?,
+        }
         info.closure = model.closure.residual();
         Ok(info)
     }

@@ -119,6 +119,13 @@ impl<const D: usize> PressureCorrection<D> {
         self.beta[c][face] = 0.0;
     }
 
+    /// Leaves a share of β on one face, of which only that is open; `cell` is the dense one above it along `c`.
+    pub(crate) fn narrow(&mut self, c: usize, cell: usize, open: f64) {
+        let n = self.grid.cells()[0];
+        let face = face_row(&self.grid, c, cell / n) + cell % n;
+        self.beta[c][face] *= open;
+    }
+
     /// Hands β to the solver. On faces of given pressure it is w/(|u| + 2ν/w), w the width of the cell before them: so the
     /// pressure p there, extrapolated from inside, and the velocity u through them settle where
     /// p − p_given = ½ρ(|u| + 2ν/w)(u − u_inside), whatever the relaxation or step.

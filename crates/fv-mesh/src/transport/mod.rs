@@ -92,11 +92,16 @@ pub struct CellTransport<const D: usize> {
     units: Vec<f64>,
     x: Vec<f64>,
     pinned: Vec<bool>,
+    /// Cells without fluid at their centre, and those from which their values are taken.
+    dry: Vec<Dry>,
     bicgstab: BiCgStabScratch,
     gauss_seidel: GaussSeidelScratch,
     /// Γ or a, φ or b, and two terms.
     fields: [Field<D>; 4],
 }
+
+/// A cell without fluid at its centre, and the weights of the cells around from which its value is taken.
+pub(crate) type Dry = (usize, Vec<(usize, f64)>);
 
 /// A [`CellTransport`] on a velocity: what a closure sees.
 #[derive(Debug)]
@@ -131,6 +136,7 @@ impl<const D: usize> CellTransport<D> {
             units: vec![0.0; n],
             x: vec![0.0; n],
             pinned: vec![false; n],
+            dry: Vec::new(),
             bicgstab: BiCgStabScratch::new(n),
             gauss_seidel: GaussSeidelScratch::new(n),
             fields: std::array::from_fn(|_| Field::zeros(grid)),
@@ -145,6 +151,45 @@ impl<const D: usize> CellTransport<D> {
     pub fn on<'a>(&'a mut self, velocity: &'a Velocity<D>) -> Result<FlowTransport<'a, D>, FlowError> {
         velocity.components[0].check(self.ops.grid())?;
         Ok(FlowTransport { cells: self, velocity })
+    }
+
+    /// Takes these cells out of the equations: nothing passes between them and others.
+    pub(crate) fn set_walls(&mut self, dry: Vec<Dry>) {
+        self.dry = dry;
+    }
+    pub(crate) fn has_walls(&self) -> bool {
+        !self.dry.is_empty()
+    }
+
+    /// Closes the faces of cells without fluid.
+    fn shut(&mut self) {
+        let (cells, periodic) = (self.ops.grid().cells(), self.ops.metrics().periodic);
+        let (_, lower, upper) = self.matrix.parts_mut();
+        for (cell, _) in &self.dry {
+            let at = self.ops.grid().cell(*cell);
+            let mut step = 1;
+            for a in 0..D {
+                let (i, n) = (at[a], cells[a]);
+                let turn = step * (n - 1);
+                if i + 1 < n || periodic[a] {
+                    lower[a][if i + 1 < n { cell + step } else { cell - turn }] = 0.0;
+                }
+                if i > 0 || periodic[a] {
+                    upper[a][if i > 0 { cell - step } else { cell + turn }] = 0.0;
+                }
+                (lower[a][*cell], upper[a][*cell]) = (0.0, 0.0);
+                step *= n;
+            }
+        }
+    }
+
+    /// Gives cells without fluid the values around them.
+    fn extend(&self, phi: &mut [f64]) {
+        for (cell, from) in &self.dry {
+            if !from.is_empty() {
+                phi[*cell] = from.iter().map(|&(o, w)| w * phi[o]).sum();
+            }
+        }
     }
 
     pub(crate) fn grid(&self) -> &CartesianGrid<D> {
@@ -218,12 +263,11 @@ impl<const D: usize> CellTransport<D> {
 
     /// Matrix and right-hand side without relaxation, pins and blends.
     fn assemble(&mut self, velocity: &Velocity<D>, e: &Equation<'_>, phi: &[f64]) -> Result<(), FlowError> {
-        let Self { ops, sides, params, volume, matrix, b, fields, .. } = self;
+        let Self { ops, sides, matrix, fields: [gamma, ..], .. } = self;
         let (grid, metrics) = (ops.grid(), ops.metrics());
-        let [gamma, carried, high, low] = fields;
         copy_dense(grid, e.diffusivity, gamma);
         sides.fill(gamma, None, None);
-        let (centre, mut lower, mut upper) = matrix.parts_mut();
+        let (_, lower, upper) = matrix.parts_mut();
         for axis in 0..D {
             let (gamma, velocity) = (&*gamma, &velocity.components[axis]);
             let kernel = Neighbour::<false, D> { grid, metrics, axis, gamma, velocity };
@@ -231,6 +275,11 @@ impl<const D: usize> CellTransport<D> {
             let kernel = Neighbour::<true, D> { grid, metrics, axis, gamma, velocity };
             fill_dense(grid, &kernel, upper[axis]);
         }
+        self.shut();
+        let Self { ops, sides, params, volume, matrix, b, fields, .. } = self;
+        let (grid, metrics) = (ops.grid(), ops.metrics());
+        let [_, carried, high, low] = fields;
+        let (centre, mut lower, mut upper) = matrix.parts_mut();
         centre.fill(0.0);
         b.copy_from_slice(e.source);
         b.iter_mut().zip(&*volume).for_each(|(b, v)| *b *= v);
@@ -379,10 +428,15 @@ impl<const D: usize> CellTransport<D> {
                 self.matrix.pin(cell, value, &mut self.b)?;
                 (phi[cell], self.pinned[cell]) = (value, true);
             }
+            for &(cell, _) in &self.dry {
+                self.matrix.pin(cell, phi[cell], &mut self.b)?;
+                self.pinned[cell] = true;
+            }
             Ok(())
         });
         let solved = rows.and_then(|()| self.iterate(phi));
         e.pinned.iter().for_each(|&(cell, value)| phi[cell] = value);
+        self.extend(phi);
         solved.map_err(|error| match error {
             LinearError::NotConverged { iterations, residual, tolerance } => {
                 SolveError::NotConverged { iterations, residual, tolerance }

@@ -1,5 +1,5 @@
 //! Walls at rest that cut the grid.
-mod distances;
+pub(crate) mod distances;
 mod faces;
 mod links;
 mod plane;

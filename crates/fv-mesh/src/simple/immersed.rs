@@ -1,0 +1,87 @@
+//! Immersed walls in the steady algorithm.
+use super::Simple;
+use super::walls::{SimpleWalls, WallStress};
+use crate::boundary::Boundaries;
+use crate::flow_state::FlowState;
+use crate::{Field, FlowError, Modelled};
+use interfaces::{Closure, CutCells, Vector, Wrench};
+
+impl<const D: usize> Simple<D> {
+    /// Sets the turbulence kinetic energy k \[m²/s²\] at the cell centres, from which [`WallStress::LogLaw`] takes the friction
+    /// velocity; `None` takes it away. [`iterate_with`](Self::iterate_with) takes it from the model.
+    pub fn set_turbulence_energy(&mut self, k: Option<&Field<D>>) {
+        match (&mut self.energy, k) {
+            (Some(own), Some(k)) => own.data_mut().copy_from_slice(k.data()),
+            (own, k) => *own = k.cloned(),
+        }
+    }
+
+    /// Puts immersed walls at rest into the flow, or takes them out: mass and momentum are balanced over what they leave of
+    /// the control volumes, and `stress` acts on the walls in them. Before this set what the box's sides are; after this the
+    /// first guess and eddy viscosity.
+    ///
+    /// Faces of the box's sides that walls close let nothing pass; inlets pass the open part of what is given.
+    ///
+    /// # Errors
+    /// [`FlowError::Parameter`] for walls on another grid, and those of the sides.
+    pub fn set_walls(&mut self, walls: Option<(&CutCells, WallStress)>) -> Result<(), FlowError> {
+        let FlowState { grid, metrics, boundaries, velocity, pressure, .. } = &mut self.state;
+        let made = match walls {
+            Some((cuts, stress)) => {
+                Some(SimpleWalls::new(cuts, stress, grid, metrics, &boundaries.outlets(grid))?)
+            }
+            None => None,
+        };
+        let mut sides = Boundaries::new(grid, boundaries.sides.clone(), metrics)?;
+        if let Some((cuts, _)) = walls {
+            sides.narrow(grid, metrics, |c, index| {
+                let list = &cuts.faces[c];
+                list.binary_search_by_key(&index, |face| face.index).map_or(1.0, |k| list[k].open)
+            })?;
+        }
+        *boundaries = sides;
+        self.correction = self.params.pressure_solver(grid, metrics, boundaries)?;
+        if let Some(walls) = &made {
+            walls.stop(grid, &mut velocity.components);
+            pressure.data_mut().fill(0.0);
+        }
+        self.walls = made.map(Box::new);
+        self.state.fill_velocity();
+        self.state.fill_pressure();
+        Ok(())
+    }
+
+    /// Friction of the fluid on each body of the walls in the last iteration \[N, N m\], about its centre of mass.
+    pub fn wall_friction(&self) -> Vec<Wrench> {
+        self.walls.as_ref().map_or_else(Vec::new, |walls| walls.friction(self.state.fluid.density))
+    }
+
+    /// Force of the pressure on each body of the walls \[N, N m\], about its centre of mass: −Σ p A n over the cells with wall.
+    pub fn wall_pressure_force(&self) -> Vec<Wrench> {
+        self.walls.as_ref().map_or_else(Vec::new, |walls| walls.pressure_force(&self.state.pressure))
+    }
+
+    /// What every piece of wall, in the order given, took from the fluid per area in the last iteration \[Pa\].
+    pub fn wall_tractions(&self) -> Vec<Vector> {
+        let density = self.state.fluid.density;
+        self.walls.as_ref().map_or_else(Vec::new, |walls| walls.tractions().map(|t| density * t).collect())
+    }
+
+    /// Takes from a model what holds in cells that walls cut.
+    pub(super) fn look_at<C: Closure>(&mut self, model: &mut Modelled<D, C>) {
+        let Some(walls) = &self.walls else { return };
+        if let Some(stress) = &mut self.stress {
+            walls.extend(&mut stress.eddy);
+        }
+        match model.closure.kinetic_energy() {
+            Some(k) => {
+                let field = self.energy.get_or_insert_with(|| Field::zeros(&self.state.grid));
+                model.transport().spread(k, field);
+            }
+            None => self.energy = None,
+        }
+        if !model.transport().has_walls() {
+            model.transport_mut().set_walls(walls.dry_cells(&self.state.grid));
+        }
+    }
+}

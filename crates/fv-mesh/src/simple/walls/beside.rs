@@ -1,0 +1,97 @@
+//! What wall functions and gradients see beside walls.
+use super::gradients::{Gradients, around};
+use super::openings::Openings;
+use super::stress::Stresses;
+use interfaces::WallRow;
+
+/// Centres nearer to the wall than this share of a cell are seen as if they were there.
+const NEAREST: f64 = 0.3;
+
+/// The cells beside walls: those that a wall cuts and those that share a face with one whose centre is not in the fluid.
+#[derive(Default)]
+pub(super) struct Beside {
+    pub(super) rows: Vec<WallRow>,
+    /// The piece of wall of each, and how far from it the cell ends \[m\].
+    probes: Vec<(usize, f64)>,
+}
+
+impl Beside {
+    pub(super) fn new<const D: usize>(openings: &Openings<D>) -> Self {
+        let (grid, s) = (openings.grid, openings.grid.stride());
+        let mut new = Self::default();
+        for cell in 0..grid.n_cells() {
+            let index = grid.place(grid.cell(cell));
+            let dry = |o: usize| grid.cell_at(o).is_some() && !openings.wet[o];
+            let beside = (0..D).any(|a| dry(index - s[a]) || dry(index + s[a]));
+            if !openings.wet[index] || !beside && openings.piece(index).is_none() {
+                continue;
+            }
+            let x = grid.centre(grid.cell(cell));
+            let height = |o: usize| {
+                let (probe, wall) = openings.piece(o)?;
+                let y: f64 = (0..D).map(|a| (x[a] - wall.foot[a]) * wall.normal[a]).sum();
+                let aside: f64 = (0..D).map(|a| (x[a] - wall.foot[a] - y * wall.normal[a]).powi(2)).sum();
+                Some((y, aside, probe, wall))
+            };
+            // The piece that the centre stands over.
+            let seen = around(openings, index).filter_map(height).filter(|seen| seen.0 > 0.0);
+            let Some((y, _, probe, wall)) =
+                seen.min_by(|a, b| (a.0 * a.0 + a.1).total_cmp(&(b.0 * b.0 + b.1)))
+            else {
+                continue;
+            };
+            let at = openings.at(index);
+            let extent: f64 =
+                (0..D).map(|a| wall.normal[a].abs() * openings.metrics.axes[a].width[at[a]]).sum();
+            let y = y.max(NEAREST * extent);
+            new.rows.push(WallRow { cell, y, area: wall.area, ..WallRow::default() });
+            new.probes.push((probe, y + 0.5 * extent));
+        }
+        new
+    }
+
+    /// What the flow is there: the velocity that has the wall's friction by the logarithmic law.
+    pub(super) fn fill<const D: usize>(&mut self, stresses: &Stresses<D>, nu: f64) {
+        for (row, &(probe, end)) in self.rows.iter_mut().zip(&self.probes) {
+            row.nu = nu;
+            row.u_t = stresses.seen(probe, row.y, nu);
+            // Of the whole cell, as from differences over it.
+            row.shear = Some(stresses.seen(probe, end, nu) / end);
+        }
+    }
+}
+
+/// A node in the solid, and what its velocity would be if the fluid went on.
+pub(super) struct Ghost {
+    pub(super) node: usize,
+    pub(super) terms: Vec<(usize, f64)>,
+    pub(super) constant: f64,
+}
+
+/// Nodes in the solid around nodes in the fluid: extrapolated with these nodes' gradients.
+pub(super) fn ghosts<const D: usize>(
+    openings: &Openings<D>,
+    c: usize,
+    sticks: bool,
+    gradients: &mut Gradients<D>,
+) -> Vec<Ghost> {
+    let grid = openings.grid;
+    let nodes = (0..grid.n_cells()).map(|cell| grid.place(grid.cell(cell)));
+    let mut out = Vec::new();
+    for node in nodes.filter(|&o| !openings.alive(c, o)) {
+        let from: Vec<usize> =
+            around(openings, node).filter(|&o| openings.alive(c, o) && grid.cell_at(o).is_some()).collect();
+        let mut ghost = Ghost { node, terms: Vec::new(), constant: 0.0 };
+        let (x, weight) = (openings.node(c, node), 1.0 / from.len() as f64);
+        for &other in &from {
+            let slot = gradients.slot(openings, c, other, sticks);
+            let y = openings.node(c, other);
+            let by = std::array::from_fn(|a| x[a] - y[a]);
+            ghost.constant += gradients.extrapolation(slot, by, &mut ghost.terms, weight);
+        }
+        if !from.is_empty() {
+            out.push(ghost);
+        }
+    }
+    out
+}

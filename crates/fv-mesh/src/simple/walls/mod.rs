@@ -1,0 +1,289 @@
+//! Immersed walls in the steady algorithm: conservative balances over what they leave of the control volumes.
+mod beside;
+mod gradients;
+mod openings;
+mod rows;
+mod stress;
+
+pub use stress::WallStress;
+
+use crate::linear::StencilMatrix;
+use crate::metrics::Metrics;
+use crate::momentum_matrix::MomentumEquations;
+use crate::simple::PressureCorrection;
+use crate::transport::Dry;
+use crate::{CartesianGrid, Convection, Field, FlowError};
+use beside::{Beside, Ghost};
+use gradients::Gradients;
+use interfaces::{CutCells, Vector, WallRow, Wrench};
+use openings::Openings;
+use rows::{Flow, Row};
+use std::collections::HashSet;
+use stress::Stresses;
+
+/// Walls in a steady flow.
+pub(crate) struct SimpleWalls<const D: usize> {
+    rows: [Vec<Row<D>>; D],
+    gradients: [Gradients<D>; D],
+    stresses: Stresses<D>,
+    /// Dense numbers of the nodes that no fluid passes.
+    pub(super) shut: [Vec<usize>; D],
+    /// Faces with a part that is open: storage index, dense number of the cell above and share.
+    partly: [Vec<(usize, usize, f64)>; D],
+    /// The same on the sides of the box: storage index and share.
+    sides: [Vec<(usize, f64)>; D],
+    /// Cells without fluid at their centre, and the weights of those around from which their ν_t is taken.
+    dry: Vec<(usize, Vec<(usize, f64)>)>,
+    /// The cells that wall functions see.
+    beside: Beside,
+    /// Nodes in the solid beside nodes in the fluid.
+    ghosts: [Vec<Ghost>; D],
+    sums: Vec<f64>,
+    rates: Vec<f64>,
+    n_bodies: usize,
+}
+
+/// What changes from iteration to iteration.
+#[derive(Clone, Copy)]
+pub(crate) struct Iteration<'a, const D: usize> {
+    pub(crate) grid: &'a CartesianGrid<D>,
+    pub(crate) metrics: &'a Metrics<D>,
+    pub(crate) velocity: &'a [Field<D>; D],
+    pub(crate) pressure: &'a Field<D>,
+    pub(crate) eddy: Option<&'a Field<D>>,
+    pub(crate) scheme: Convection,
+    pub(crate) viscosity: f64,
+    pub(crate) density: f64,
+    pub(crate) force: f64,
+    pub(crate) relaxation: f64,
+    pub(crate) viscous_share: f64,
+}
+
+impl<const D: usize> SimpleWalls<D> {
+    /// # Errors
+    /// Those of the openings.
+    pub(super) fn new(
+        cuts: &CutCells,
+        law: WallStress,
+        grid: &CartesianGrid<D>,
+        metrics: &Metrics<D>,
+        outlets: &HashSet<(usize, usize)>,
+    ) -> Result<Self, FlowError> {
+        let openings = Openings::new(cuts, grid, metrics, outlets)?;
+        let mut gradients = std::array::from_fn(|_| Gradients::new());
+        let (mut shut, mut partly) =
+            (std::array::from_fn(|_| Vec::new()), std::array::from_fn(|_| Vec::new()));
+        let mut rows = std::array::from_fn(|_| Vec::new());
+        let mut sides = std::array::from_fn(|_| Vec::new());
+        for c in 0..D {
+            for face in cuts.faces[c].iter().filter(|face| {
+                face.open > 0.0
+                    && grid.cell_at(face.index).is_none_or(|cell| !metrics.periodic[c] && cell[c] == 0)
+            }) {
+                // On the sides of the box.
+                let open = openings.open[c].data()[face.index];
+                sides[c].push((face.index, open));
+            }
+            for cell in 0..grid.n_cells() {
+                let index = grid.place(grid.cell(cell));
+                if !metrics.periodic[c] && grid.cell(cell)[c] == 0 {
+                    continue;
+                }
+                let open = openings.open[c].data()[index];
+                if open == 0.0 {
+                    shut[c].push(cell);
+                    continue;
+                }
+                if open < 1.0 {
+                    partly[c].push((index, cell, open));
+                }
+                rows[c].extend(Row::new(&openings, c, index, law.sticks(), &mut gradients));
+            }
+        }
+        let stresses = Stresses::new(&openings, law, &rows, &mut gradients);
+        let beside = Beside::new(&openings);
+        let ghosts = std::array::from_fn(|c| beside::ghosts(&openings, c, law.sticks(), &mut gradients[c]));
+        let n_bodies = cuts.walls.iter().map(|w| w.body + 1).max().unwrap_or(0);
+        let longest = rows.iter().map(Vec::len).max().unwrap_or(0);
+        Ok(Self {
+            dry: dry(&openings),
+            beside,
+            ghosts,
+            sums: vec![0.0; longest],
+            rates: vec![0.0; longest],
+            rows,
+            gradients,
+            stresses,
+            shut,
+            partly,
+            sides,
+            n_bodies,
+        })
+    }
+
+    /// Looks at the flow before an iteration.
+    pub(super) fn update(&mut self, velocity: &[Field<D>; D], k: Option<&Field<D>>, viscosity: f64) {
+        for (gradients, u) in self.gradients.iter_mut().zip(velocity) {
+            gradients.update(u);
+        }
+        self.stresses.update(velocity, k, viscosity);
+    }
+
+    /// Puts the rows beside walls into the equation of component `c`. `terms` gets the sizes of the terms of rows that are
+    /// not what was measured before.
+    pub(super) fn assemble(
+        &mut self,
+        c: usize,
+        it: Iteration<D>,
+        equations: &mut MomentumEquations<D>,
+        matrix: &mut StencilMatrix<D>,
+        terms: &mut f64,
+    ) {
+        let rows = &self.rows[c];
+        let u = it.velocity[c].data();
+        let flow = Flow {
+            grid: it.grid,
+            metrics: it.metrics,
+            velocity: it.velocity,
+            eddy: it.eddy,
+            scheme: it.scheme,
+            viscosity: it.viscosity,
+            equations,
+            gradients: &self.gradients,
+        };
+        for ((sum, rate), row) in self.sums.iter_mut().zip(&mut self.rates).zip(rows) {
+            [*sum, *rate] = row.write(c, &flow, it.viscous_share, matrix);
+        }
+        self.stresses.add(c, rows, u, it.viscosity, &mut self.sums, matrix);
+        let (s, p) = (it.grid.stride()[c], it.pressure.data());
+        let faces = &it.metrics.axes[c].faces;
+        let slope = |index: usize| {
+            let at = openings::coordinates(it.grid, index)[c];
+            faces.inv_volume[at] * (p[index] - p[index - s]) / it.density
+        };
+        let volume = |index: usize| -> f64 {
+            let at = openings::coordinates(it.grid, index);
+            (0..D).map(|a| it.metrics.of(Some(c), a).volume[at[a]]).product()
+        };
+        for &cell in &self.shut[c] {
+            let index = it.grid.place(it.grid.cell(cell));
+            *terms -= volume(index) * (equations.tendency(index).abs() + slope(index).abs() + it.force.abs());
+        }
+        let centre = matrix.parts_mut().0;
+        // Whatever the rows of the solid are, they can be solved.
+        self.shut[c].iter().for_each(|&cell| centre[cell] = 1.0);
+        for ((sum, rate), row) in self.sums.iter().zip(&self.rates).zip(rows) {
+            *terms += volume(row.index) * (sum.abs() - equations.tendency(row.index).abs());
+            equations.rhs[row.cell] = sum - slope(row.index) + it.force;
+            centre[row.cell] += (1.0 / it.relaxation - 1.0) * rate;
+        }
+    }
+
+    /// Leaves of the conductances of the faces what is open.
+    pub(super) fn narrow(&self, c: usize, correction: &mut PressureCorrection<D>) {
+        for &(_, cell, open) in &self.partly[c] {
+            correction.narrow(c, cell, open);
+        }
+        for &cell in &self.shut[c] {
+            correction.narrow(c, cell, 0.0);
+        }
+    }
+
+    /// Gives the faces the mean velocity over the whole of them.
+    pub(super) fn show_fluxes(&self, velocity: &mut [Field<D>; D]) {
+        for ((list, sides), u) in self.partly.iter().zip(&self.sides).zip(velocity) {
+            list.iter().for_each(|&(index, _, open)| u.data_mut()[index] *= open);
+            sides.iter().for_each(|&(index, open)| u.data_mut()[index] *= open);
+        }
+    }
+
+    /// Gives the faces the velocity in their open part again.
+    pub(super) fn show_nodes(&self, velocity: &mut [Field<D>; D]) {
+        for ((list, sides), u) in self.partly.iter().zip(&self.sides).zip(velocity) {
+            list.iter().for_each(|&(index, _, open)| u.data_mut()[index] /= open);
+            sides.iter().for_each(|&(index, open)| u.data_mut()[index] /= open);
+        }
+    }
+
+    /// The cells without fluid at their centre, by dense numbers.
+    pub(super) fn dry_cells(&self, grid: &CartesianGrid<D>) -> Vec<Dry> {
+        let dense = |o: usize| grid.cell_at(o).map(|cell| grid.index(cell));
+        let list = |from: &[(usize, f64)]| from.iter().filter_map(|&(o, w)| Some((dense(o)?, w))).collect();
+        self.dry.iter().filter_map(|(cell, from)| Some((dense(*cell)?, list(from)))).collect()
+    }
+
+    /// Fills the rows of wall functions.
+    pub(super) fn fill_rows(&mut self, viscosity: f64) {
+        self.beside.fill(&self.stresses, viscosity);
+    }
+
+    pub(super) fn wall_rows(&self) -> &[WallRow] {
+        &self.beside.rows
+    }
+
+    /// Lets the velocity go on smoothly into the solid, for gradients beside it.
+    pub(super) fn reach_in(&self, velocity: &mut [Field<D>; D]) {
+        for (c, u) in velocity.iter_mut().enumerate() {
+            let data = u.data_mut();
+            for ghost in &self.ghosts[c] {
+                data[ghost.node] =
+                    ghost.terms.iter().map(|&(o, w)| w * data[o]).sum::<f64>() + ghost.constant;
+            }
+        }
+    }
+
+    /// Stops what is in the solid.
+    pub(super) fn stop(&self, grid: &CartesianGrid<D>, velocity: &mut [Field<D>; D]) {
+        for (list, u) in self.shut.iter().zip(velocity) {
+            list.iter().for_each(|&cell| u.data_mut()[grid.place(grid.cell(cell))] = 0.0);
+        }
+    }
+
+    /// Gives cells in the solid the values around them.
+    pub(super) fn extend(&self, values: &mut Field<D>) {
+        let data = values.data_mut();
+        for (cell, from) in self.dry.iter().filter(|(_, from)| !from.is_empty()) {
+            data[*cell] = from.iter().map(|&(o, w)| w * data[o]).sum();
+        }
+    }
+
+    /// Force of friction on each body \[N\], about its centre of mass.
+    pub(super) fn friction(&self, density: f64) -> Vec<Wrench> {
+        let mut out = vec![Wrench::default(); self.n_bodies];
+        for (force, probe) in self.stresses.force.iter().zip(&self.stresses.probes) {
+            out[probe.body] += Wrench::at(density * force, probe.arm);
+        }
+        out
+    }
+
+    /// Force of the pressure on each body \[N\], about its centre of mass: that of every cell acts on the wall in it.
+    pub(super) fn pressure_force(&self, pressure: &Field<D>) -> Vec<Wrench> {
+        let mut out = vec![Wrench::default(); self.n_bodies];
+        for probe in &self.stresses.probes {
+            let force = probe.normal * (-pressure.data()[probe.cell] * probe.area);
+            out[probe.body] += Wrench::at(force, probe.arm);
+        }
+        out
+    }
+
+    /// Per piece of wall: what the wall takes from the fluid per area and density \[m²/s²\] in the last iteration.
+    pub(super) fn tractions(&self) -> impl Iterator<Item = Vector> + '_ {
+        self.stresses.force.iter().zip(&self.stresses.probes).map(|(force, probe)| force / probe.area)
+    }
+}
+
+/// Cells without fluid at their centre that have neighbours with, and the weights of those.
+fn dry<const D: usize>(openings: &Openings<D>) -> Vec<(usize, Vec<(usize, f64)>)> {
+    let grid = openings.grid;
+    let inner = |o: usize| grid.cell_at(o).is_some();
+    let cells = (0..grid.n_cells()).map(|cell| grid.place(grid.cell(cell)));
+    cells
+        .filter(|&o| !openings.wet[o])
+        .map(|cell| {
+            let from: Vec<usize> =
+                gradients::around(openings, cell).filter(|&o| inner(o) && openings.wet[o]).collect();
+            let weight = 1.0 / from.len().max(1) as f64;
+            (cell, from.into_iter().map(|o| (o, weight)).collect())
+        })
+        .collect()
+}

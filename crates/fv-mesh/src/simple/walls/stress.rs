@@ -1,0 +1,289 @@
+//! The stress of walls on the fluid.
+use super::gradients::{Gradients, to_wall};
+use super::openings::Openings;
+use super::rows::Row;
+use crate::Field;
+use crate::linear::StencilMatrix;
+use interfaces::{Vector, WallPiece};
+
+/// How the fluid meets immersed walls.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum WallStress {
+    /// It sticks to them: τ = ρν ∂u/∂n.
+    #[default]
+    NoSlip,
+    /// It slips along them.
+    Slip,
+    /// τ = ρ u_τ², from the velocity at some distance y by the law u⁺ = ln(E y⁺)/κ, or u⁺ = y⁺ where that is less. Where the
+    /// turbulence kinetic energy k is known, u_τ² = C_μ^¼ √k κ u/ln(E y*), y* = C_μ^¼ √k y/ν (Launder & Spalding 1974).
+    LogLaw {
+        /// κ.
+        kappa: f64,
+        /// E.
+        e: f64,
+        /// y along the normal over the cell's extent along it.
+        distance: f64,
+    },
+}
+
+impl WallStress {
+    /// The logarithmic law with κ = 0.41 and E = 9.8, seen from three quarters of a cell.
+    pub const LOG_LAW: Self = Self::LogLaw { kappa: 0.41, e: 9.8, distance: 0.75 };
+
+    pub(super) fn sticks(self) -> bool {
+        self == Self::NoSlip
+    }
+}
+
+/// C_μ^¼.
+const C_MU: f64 = 0.547_722_557_505_166_1;
+
+/// τ/(ρ u) \[m/s\] at a wall where the velocity at distance `y` is `u` and the turbulence kinetic energy `k`.
+fn friction(kappa: f64, e: f64, [y, u]: [f64; 2], k: Option<f64>, nu: f64) -> f64 {
+    let laminar = nu / y;
+    // Where both laws meet.
+    let mut meet = 11.0_f64;
+    for _ in 0..10 {
+        meet = (e * meet).ln() / kappa;
+    }
+    if let Some(k) = k {
+        let speed = C_MU * k.max(0.0).sqrt();
+        let star = speed * y / nu;
+        return if star > meet { kappa * speed / (e * star).ln() } else { laminar };
+    }
+    let reynolds = u * y / nu;
+    if reynolds <= meet * meet {
+        return laminar;
+    }
+    // u⁺ ln-law: u⁺ = ln(E Re/u⁺)/κ, a contraction.
+    let mut plus = meet;
+    for _ in 0..30 {
+        plus = (e * reynolds / plus).ln() / kappa;
+    }
+    u / (plus * plus)
+}
+
+/// Where the flow is seen by a wall, and what acts on it there.
+pub(super) struct Probe {
+    y: f64,
+    /// Per component, range in `terms` and a constant.
+    ranges: [(usize, usize, f64); 3],
+    /// Range in `cells`.
+    cells: (usize, usize),
+    /// Storage index of its cell.
+    pub(super) cell: usize,
+    pub(super) normal: Vector,
+    velocity: Vector,
+    pub(super) area: f64,
+    pub(super) body: usize,
+    pub(super) arm: Vector,
+}
+
+/// The part of a wall in a row.
+struct Share {
+    row: usize,
+    probe: usize,
+    /// Its area over the row's volume \[1/m\], and the area \[m²\].
+    area: f64,
+    whole: f64,
+    /// 1/distance of the row's node from it.
+    inv_y: f64,
+}
+
+/// The stress on all rows of all components.
+pub(super) struct Stresses<const D: usize> {
+    law: WallStress,
+    pub(super) probes: Vec<Probe>,
+    terms: Vec<(usize, f64)>,
+    cells: Vec<(usize, f64)>,
+    shares: [Vec<Share>; D],
+    /// Per probe: what the wall takes from the fluid per area and density \[m²/s²\], and that over the velocity.
+    pub(super) traction: Vec<Vector>,
+    friction: Vec<f64>,
+    /// C_μ^¼ √k there, where k is known \[m/s\].
+    speeds: Vec<Option<f64>>,
+    /// Per probe: the force per density \[m⁴/s²\] on it in the last iteration.
+    pub(super) force: Vec<Vector>,
+}
+
+impl<const D: usize> Stresses<D> {
+    pub(super) fn new(
+        openings: &Openings<D>,
+        law: WallStress,
+        rows: &[Vec<Row<D>>; D],
+        gradients: &mut [Gradients<D>; D],
+    ) -> Self {
+        let n = openings.walls.len();
+        let mut this = Self {
+            law,
+            probes: Vec::new(),
+            terms: Vec::new(),
+            cells: Vec::new(),
+            shares: std::array::from_fn(|_| Vec::new()),
+            traction: vec![Vector::zeros(); n],
+            friction: vec![0.0; n],
+            speeds: vec![None; n],
+            force: vec![Vector::zeros(); n],
+        };
+        for wall in openings.walls {
+            let probe = this.probe(openings, wall, gradients);
+            this.probes.push(probe);
+        }
+        for c in 0..D {
+            let s = openings.grid.stride()[c];
+            for (r, row) in rows[c].iter().enumerate() {
+                let x = openings.node(c, row.index);
+                for cell in [row.index - s, row.index] {
+                    let Some((probe, wall)) = openings.piece(cell) else { continue };
+                    let part = |o: usize| openings.open[c].data()[o] * openings.area(c, o);
+                    let whole = wall.area * part(row.index) / (part(cell) + part(cell + s));
+                    let y = Vector::from_fn(|a, _| if a < D { to_wall(wall, x)[a] } else { 0.0 }).norm();
+                    let least = 1e-3 * openings.metrics.axes[c].width[openings.at(cell)[c]];
+                    let (area, inv_y) = (whole * row.inv_volume, 1.0 / y.max(least));
+                    this.shares[c].push(Share { row: r, probe, area, whole, inv_y });
+                }
+            }
+        }
+        this
+    }
+
+    fn probe(
+        &mut self,
+        openings: &Openings<D>,
+        wall: &WallPiece,
+        gradients: &mut [Gradients<D>; D],
+    ) -> Probe {
+        let metrics = openings.metrics;
+        let index = openings.grid.place(openings.grid.cell(wall.cell));
+        let at = openings.at(index);
+        let mut probe = Probe {
+            y: 0.0,
+            ranges: [(0, 0, 0.0); 3],
+            cells: (0, 0),
+            cell: index,
+            normal: wall.normal,
+            velocity: wall.velocity,
+            area: wall.area,
+            body: wall.body,
+            arm: wall.arm,
+        };
+        let WallStress::LogLaw { distance, .. } = self.law else { return probe };
+        let extent: f64 = (0..D).map(|a| wall.normal[a].abs() * metrics.axes[a].width[at[a]]).sum();
+        probe.y = distance * extent;
+        let x: [f64; D] = std::array::from_fn(|a| wall.foot[a] + probe.y * wall.normal[a]);
+        for c in 0..D {
+            let (first, mut constant) = (self.terms.len(), 0.0);
+            let corners = corners(openings, Some(c), x, index, |o| openings.alive(c, o));
+            for (node, weight) in corners {
+                let slot = gradients[c].slot(openings, c, node, false);
+                let y = openings.node(c, node);
+                let by = std::array::from_fn(|a| x[a] - y[a]);
+                constant += gradients[c].extrapolation(slot, by, &mut self.terms, weight);
+            }
+            probe.ranges[c] = (first, self.terms.len(), constant);
+        }
+        let first = self.cells.len();
+        self.cells.extend(corners(openings, None, x, index, |o| openings.wet[o]));
+        probe.cells = (first, self.cells.len());
+        probe
+    }
+
+    /// Looks at the flow.
+    pub(super) fn update(&mut self, velocity: &[Field<D>; D], k: Option<&Field<D>>, nu: f64) {
+        let WallStress::LogLaw { kappa, e, .. } = self.law else { return };
+        for (p, probe) in self.probes.iter().enumerate() {
+            let mut u = -probe.velocity;
+            for c in 0..D {
+                let (first, last, constant) = probe.ranges[c];
+                let data = velocity[c].data();
+                u[c] += constant + self.terms[first..last].iter().map(|&(o, w)| w * data[o]).sum::<f64>();
+            }
+            u -= probe.normal * probe.normal.dot(&u);
+            let k = k.map(|k| {
+                self.cells[probe.cells.0..probe.cells.1].iter().map(|&(o, w)| w * k.data()[o]).sum()
+            });
+            self.speeds[p] = k.map(|k: f64| C_MU * k.max(0.0).sqrt());
+            self.friction[p] = friction(kappa, e, [probe.y, u.norm()], k, nu);
+            self.traction[p] = u * self.friction[p];
+        }
+    }
+
+    /// Tangential velocity at distance `y` from the wall that goes with its friction, by the law where there is one.
+    pub(super) fn seen(&self, probe: usize, y: f64, nu: f64) -> f64 {
+        let WallStress::LogLaw { kappa, e, .. } = self.law else {
+            return self.force[probe].norm() / self.probes[probe].area * y / nu;
+        };
+        let stress = self.traction[probe].norm();
+        let speed = self.speeds[probe].unwrap_or_else(|| stress.sqrt());
+        let (linear, star) = (stress * y / nu, speed * y / nu);
+        if e * star <= 1.0 {
+            return linear;
+        }
+        (stress / (kappa * speed) * (e * star).ln()).min(linear)
+    }
+
+    /// Adds the stress to the equations of component `c`: right-hand sides and diagonals.
+    pub(super) fn add(
+        &mut self,
+        c: usize,
+        rows: &[Row<D>],
+        u: &[f64],
+        nu: f64,
+        sums: &mut [f64],
+        matrix: &mut StencilMatrix<D>,
+    ) {
+        self.force.iter_mut().for_each(|f| f[c] = 0.0);
+        if self.law == WallStress::Slip {
+            return;
+        }
+        let centre = matrix.parts_mut().0;
+        for share in &self.shares[c] {
+            let (row, probe) = (&rows[share.row], &self.probes[share.probe]);
+            let (stress, rate) = if self.law == WallStress::NoSlip {
+                (nu * share.inv_y * (u[row.index] - probe.velocity[c]), nu * share.inv_y)
+            } else {
+                let normal = probe.normal[c];
+                (self.traction[share.probe][c], self.friction[share.probe] * (1.0 - normal * normal))
+            };
+            sums[share.row] -= share.area * stress;
+            centre[row.cell] += share.area * rate;
+            self.force[share.probe][c] += share.whole * stress;
+        }
+    }
+}
+
+/// The nodes around a place that are `seen`, and their weights; the one beside which it is if none is.
+fn corners<const D: usize>(
+    openings: &Openings<D>,
+    c: Option<usize>,
+    x: [f64; D],
+    near: usize,
+    seen: impl Fn(usize) -> bool,
+) -> Vec<(usize, f64)> {
+    let s = openings.grid.stride();
+    let (mut base, mut part) = (0, [0.0; D]);
+    for a in 0..D {
+        let places = &openings.metrics.of(c, a).x;
+        let i = places.partition_point(|&p| p <= x[a]).clamp(1, places.len() - 1) - 1;
+        part[a] = ((x[a] - places[i]) / (places[i + 1] - places[i])).clamp(0.0, 1.0);
+        base += i * s[a];
+    }
+    let mut out = Vec::new();
+    for k in 0..1_usize << D {
+        let (mut node, mut weight) = (base, 1.0);
+        for a in 0..D {
+            let up = k >> a & 1;
+            node += up * s[a];
+            weight *= if up == 1 { part[a] } else { 1.0 - part[a] };
+        }
+        if weight > 1e-3 && seen(node) {
+            out.push((node, weight));
+        }
+    }
+    if out.is_empty() {
+        out.extend(super::gradients::around(openings, near).find(|&o| seen(o)).map(|o| (o, 1.0)));
+    }
+    let sum: f64 = out.iter().map(|o| o.1).sum();
+    out.iter_mut().for_each(|o| o.1 /= sum);
+    out
+}

@@ -1,0 +1,99 @@
+use super::*;
+use crate::testing::{Balls, Brick, Staggered};
+use interfaces::Pose;
+use std::f64::consts::PI;
+
+/// A ball of radius 1 in a periodic box of 4.
+fn ball(dim: usize, n: usize) -> (Staggered, CutCells) {
+    let h = 4.0 / n as f64;
+    let bodies = Balls::new(dim, 1.0, vec![[2.013, 1.971, if dim == 2 { 0.0 } else { 2.04 }]]);
+    let field =
+        if dim == 2 { Staggered::new([n, n], h, [0.0; 2]) } else { Staggered::new([n; 3], h, [0.0; 3]) };
+    let cells = cut_cells(&field, &bodies).unwrap();
+    (field, cells)
+}
+
+#[test]
+fn walls_have_the_area_of_a_ball() {
+    let error = |dim: usize, n: usize| {
+        let (_, cells) = ball(dim, n);
+        let exact = if dim == 2 { 2.0 * PI } else { 4.0 * PI };
+        let middle = Point::new(2.013, 1.971, if dim == 2 { 0.0 } else { 2.04 });
+        for wall in &cells.walls {
+            let out = (wall.foot - middle).normalize();
+            assert!((wall.foot - middle).norm() - 1.0 < 0.1 * (4.0 / n as f64).powi(2));
+            assert!(out.dot(&wall.normal) > 0.9, "{wall:?}");
+            assert!((wall.arm - (wall.foot - middle)).norm() < 1e-12);
+        }
+        (cells.walls.iter().map(|w| w.area).sum::<f64>() / exact - 1.0).abs()
+    };
+    for (dim, n) in [(2, 20), (3, 16)] {
+        let errors = [error(dim, n), error(dim, 2 * n)];
+        assert!(errors[1] < 4e-3 && errors[1] < errors[0] / 3.0, "{errors:?}");
+    }
+}
+
+#[test]
+fn open_parts_are_those_of_the_faces() {
+    // Against sums over many points; in space the surface is linear between points at most h apart, from which it is h²/8 away.
+    for (dim, n, within) in [(2, 20, 1e-4), (3, 24, 1.0 / 48.0)] {
+        let (field, cells) = ball(dim, n);
+        let h = 4.0 / n as f64;
+        let points = if dim == 2 { 20_000 } else { 200 };
+        for a in 0..dim {
+            for face in &cells.faces[a] {
+                let lattice = field.lattice(a);
+                let x = lattice.position(lattice.node(face.index));
+                let along = [(a + 1) % dim, (a + 2) % dim];
+                let (mut open, mut centre) = (0.0, Vector::zeros());
+                let count = if dim == 2 { points } else { points * points };
+                for p in 0..count {
+                    let mut at = x;
+                    at[along[0]] += h * (((p % points) as f64 + 0.5) / points as f64 - 0.5);
+                    if dim == 3 {
+                        at[along[1]] += h * (((p / points) as f64 + 0.5) / points as f64 - 0.5);
+                    }
+                    let arm = Vector::from(at) - Vector::new(2.013, 1.971, if dim == 2 { 0.0 } else { 2.04 });
+                    if arm.norm() > 1.0 {
+                        open += 1.0;
+                        centre += Vector::from(at);
+                    }
+                }
+                assert!((face.open - open / count as f64).abs() < within, "{face:?} {}", open / count as f64);
+                if face.open > 0.05 {
+                    assert!((face.centre.coords - centre / open).norm() < within * h, "{face:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn walls_along_the_lines_leave_no_slivers() {
+    // Round-off must not decide.
+    let n = 20;
+    let bodies = Balls::of(Brick([1.0, 0.6, 0.0]), 2.4, vec![Pose::at([2.0, 2.2 - 1e-15, 0.0])]);
+    let cells = cut_cells(&Staggered::new([n, n], 0.2, [0.0; 2]), &bodies).unwrap();
+    assert!(cells.faces.iter().flatten().all(|f| f.open == 0.0));
+    let area: f64 = cells.walls.iter().map(|w| w.area).sum();
+    assert!((area - 6.4).abs() < 1e-12 && cells.walls.len() == 32, "{area} {}", cells.walls.len());
+}
+
+#[test]
+fn a_gap_with_one_way_in_is_closed() {
+    // Two bricks and one behind them leave a blind alley of one cell's width.
+    let bodies = Balls::of(
+        Brick([1.0, 0.5, 0.0]),
+        2.0,
+        vec![Pose::at([2.0, 1.5, 0.0]), Pose::at([2.0, 2.6, 0.0]), Pose::at([3.95, 2.0, 0.0])],
+    );
+    let field = Staggered::new([60, 60], 0.1, [0.0; 2]);
+    let cells = cut_cells(&field, &bodies).unwrap();
+    let lattice = field.lattice(0);
+    let shut = cells.faces[0].iter().filter(|f| f.open == 0.0);
+    let alley = shut.filter(|f| {
+        let x = lattice.position(lattice.node(f.index));
+        (x[1] - 2.05).abs() < 1e-9 && x[0] > 1.0 && x[0] < 2.9
+    });
+    assert_eq!(alley.count(), 18);
+}

@@ -1,0 +1,164 @@
+//! Profiles across the duct beside those of the body-fitted solution.
+use crate::duct::Duct;
+use example_support::Outcome;
+use example_support::picture::Domain;
+use example_support::picture::comparison::{Comparison, Curve, Panel};
+use siltflow::flow::{CartesianGrid, Simple};
+use std::path::Path;
+
+/// The stations of the reference and where they are along the centreline from the start of the bend \[m\].
+const STATIONS: [(&str, f64); 6] =
+    [("in1H", -1.0), ("in0", 0.0), ("bend45", 0.5), ("exit", 1.0), ("exit1H", 2.0), ("exit5H", 6.0)];
+const KAPPA: f64 = 0.41;
+const E: f64 = 9.8;
+
+/// Straight between the nodes in the fluid around `x`; nodes are on faces along the axes where `on_faces`.
+fn between(
+    grid: &CartesianGrid<2>,
+    duct: Duct,
+    on_faces: [bool; 2],
+    x: [f64; 2],
+    value: impl Fn(usize, usize) -> f64,
+) -> f64 {
+    let place =
+        |a: usize, i: usize| if on_faces[a] { grid.axis(a).faces()[i] } else { grid.axis(a).centre(i) };
+    let low = [0, 1].map(|a| {
+        let n = grid.axis(a).cells();
+        (1..n - 1).take_while(|&i| place(a, i) <= x[a]).last().unwrap_or(0)
+    });
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for k in 0..4 {
+        let at = [low[0] + (k & 1), low[1] + (k >> 1)];
+        if duct.distance([place(0, at[0]), place(1, at[1])]) <= 0.0 {
+            continue;
+        }
+        let weight: f64 = (0..2)
+            .map(|a| {
+                let part =
+                    ((x[a] - place(a, low[a])) / (place(a, low[a] + 1) - place(a, low[a]))).clamp(0.0, 1.0);
+                if at[a] > low[a] { part } else { 1.0 - part }
+            })
+            .product();
+        sum += weight * value(at[0], at[1]);
+        weights += weight;
+    }
+    if weights > 0.0 { sum / weights } else { 0.0 }
+}
+
+/// What is asked of a computed flow.
+struct Probe<'a> {
+    flow: &'a Simple<2>,
+    eddy: &'a [f64],
+    duct: Duct,
+}
+
+impl Probe<'_> {
+    fn raw(&self, x: [f64; 2], t: [f64; 2]) -> f64 {
+        let grid = self.flow.grid();
+        let of = |c: usize| {
+            let on_faces = [c == 0, c == 1];
+            between(grid, self.duct, on_faces, x, |i, j| self.flow.velocity().field(c).row(j)[i])
+        };
+        of(0) * t[0] + of(1) * t[1]
+    }
+
+    /// Velocity along the duct at radius `r`; nearer to the wall than a cell and a half by the logarithmic law.
+    fn velocity(&self, s: f64, r: f64) -> f64 {
+        let (t, h) = (self.duct.along(s), 1.5 * self.flow.grid().axis(1).narrowest());
+        let y = 0.5 - (r - 1.5).abs();
+        if y >= h {
+            return self.raw(self.duct.point(s, r), t);
+        }
+        let edge = if r < 1.5 { 1.0 + h } else { 2.0 - h };
+        let (u, nu) = (self.raw(self.duct.point(s, edge), t), self.flow.fluid().viscosity);
+        let mut plus = 20.0;
+        for _ in 0..50 {
+            plus = (E * u.abs() * h / (nu * plus)).max(E).ln() / KAPPA;
+        }
+        let friction = u / plus;
+        friction * (E * friction.abs() * y / nu).max(1.0).ln() / KAPPA
+    }
+
+    fn eddy(&self, s: f64, r: f64) -> f64 {
+        let (grid, n) = (self.flow.grid(), self.flow.grid().cells()[0]);
+        between(grid, self.duct, [false; 2], self.duct.point(s, r), |i, j| self.eddy[i + n * j])
+    }
+
+    fn mean_pressure(&self, s: f64) -> f64 {
+        let at = |k: usize| {
+            let x = self.duct.point(s, 1.0 + (k as f64 + 0.5) / 100.0);
+            between(self.flow.grid(), self.duct, [false; 2], x, |i, j| self.flow.pressure().row(j)[i])
+        };
+        (0..100).map(at).sum::<f64>() / 100.0
+    }
+}
+
+fn read(model: &str, station: &str) -> Outcome<Vec<Vec<f64>>> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/bends");
+    let text = std::fs::read_to_string(format!("{folder}/bend90_{model}_c_{station}.csv"))?;
+    let row = |line: &str| line.split(',').map(str::parse).collect::<Result<Vec<f64>, _>>();
+    Ok(text.lines().skip(1).map(row).collect::<Result<_, _>>()?)
+}
+
+/// Prints the differences and draws the profiles.
+pub(crate) fn report(flow: &Simple<2>, eddy: &[f64], duct: Duct, model: &str, out: &Path) -> Outcome<()> {
+    let probe = Probe { flow, eddy, duct };
+    let mut panels = Vec::new();
+    println!("station   U_t off by [% of U_in]   ν_t off by [% of its rms]");
+    for (station, turns) in STATIONS {
+        // `in` and `exit` are counted in heights from the ends of the bend.
+        let length = 1.5 * duct.bend;
+        let s = match turns {
+            t if t <= 0.0 => t,
+            t if t <= 1.0 => t * length,
+            t => length + t - 1.0,
+        };
+        if duct.bend == 0.0 && turns > -1.0 {
+            break;
+        }
+        let rows = if model.is_empty() || duct.bend > 2.0 { Vec::new() } else { read(model, station)? };
+        let (mut du, mut de, mut scale) = (0.0, 0.0, 0.0);
+        for (k, row) in rows.iter().enumerate() {
+            let edge = |k: usize| 0.5 * (rows[k - 1][2] + rows[k][2]);
+            let low = if k == 0 { 0.0 } else { edge(k) };
+            let width = if k + 1 == rows.len() { 1.0 } else { edge(k + 1) } - low;
+            du += width * (probe.velocity(s, 1.0 + row[2]) - row[3]).powi(2);
+            de += width * (probe.eddy(s, 1.0 + row[2]) - row[7]).powi(2);
+            scale += width * row[7] * row[7];
+        }
+        if !rows.is_empty() {
+            println!("{station:8}  {:.2}  {:.1}", 100.0 * du.sqrt(), 100.0 * (de / scale).sqrt());
+        }
+        let line = |f: &dyn Fn(f64) -> f64| {
+            (0..=200).map(|k| (f64::from(k) / 200.0, f(1.0 + f64::from(k) / 200.0))).collect()
+        };
+        let points =
+            |column: usize, scale: f64| rows.iter().map(|row| (row[2], scale * row[column])).collect();
+        let label = String::new();
+        panels.push(Panel {
+            x: format!("{station}: distance from the inner wall in H"),
+            y: "U_t in U".into(),
+            curves: vec![Curve {
+                label: label.clone(),
+                line: line(&|r| probe.velocity(s, r.clamp(1.0005, 1.9995))),
+                points: points(3, 1.0),
+            }],
+        });
+        panels.push(Panel {
+            x: format!("{station}: distance from the inner wall in H"),
+            y: "ν_t in 1e-3 U H".into(),
+            curves: vec![Curve { label, line: line(&|r| 1e3 * probe.eddy(s, r)), points: points(7, 1e3) }],
+        });
+    }
+    if !model.is_empty() && (1.5..1.6).contains(&duct.bend) {
+        let rows = read(model, "pmean")?;
+        let drop = |f: &dyn Fn(usize) -> f64| f(0) - f(rows.len() - 1);
+        let (ours, given) = (drop(&|k| probe.mean_pressure(rows[k][0])), drop(&|k| rows[k][1]));
+        println!("pressure drop {ours:.5}, reference {given:.5}: {:+.1} %", 100.0 * (ours / given - 1.0));
+    }
+    let domain = Domain { width: 1.0, height: 1.0, periodic: [false; 2] };
+    let names = ["immersed walls", "body-fitted"];
+    Comparison { domain, fields: &[], panels: &panels, columns: 4, names }.draw(&out.join("profiles.png"))?;
+    println!("{}", out.join("profiles.png").display());
+    Ok(())
+}

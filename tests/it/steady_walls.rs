@@ -1,0 +1,147 @@
+//! Immersed walls in the steady flow: what does not depend on how the walls lie.
+use siltflow::flow::{CartesianGrid, Convection, Fluid, Profile, Side, Simple, WallStress};
+use siltflow::ibm::{StaticBodies, cut_cells};
+use siltflow::interfaces::{Aabb, CutCells, Point, Pose, Solid, Vector, VelocityField};
+use std::collections::HashMap;
+
+/// All that is more than `half` away from a line.
+struct Outside {
+    half: f64,
+    angle: f64,
+    at: [f64; 2],
+}
+
+impl Outside {
+    fn height(&self, x: f64, y: f64) -> f64 {
+        (y - self.at[1]) * self.angle.cos() - (x - self.at[0]) * self.angle.sin()
+    }
+}
+
+impl Solid for Outside {
+    fn signed_distance(&self, x: Point, _: f64) -> f64 {
+        self.half - self.height(x.x, x.y).abs()
+    }
+    fn aabb(&self) -> Aabb {
+        Aabb::around(Point::origin(), Vector::new(10.0, 10.0, 0.0))
+    }
+}
+
+struct Disc(f64);
+
+impl Solid for Disc {
+    fn signed_distance(&self, x: Point, _: f64) -> f64 {
+        x.x.hypot(x.y) - self.0
+    }
+    fn aabb(&self) -> Aabb {
+        Aabb::around(Point::origin(), Vector::new(self.0, self.0, 0.0))
+    }
+}
+
+/// Largest difference from `exact`, which is taken where the open part of a face has its centroid.
+fn worst(flow: &Simple<2>, cuts: &CutCells, exact: impl Fn(Point) -> [f64; 2]) -> f64 {
+    let mut worst = 0.0_f64;
+    for c in 0..2 {
+        let (lattice, u) = (flow.velocity().lattice(c), flow.velocity().component(c));
+        let cut: HashMap<usize, _> = cuts.faces[c].iter().map(|face| (face.index, face)).collect();
+        let [nx, ny, _] = lattice.shape();
+        for (i, j) in (0..ny).flat_map(|j| (0..nx).map(move |i| (i as isize, j as isize))) {
+            let index = lattice.index([i, j, 0]).unwrap();
+            let place = match cut.get(&index) {
+                Some(face) if face.open == 0.0 => continue,
+                Some(face) => face.centre,
+                None => Point::from(lattice.position([i, j, 0])),
+            };
+            worst = worst.max((u[index] - exact(place)[c]).abs());
+        }
+    }
+    worst
+}
+
+#[test]
+fn uniform_flow_along_plane_walls_is_exact() {
+    for (angle, shift) in [(0.3_f64, 0.013), (1.0, 0.0), (0.0, 0.007)] {
+        let (s, c) = angle.sin_cos();
+        let inlet = Side::Inlet(Profile::Uniform([c, s, 0.0]));
+        let grid = CartesianGrid::new([24, 24], [1.0, 1.0]).unwrap();
+        let fluid = Fluid { density: 1.0, viscosity: 0.0 };
+        let mut flow = Simple::new(grid, [inlet.both(), inlet.both()], fluid).unwrap();
+        flow = flow.with_convection(Convection::LinearUpwind);
+        let duct = Outside { half: 0.2, angle, at: [0.5 + shift, 0.5] };
+        let cuts = cut_cells(flow.velocity(), &StaticBodies::new().with(duct, Pose::at([0.0; 3]))).unwrap();
+        flow.set_walls(Some((&cuts, WallStress::Slip))).unwrap();
+        flow.set_velocity(|_| [c, s]);
+        for _ in 0..3 {
+            flow.iterate().unwrap();
+        }
+        let error = worst(&flow, &cuts, |_| [c, s]);
+        let pressure = flow.pressure().values().fold(0.0_f64, |m, p| m.max(p.abs()));
+        assert!(error < 1e-12 && pressure < 1e-12, "{angle}: {error:e} {pressure:e}");
+    }
+}
+
+/// Errors of the velocity and of the pressure gradient between plane walls `n` cells apart, turned by `angle`.
+fn poiseuille(n: usize, angle: f64, shift: f64) -> [f64; 2] {
+    let (half, nu, at) = (0.2, 0.05, [0.5 + shift, 0.5]);
+    let cells = (n as f64 / (2.0 * half)).round() as usize;
+    let (s, c) = angle.sin_cos();
+    let exact = move |x: Point| {
+        let y = Outside { half, angle, at }.height(x.x, x.y) / half;
+        let u = (1.0 - y * y).max(0.0);
+        [u * c, u * s]
+    };
+    let inlet = Side::Inlet(Profile::function(move |x, _| {
+        let [u, v] = exact(Point::from(x));
+        [u, v, 0.0]
+    }));
+    let grid = CartesianGrid::new([cells; 2], [1.0; 2]).unwrap();
+    let fluid = Fluid { density: 1.0, viscosity: nu };
+    let mut flow = Simple::new(grid, [inlet.both(), inlet.both()], fluid).unwrap();
+    let duct = StaticBodies::new().with(Outside { half, angle, at }, Pose::at([0.0; 3]));
+    let cuts = cut_cells(flow.velocity(), &duct).unwrap();
+    flow.set_walls(Some((&cuts, WallStress::NoSlip))).unwrap();
+    flow.set_velocity(|[x, y]| exact(Point::new(x, y, 0.0)));
+    flow.solve(400, 1e-7).unwrap();
+    // Bilinear between the centres.
+    let pressure = |t: f64| {
+        let [a, b] = [at[0] + t * c, at[1] + t * s].map(|x| x * cells as f64 - 0.5);
+        let of = |i: usize, j: usize| {
+            let weight = (1.0 - (a - i as f64).abs()) * (1.0 - (b - j as f64).abs());
+            weight * flow.pressure().row(j)[i]
+        };
+        let (i, j) = (a.floor() as usize, b.floor() as usize);
+        of(i, j) + of(i + 1, j) + of(i, j + 1) + of(i + 1, j + 1)
+    };
+    let slope = (pressure(-0.2) - pressure(0.15)) / 0.35;
+    [worst(&flow, &cuts, exact), (slope * half * half / (2.0 * nu) - 1.0).abs()]
+}
+
+#[test]
+fn poiseuille_flow_is_of_second_order_on_walls_along_the_grid_and_turned() {
+    for (angle, shift) in [(0.0, 0.007), (15.0_f64.to_radians(), 0.003)] {
+        let [coarse, fine] = [20, 40].map(|n| poiseuille(n, angle, shift));
+        assert!(coarse[1] < 0.008 && fine[1] < 0.002 && fine[0] < 0.005, "{coarse:?} {fine:?}");
+        for (coarse, fine) in coarse.into_iter().zip(fine) {
+            assert!((coarse / fine).log2() > 1.6, "{angle}: {coarse:e} {fine:e}");
+        }
+    }
+}
+
+/// Schäfer & Turek (1996), 2D-1: Cd = 5.5795.
+#[test]
+fn the_drag_of_a_cylinder() {
+    let (n, diameter) = (20, 0.1);
+    let h = diameter / n as f64;
+    for shift in [0.0, 0.37] {
+        let grid = CartesianGrid::new([220, 82], [220.0 * h, 82.0 * h]).unwrap();
+        let inlet = Side::Inlet(Profile::Parabolic { peak: 0.3 });
+        let sides = [[inlet, Side::PressureOutlet(0.0)], Side::WALL.both()];
+        let mut flow = Simple::new(grid, sides, Fluid { density: 1.0, viscosity: 1e-3 }).unwrap();
+        let bodies = StaticBodies::new().with(Disc(0.5 * diameter), Pose::at([0.2 + shift * h, 0.2, 0.0]));
+        let cuts = cut_cells(flow.velocity(), &bodies).unwrap();
+        flow.set_walls(Some((&cuts, WallStress::NoSlip))).unwrap();
+        flow.solve(400, 1e-5).unwrap();
+        let force = flow.wall_friction()[0].force.x + flow.wall_pressure_force()[0].force.x;
+        let drag = 2.0 * force / (0.2 * 0.2 * diameter);
+        assert!((drag / 5.5795 - 1.0).abs() < 0.01, "{shift}: {drag}");
+    }
+}

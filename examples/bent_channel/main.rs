@@ -16,10 +16,10 @@ use siltflow::flow::{
 };
 use siltflow::ibm::{StaticBodies, cut_cells};
 use siltflow::interfaces::{Closure, Pose};
-use siltflow::turb::{
+use std::path::PathBuf;
+use turb::{
     Inflow, KEpsilon, KOmega, KOmegaSst, Realizable, RealizableKEpsilon, Sst, StandardKEpsilon, Wilcox,
 };
-use std::path::PathBuf;
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Model {

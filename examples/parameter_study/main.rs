@@ -121,7 +121,8 @@ fn run(cli: &Cli, stop: &AtomicBool) -> Outcome<Ending> {
     table.row("snapshots of a run", cli.intervals + 1, "").row("one run", number(full), "CPU s");
     table.row("steps of the last one", runs[runs.len() - 1].fallen.steps, "");
     table.section("each run left out whole");
-    let quantities: [(&str, &dyn Fn(&Errors) -> f64); 5] = [
+    type Of<'a> = &'a dyn Fn(&Errors) -> f64;
+    let quantities: [(&str, Of<'_>); 5] = [
         ("λ, sPODIANN", &|e| e.lambda.total),
         ("λ, its modes alone", &|e| e.lambda.projection),
         ("velocity, PODIANN", &|e| e.velocity.total),

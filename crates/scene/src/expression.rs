@@ -29,15 +29,16 @@ enum Step {
     Multiply,
     Divide,
     Power,
-    One(fn(f64) -> f64),
-    Two(fn(f64, f64) -> f64),
+    One(One),
+    Two(Two),
 }
 
-/// A name and the function it stands for.
-type Named<F> = (&'static str, F);
+/// Functions of one and of two numbers.
+type One = fn(f64) -> f64;
+type Two = fn(f64, f64) -> f64;
 
 /// Functions of one number.
-const ONE: [Named<fn(f64) -> f64>; 21] = [
+const ONE: [(&str, One); 21] = [
     ("sin", f64::sin),
     ("cos", f64::cos),
     ("tan", f64::tan),
@@ -62,7 +63,7 @@ const ONE: [Named<fn(f64) -> f64>; 21] = [
     ("step", |x| f64::from(u8::from(x >= 0.0))),
 ];
 /// Functions of two.
-const TWO: [Named<fn(f64, f64) -> f64>; 4] =
+const TWO: [(&str, Two); 4] =
     [("min", f64::min), ("max", f64::max), ("atan2", f64::atan2), ("mod", f64::rem_euclid)];
 const CONSTANTS: [(&str, f64); 4] = [("PI", PI), ("pi", PI), ("E", E), ("e", E)];
 

@@ -395,7 +395,7 @@ impl<const D: usize> CellTransport<D> {
         let initial = initial.sqrt();
         x.fill(1.0);
         let solved = scaled.and_then(|()| self.linear(&mut x, (tolerance * scale).max(reduction * initial)));
-        if x.iter().any(|x| !(*x >= 0.0)) {
+        if x.iter().any(|x| *x < 0.0) {
             x.iter_mut().for_each(|x| *x = x.max(0.0));
             self.sweep(&mut x);
         }

@@ -348,7 +348,7 @@ fn tolerant(solved: Result<SolveInfo, SolveError>, dt: Option<f64>) -> Result<So
 /// Sets what is below the least value to it, and counts.
 fn floor(list: &mut [f64]) -> usize {
     let mut count = 0;
-    for v in list.iter_mut().filter(|v| !(**v >= FLOOR)) {
+    for v in list.iter_mut().filter(|v| **v < FLOOR) {
         *v = FLOOR;
         count += 1;
     }

@@ -31,7 +31,7 @@ pub enum Noise {
 
 /// Shifted proper orthogonal decomposition, by the algorithms that suit the snapshots.
 ///
-/// 1. If entries may be wrong, the augmented Lagrangian of [`Proximal`] tells the modes to start from. They are fitted so that wrong entries
+/// 1. If entries may be wrong, the augmented Lagrangian of [`Proximal`](super::Proximal) tells the modes to start from. They are fitted so that wrong entries
 ///    do little harm, by [`JointDescent::huber`], and those that are off by more than six deviations of the others are wrong.
 /// 2. Ranks that are not given are found by adding modes that stand out of the noise, and leaving out those that are not needed; first
 ///    on some of the snapshots if there are many.

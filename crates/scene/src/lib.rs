@@ -35,6 +35,7 @@ mod cast;
 mod document;
 mod expression;
 mod log;
+mod look;
 mod options;
 mod plan;
 mod problem;

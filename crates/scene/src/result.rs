@@ -1,5 +1,5 @@
 //! What came out of a run.
-use crate::run::Extremes;
+use crate::look::Extremes;
 use crate::setup::Setup;
 use crate::view::View;
 use crate::watch::{Audience, output};

@@ -2,6 +2,8 @@
 //! (docs/scene.md) and the JSON schema (scenes/schema.json) are made of them.
 mod bodies;
 mod check;
+mod contact;
+mod factories;
 mod flow;
 mod json;
 mod manual;
@@ -202,35 +204,35 @@ pub(crate) static SCENE: Table = Table {
         ),
         optional(
             "factories",
-            Kind::List(&Kind::Choice("type", &bodies::FACTORIES), 0, 1000),
+            Kind::List(&Kind::Choice("type", &factories::FACTORIES), 0, 1000),
             "none",
             "Many bodies at once: on lattices, at random, from tables, or flowing in while the run is on its way.",
             "[{ type = \"random\", number = 50, shape = { type = \"sphere\", radius = 1e-3 }, density = 2500.0, seed = 1 }]",
         ),
         optional(
             "exits",
-            Kind::List(&Kind::Table(&bodies::EXIT), 0, 100),
+            Kind::List(&Kind::Table(&contact::EXIT), 0, 100),
             "none",
             "Half-spaces: bodies whose centre comes into one are taken away.",
             "[{ point = [0.0, 1e-3], normal = [0.0, 1.0] }]",
         ),
         optional(
             "contact",
-            Kind::Table(&bodies::CONTACT),
+            Kind::Table(&contact::CONTACT),
             "all its defaults",
             "Contacts of bodies.",
             "{ law = \"potential\" }",
         ),
         optional(
             "lubrication",
-            Kind::Table(&bodies::LUBRICATION),
+            Kind::Table(&contact::LUBRICATION),
             "none",
             "Films between bodies that are closer than two cells (in space).",
             "{ roughness = 1e-6 }",
         ),
         optional(
             "coupling",
-            Kind::Table(&bodies::COUPLING),
+            Kind::Table(&contact::COUPLING),
             "all its defaults",
             "How flow and bodies act on one another.",
             "{ balance = \"net-weight\" }",

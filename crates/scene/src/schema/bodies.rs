@@ -1,4 +1,4 @@
-//! Shapes, bodies, contact, coupling.
+//! Materials, shapes, bodies and what moves them.
 use super::{Key, Kind, LENGTH, METRES, POINT, Range, TIME, Table, optional, required};
 
 const SPACE_POINT: Kind = Kind::List(&METRES, 3, 3);
@@ -49,7 +49,7 @@ pub(super) static MATERIAL: Table = Table {
 };
 
 const RADIUS: Key = required("radius", LENGTH, "Radius.", "5e-4");
-static SHAPES: [(&str, &Table); 9] = [
+pub(super) static SHAPES: [(&str, &Table); 9] = [
     ("disc", &Table { about: "A disc, in plane scenes.", keys: &[RADIUS] }),
     ("sphere", &Table { about: "A sphere.", keys: &[RADIUS] }),
     (
@@ -169,21 +169,21 @@ static ROTATION: Table = Table {
     ],
 };
 
-const BODY_MATERIAL: Key = optional(
+pub(super) const BODY_MATERIAL: Key = optional(
     "material",
     Kind::Text,
     "the material of the key's defaults",
     "Name of a material from `materials`.",
     "\"steel\"",
 );
-const DENSITY: Key = optional(
+pub(super) const DENSITY: Key = optional(
     "density",
     Kind::Number(Range::Positive, "kg/m³"),
     "the material's",
     "Density, whatever the material's is.",
     "1060.0",
 );
-const VELOCITY: Key = optional(
+pub(super) const VELOCITY: Key = optional(
     "velocity",
     Kind::List(&Kind::Number(Range::Any, "m/s"), 2, 3),
     "0",
@@ -295,327 +295,6 @@ static TETHER: Table = Table {
             "its centre",
             "Where on the body, in the body's frame.",
             "[0.0, 0.0, 0.0]",
-        ),
-    ],
-};
-
-const REGION: Key = optional(
-    "region",
-    Kind::Table(&REGION_TABLE),
-    "the whole box",
-    "Where.",
-    "{ lower = [0.0, 0.0], upper = [0.01, 0.005] }",
-);
-const GAP: Key =
-    optional("gap", Kind::Number(Range::NotNegative, "m"), "0", "Least distance of surfaces.", "1e-4");
-const SEED: Key = optional("seed", Kind::Whole(0, i64::MAX), "0", "What is drawn depends on it alone.", "7");
-const TURNED: Key = optional(
-    "turned",
-    Kind::Word(&[("random", "any way"), ("about-z", "about z only"), ("no", "all alike")]),
-    "random; about-z in plane scenes",
-    "How bodies are turned.",
-    "\"no\"",
-);
-const TEMPLATE: Key = required(
-    "shape",
-    Kind::Choice("type", &SHAPES),
-    "The shape of all of them, enlarged by `scale`.",
-    "{ type = \"sphere\", radius = 1e-3 }",
-);
-const SCALE: Key = optional(
-    "scale",
-    Kind::Choice("law", &SCALES),
-    "1",
-    "Factors by which bodies are enlarged.",
-    "{ law = \"uniform\", low = 0.85, high = 1.15 }",
-);
-
-static REGION_TABLE: Table = Table {
-    about: "A box.",
-    keys: &[
-        required("lower", POINT, "Lower corner.", "[0.0, 0.0]"),
-        required("upper", POINT, "Upper corner.", "[0.01, 0.005]"),
-    ],
-};
-
-const FACTOR: Kind = Kind::Number(Range::Positive, "1");
-
-static SCALES: [(&str, &Table); 3] = [
-    (
-        "uniform",
-        &Table {
-            about: "Equally many in equal intervals.",
-            keys: &[
-                required("low", FACTOR, "Least factor.", "0.85"),
-                required("high", FACTOR, "Largest factor.", "1.15"),
-            ],
-        },
-    ),
-    (
-        "normal",
-        &Table {
-            about: "The normal distribution between two bounds.",
-            keys: &[
-                required("mean", FACTOR, "Mean.", "1.0"),
-                required("deviation", FACTOR, "Standard deviation.", "0.1"),
-                required("bounds", Kind::List(&FACTOR, 2, 2), "Nothing outside.", "[0.7, 1.3]"),
-            ],
-        },
-    ),
-    (
-        "log-normal",
-        &Table {
-            about: "The log-normal distribution between two bounds.",
-            keys: &[
-                required("median", FACTOR, "Median.", "1.0"),
-                required(
-                    "deviation",
-                    Kind::Number(Range::Above(1.0, 100.0), "1"),
-                    "Geometric standard deviation.",
-                    "1.2",
-                ),
-                required("bounds", Kind::List(&FACTOR, 2, 2), "Nothing outside.", "[0.5, 2.0]"),
-            ],
-        },
-    ),
-];
-
-pub(super) static FACTORIES: [(&str, &Table); 4] = [
-    (
-        "lattice",
-        &Table {
-            about: "Bodies on a lattice.",
-            keys: &[
-                TEMPLATE,
-                SCALE,
-                required("distance", LENGTH, "Of neighbours.", "3e-3"),
-                optional(
-                    "kind",
-                    Kind::Word(&[
-                        ("square", "corners of squares, in the plane"),
-                        ("hexagonal", "triangles, in the plane"),
-                        ("cubic", "corners of cubes"),
-                        ("body-centred", "corners and centres of cubes"),
-                        ("face-centred", "corners and centres of faces of cubes"),
-                        ("close-packed", "hexagonal close packing"),
-                    ]),
-                    "square; cubic in space",
-                    "The lattice.",
-                    "\"hexagonal\"",
-                ),
-                optional(
-                    "jitter",
-                    Kind::Number(Range::NotNegative, "m"),
-                    "0",
-                    "Bodies stray so far from their places at most.",
-                    "2e-4",
-                ),
-                optional("number", Kind::Whole(1, 10_000_000), "all that fit", "So many, from below.", "100"),
-                REGION,
-                GAP,
-                SEED,
-                TURNED,
-                BODY_MATERIAL,
-                DENSITY,
-                VELOCITY,
-                MOTION_OF_MANY,
-            ],
-        },
-    ),
-    (
-        "random",
-        &Table {
-            about: "Bodies at random places without overlap: a `number` of them, or as many as fill a `fraction` of the region.",
-            keys: &[
-                TEMPLATE,
-                SCALE,
-                optional("number", Kind::Whole(1, 10_000_000), "`fraction` tells", "How many.", "50"),
-                optional(
-                    "fraction",
-                    Kind::Number(Range::Above(0.0, 0.7), "1"),
-                    "`number` tells",
-                    "Share of the region that bodies fill.",
-                    "0.2",
-                ),
-                REGION,
-                GAP,
-                SEED,
-                TURNED,
-                BODY_MATERIAL,
-                DENSITY,
-                VELOCITY,
-                MOTION_OF_MANY,
-            ],
-        },
-    ),
-    (
-        "table",
-        &Table {
-            about: "Bodies from a CSV table with columns x, y, z (and qw, qx, qy, qz, vx, …, size).",
-            keys: &[
-                TEMPLATE,
-                required("file", Kind::File, "The table; `size` enlarges the shape.", "\"bodies.csv\""),
-                BODY_MATERIAL,
-                DENSITY,
-                MOTION_OF_MANY,
-            ],
-        },
-    ),
-    (
-        "inflow",
-        &Table {
-            about: "Bodies that come in while the run is on its way, at random free places of the region.",
-            keys: &[
-                TEMPLATE,
-                SCALE,
-                required("rate", Kind::Number(Range::Positive, "1/s"), "How many per second.", "50.0"),
-                optional("start", Kind::Number(Range::NotNegative, "s"), "0", "When the first comes.", "0.1"),
-                optional("number", Kind::Whole(1, 10_000_000), "no end", "How many come.", "200"),
-                REGION,
-                GAP,
-                SEED,
-                TURNED,
-                BODY_MATERIAL,
-                DENSITY,
-                VELOCITY,
-            ],
-        },
-    ),
-];
-
-const MOTION_OF_MANY: Key = optional(
-    "motion",
-    Kind::Word(&[
-        ("free", "the flow, gravity and other bodies move them"),
-        ("fixed", "they stay where they are"),
-    ]),
-    "free",
-    "What moves them.",
-    "\"fixed\"",
-);
-
-const PLANE_POINT: Key = required("point", POINT, "A point of its plane.", "[0.0, 1e-3]");
-const PLANE_NORMAL: Key = required(
-    "normal",
-    Kind::List(&Kind::Number(Range::Any, "1"), 2, 3),
-    "Points out of it, of any length.",
-    "[0.0, 1.0]",
-);
-
-pub(super) static EXIT: Table = Table { about: "A half-space.", keys: &[PLANE_POINT, PLANE_NORMAL] };
-
-static PLANE: Table = Table { about: "All behind a plane, solid.", keys: &[PLANE_POINT, PLANE_NORMAL] };
-
-pub(super) static CONTACT: Table = Table {
-    about: "Contacts of bodies with one another and with walls.",
-    keys: &[
-        optional(
-            "law",
-            Kind::Word(&[
-                ("chen", "the paper's: force in proportion to the overlap volume (Chen 2012; equation 4)"),
-                ("potential", "force with a potential, exact restitution"),
-                ("rolling", "chen's with rolling friction"),
-                ("none", "bodies pass through one another"),
-            ]),
-            "chen",
-            "The law.",
-            "\"potential\"",
-        ),
-        optional("walls", Kind::Flag, "true", "Do bodies touch the walls of the box?", "false"),
-        optional(
-            "planes",
-            Kind::List(&Kind::Table(&PLANE), 0, 100),
-            "none",
-            "Planes that bodies touch besides, and the fluid does not know: a distributor plate, say.",
-            "[{ point = [0.0, 1e-3], normal = [0.0, 1.0] }]",
-        ),
-        optional(
-            "wall_material",
-            Kind::Text,
-            "that of the first body",
-            "Material of those walls.",
-            "\"steel\"",
-        ),
-        optional(
-            "length_factor",
-            Kind::Number(Range::Positive, "1"),
-            "4",
-            "Of the contact length L_c.",
-            "4.0",
-        ),
-        optional("adhesion", Kind::Flag, "false", "May damping pull (law chen)?", "true"),
-        optional("overlaps", Kind::Flag, "false", "May bodies overlap at the start?", "true"),
-    ],
-};
-
-pub(super) static LUBRICATION: Table = Table {
-    about: "Lubrication.",
-    keys: &[optional(
-        "roughness",
-        Kind::Number(Range::Above(0.0, 1.0), "1"),
-        "1e-3",
-        "Films get no thinner than this share of the radius.",
-        "1e-4",
-    )],
-};
-
-pub(super) static COUPLING: Table = Table {
-    about: "How flow and bodies act on one another.",
-    keys: &[
-        optional(
-            "strategy",
-            Kind::Word(&[
-                ("one-solve", "one pressure solution per step, stable for any density"),
-                ("iterated", "until flow and bodies agree"),
-                ("explicit", "a step late; for heavy bodies"),
-            ]),
-            "one-solve",
-            "How they learn of each other.",
-            "\"iterated\"",
-        ),
-        optional(
-            "forcing",
-            Kind::Word(&[
-                ("auto", "cut links if nothing moves, else smooth"),
-                ("smooth", "markers and a smooth kernel"),
-                ("hfdib", "the paper's hybrid fictitious domain–immersed boundary"),
-                ("cut-links", "sharp walls, for bodies at rest"),
-            ]),
-            "auto",
-            "How the fluid is made to follow the bodies.",
-            "\"hfdib\"",
-        ),
-        optional(
-            "balance",
-            Kind::Word(&[
-                ("auto", "net-weight if the box is periodic along gravity, else none"),
-                ("none", "none"),
-                ("net-weight", "a uniform force that bears the net weight"),
-                ("zero-flow", "a uniform force that keeps the mean flow at zero"),
-            ]),
-            "auto",
-            "What bears the bodies' net weight in a periodic box.",
-            "\"zero-flow\"",
-        ),
-        optional(
-            "virtual_mass",
-            Kind::Number(Range::NotNegative, "1"),
-            "what the density asks for",
-            "Virtual mass by the displaced mass (one-solve).",
-            "0.3",
-        ),
-        optional("passes", Kind::Whole(1, 20), "3", "Passes of the smooth forcing.", "5"),
-        optional(
-            "kernel",
-            Kind::Word(&[
-                ("auto", "quartic in the plane, yang in space"),
-                ("yang", "support ±2"),
-                ("quartic", "support ±2½"),
-                ("quintic", "support ±3, the quietest"),
-            ]),
-            "auto",
-            "Kernel of the smooth forcing.",
-            "\"quintic\"",
         ),
     ],
 };

@@ -1,0 +1,183 @@
+//! The observer of the time loop, and what is saved.
+use crate::log::Log;
+use crate::run::see;
+use crate::view::{Flow, Guests, View};
+use crate::watch::{Audience, output};
+use coupling::{CouplingError, FlowSolver, Immersed, Ledger, LedgerReport, Observer, Simulation, StepInfo};
+use example_support::progress::{Progress, Status};
+use interfaces::{Checkpoint, RestartError};
+use std::io;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// Books that may be kept.
+pub(crate) trait Books<S>: Observer<S> + Checkpoint {
+    fn report(&self) -> Option<&LedgerReport>;
+}
+
+/// No books.
+pub(crate) struct NoBooks;
+impl<S> Observer<S> for NoBooks {}
+impl Checkpoint for NoBooks {
+    fn save(&self, _: &mut dyn FnMut(&str, &[f64])) {}
+    fn restore<'a>(&mut self, _: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        Ok(())
+    }
+}
+impl<S> Books<S> for NoBooks {
+    fn report(&self) -> Option<&LedgerReport> {
+        None
+    }
+}
+impl<S> Books<S> for Ledger
+where
+    Ledger: Observer<S>,
+{
+    fn report(&self) -> Option<&LedgerReport> {
+        Some(Ledger::report(self))
+    }
+}
+
+/// Shortest and longest step, largest Courant number.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extremes(pub(crate) [f64; 3]);
+
+impl Default for Extremes {
+    fn default() -> Self {
+        Self([f64::INFINITY, 0.0, 0.0])
+    }
+}
+
+/// All that is saved.
+pub(crate) struct Whole<'a, S, K> {
+    pub(crate) simulation: &'a mut S,
+    pub(crate) books: &'a mut K,
+    pub(crate) extremes: &'a mut Extremes,
+    pub(crate) fingerprint: u64,
+    /// Absent while a state is loaded: files go on from the time that has to be known first.
+    pub(crate) audience: Option<&'a Audience>,
+}
+
+/// A number that takes 64 bits as two that doubles hold exactly.
+fn halves(n: u64) -> [f64; 2] {
+    [(n >> 32) as f64, (n & 0xffff_ffff) as f64]
+}
+
+impl<S: Checkpoint, K: Checkpoint> Checkpoint for Whole<'_, S, K> {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        sink("scene", &halves(self.fingerprint));
+        sink("extremes", &self.extremes.0);
+        self.simulation.save(sink);
+        self.books.save(&mut |name, values| sink(&format!("books.{name}"), values));
+        if let Some(audience) = self.audience {
+            audience.save(&mut |name, values| sink(&format!("watch.{name}"), values));
+        }
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        if RestartError::take(source, "scene", 2)? != halves(self.fingerprint) {
+            return Err(RestartError::Differs("the scene".into()));
+        }
+        self.extremes.0.copy_from_slice(RestartError::take(source, "extremes", 3)?);
+        self.simulation.restore(source)?;
+        self.books.restore(&|name| source(&format!("books.{name}")))
+    }
+}
+
+/// What the observers have kept.
+pub(crate) struct Kept<'a>(pub(crate) &'a mut Audience);
+
+impl Checkpoint for Kept<'_> {
+    fn save(&self, _: &mut dyn FnMut(&str, &[f64])) {}
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        self.0.restore(&|name| source(&format!("watch.{name}")))
+    }
+}
+
+/// The observer of the time loop: everyone who looks on, progress, log, saved states.
+pub(crate) struct Look<K> {
+    pub(crate) audience: Audience,
+    pub(crate) books: K,
+    pub(crate) extremes: Extremes,
+    pub(crate) progress: Option<Progress>,
+    pub(crate) log: Log,
+    pub(crate) state: PathBuf,
+    pub(crate) fingerprint: u64,
+    pub(crate) save_every: Duration,
+    pub(crate) saved: Instant,
+    /// No snapshot but the last.
+    pub(crate) only_end: bool,
+    /// Wall seconds spent on states.
+    pub(crate) output: f64,
+}
+
+impl<K: Checkpoint> Look<K> {
+    fn save_if_due<S: Checkpoint>(&mut self, simulation: &mut S) -> Result<(), CouplingError> {
+        if self.saved.elapsed() >= self.save_every { self.save(simulation) } else { Ok(()) }
+    }
+    pub(crate) fn save<S: Checkpoint>(&mut self, simulation: &mut S) -> Result<(), CouplingError> {
+        let start = Instant::now();
+        self.audience.flush()?;
+        let whole = Whole {
+            simulation,
+            books: &mut self.books,
+            extremes: &mut self.extremes,
+            fingerprint: self.fingerprint,
+            audience: Some(&self.audience),
+        };
+        coupling::save(&self.state, &whole)
+            .map_err(|e| output("saving the state in", &self.state)(io::Error::other(e)))?;
+        self.saved = Instant::now();
+        self.output += start.elapsed().as_secs_f64();
+        Ok(())
+    }
+}
+
+impl<const D: usize, P, A, K> Observer<Simulation<D, P, A>> for Look<K>
+where
+    P: Guests + Immersed<D, A>,
+    A: Flow<D> + FlowSolver<D>,
+    K: Books<Simulation<D, P, A>>,
+{
+    fn begin(&mut self, simulation: &mut Simulation<D, P, A>) {
+        self.books.begin(simulation);
+    }
+    fn step(&mut self, simulation: &mut Simulation<D, P, A>, info: &StepInfo) -> Result<(), CouplingError> {
+        self.books.step(simulation, info)?;
+        let [low, high, courant] = self.extremes.0;
+        self.extremes.0 = [low.min(info.dt), high.max(info.dt), courant.max(info.courant)];
+        self.audience.step(&mut see(simulation), info)?;
+        if let Some(progress) = &mut self.progress {
+            progress.step(info.step, || Status {
+                time: info.time,
+                dt: info.dt,
+                courant: info.courant,
+                divergence: FlowSolver::statistics(&mut simulation.flow).divergence * info.dt,
+            });
+        }
+        if info.snapshot.is_none() {
+            self.save_if_due(simulation)?;
+        }
+        Ok(())
+    }
+    fn snapshot(
+        &mut self,
+        simulation: &mut Simulation<D, P, A>,
+        index: usize,
+        info: &StepInfo,
+    ) -> Result<(), CouplingError> {
+        if self.only_end && index == 0 {
+            return Ok(());
+        }
+        let mut seen = see(simulation);
+        self.audience.snapshot(&mut seen, index, info)?;
+        let iterations = seen.pressure_iterations();
+        let StepInfo { step, time, dt, courant, .. } = *info;
+        let flow = FlowSolver::statistics(&mut simulation.flow);
+        self.log.line(&format!(
+            "t = {time:.6e} s, step {step}, dt {dt:.3e} s, Courant {courant:.3}, kinetic energy {:.6e} J{}",
+            flow.kinetic_energy,
+            if iterations > 0 { format!(", {iterations} pressure iterations") } else { String::new() }
+        ))?;
+        self.save_if_due(simulation)
+    }
+}

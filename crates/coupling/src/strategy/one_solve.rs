@@ -94,7 +94,8 @@ fn solve<const D: usize, A: FlowSolver<D>, F: Forcing, B: Dynamics, S: Strategy>
     });
     let virtual_mass = mass * (factor * displaced / own);
     let (weight, contact) = (particles.pull(b), six(particles.bodies.contact_impulse(b)));
-    let freedom = particles.freedom(b);
+    // What is not free moves as the bodies say: on as it did, unless they were told otherwise in this step.
+    let (freedom, told) = (particles.freedom(b), particles.velocity(b));
 
     let s = &mut particles.states[b.0];
     let inside = s.inside(weights, internal);
@@ -110,7 +111,7 @@ fn solve<const D: usize, A: FlowSolver<D>, F: Forcing, B: Dynamics, S: Strategy>
     for i in (0..6).filter(|&i| !freedom[i]) {
         matrix.row_mut(i).fill(0.0);
         matrix[(i, i)] = 1.0;
-        (free[i], kick[i]) = (before[i], 0.0);
+        (free[i], kick[i]) = (told[i], 0.0);
     }
     let lu = matrix.lu();
     let (free, kick) = (lu.solve(&free)?, lu.solve(&kick)?);

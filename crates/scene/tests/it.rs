@@ -265,12 +265,27 @@ fn states_of_other_scenes_are_refused() {
 #[test]
 fn a_cylinder_swings() {
     let out = folder("swings");
-    let coarse = ["grid.x.fine=0.1", "grid.y.fine=0.1", "time.dt=0.02", "time.end=10", "forces.start=5", "output.snapshots=0", "output.images=false"];
-    let scene = Scene::load(&root().join("scenes/oscillating_cylinder.toml"), &coarse.map(String::from)).unwrap();
+    let coarse = [
+        "grid.x.fine=0.1",
+        "grid.y.fine=0.1",
+        "time.dt=0.02",
+        "time.end=10",
+        "forces.start=5",
+        "output.snapshots=0",
+        "output.images=false",
+    ];
+    let scene =
+        Scene::load(&root().join("scenes/oscillating_cylinder.toml"), &coarse.map(String::from)).unwrap();
     let result = scene.run(&quiet(&out), &AtomicBool::new(false)).unwrap().result;
     std::fs::remove_dir_all(&out).unwrap();
     let of = |what: &str| result["forces"][0]["coefficients"][what][0].as_f64().unwrap();
-    assert!(of("mean").abs() < 0.03 && (of("highest") / 3.3 - 1.0).abs() < 0.1, "{} {} {}", of("mean"), of("highest"), of("lowest"));
+    assert!(
+        of("mean").abs() < 0.03 && (of("highest") / 3.3 - 1.0).abs() < 0.1,
+        "{} {} {}",
+        of("mean"),
+        of("highest"),
+        of("lowest")
+    );
     // x = −5/(2π) sin(2πt/5), so u = −cos(2πt/5).
     let velocity = result["bodies"][0]["velocity"][0].as_f64().unwrap();
     assert!((velocity + 1.0).abs() < 1e-4, "{velocity}");

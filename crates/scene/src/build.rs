@@ -1,13 +1,15 @@
 //! From a setup to what the libraries run.
 use crate::cast::Cast;
-use crate::setup::{Algorithm, Bodies, ContactLawChoice, ForcingChoice, InflowSetup, Motion, Setup};
+use crate::setup::{
+    Algorithm, Bodies, BodySetup, ContactLawChoice, ForcingChoice, InflowSetup, Motion, Setup,
+};
 use crate::still::Still;
 use dem::placing::{PlacingError, Region};
 use dem::{Chen, ContactLaw, DemError, Entrant, Inflow, Lubricated, Population, RigidBodies};
 use fv_mesh::{
     CartesianGrid, Diffusion, FlowError, Piso, PisoParams, Projection, Side, Simple, SimpleParams, TimeScheme,
 };
-use ibm::{Hfdib, IbmError, SmoothFilm, SmoothForcing, cut_walls};
+use ibm::{Hfdib, IbmError, SmoothFilm, SmoothForcing, StaticBodies, cut_walls};
 use interfaces::{Freedom, Periods, Twist};
 
 /// Why a scene cannot be put together.
@@ -138,12 +140,13 @@ impl Setup {
     pub(crate) fn walled<const D: usize>(&self) -> Result<(Projection<D>, Still), BuildError> {
         let mut flow = self.projection()?;
         let list = &self.bodies.list;
-        let still = Still::new(list.iter().map(|b| (b.shape.clone(), b.pose, b.material.density)).collect());
+        let put = |still: StaticBodies, b: &BodySetup| still.with(b.shape.clone(), b.pose);
+        let still = list.iter().fold(StaticBodies::new(), put);
         if !list.is_empty() {
             let walls = cut_walls(flow.velocity(), &still)?;
             flow.set_walls(Some(walls))?;
         }
-        Ok((flow, still))
+        Ok((flow, Still(still)))
     }
 
     /// PISO by Euler's scheme in time, as the paper has it.

@@ -25,8 +25,12 @@ pub(crate) trait View {
     /// Component `c` of the velocity at the centres, x fastest.
     fn centred(&self, c: usize, out: &mut Vec<f64>);
     fn pressure(&self, out: &mut Vec<f64>);
-    /// Velocity and pressure at a point.
-    fn sample(&self, x: [f64; 3]) -> Result<([f64; 3], f64), SampleError>;
+    /// Hands velocity and pressure at every point to `take`, under the point's number.
+    fn sample(
+        &self,
+        points: &[[f64; 3]],
+        take: &mut dyn FnMut(usize, [f64; 3], f64),
+    ) -> Result<(), SampleError>;
     /// Iterations of the last pressure solution.
     fn pressure_iterations(&self) -> usize;
     /// Writes λ, velocity and pressure for ParaView; the name's extension is [`extension`](Self::extension).
@@ -132,7 +136,7 @@ pub(crate) trait Guests {
 
 impl Guests for Still {
     fn bodies(&self) -> &dyn Bodies {
-        self
+        &self.0
     }
     fn serial(&self, b: BodyId) -> u64 {
         b.0 as u64
@@ -211,12 +215,19 @@ impl<const D: usize, A: Flow<D>, P: Guests> View for Seen<'_, D, A, P> {
         out.clear();
         out.extend(self.flow.pressure().values());
     }
-    fn sample(&self, x: [f64; 3]) -> Result<([f64; 3], f64), SampleError> {
+    fn sample(
+        &self,
+        points: &[[f64; 3]],
+        take: &mut dyn FnMut(usize, [f64; 3], f64),
+    ) -> Result<(), SampleError> {
         let sampler = Sampler::new(self.flow.grid(), self.flow.sides());
-        let at: [f64; D] = std::array::from_fn(|a| x[a]);
-        let velocity = sampler.velocity(self.flow.velocity(), at)?;
-        let pressure = sampler.at(self.flow.pressure(), at)?;
-        Ok((std::array::from_fn(|a| velocity.get(a).copied().unwrap_or(0.0)), pressure))
+        for (i, x) in points.iter().enumerate() {
+            let at: [f64; D] = std::array::from_fn(|a| x[a]);
+            let velocity = sampler.velocity(self.flow.velocity(), at)?;
+            let pressure = sampler.at(self.flow.pressure(), at)?;
+            take(i, std::array::from_fn(|a| velocity.get(a).copied().unwrap_or(0.0)), pressure);
+        }
+        Ok(())
     }
     fn pressure_iterations(&self) -> usize {
         self.flow.pressure_iterations()

@@ -67,14 +67,13 @@ impl Watch for ProbesWatch {
             if !pace.due(info.time, info.dt) {
                 continue;
             }
-            for (x, last) in setup.points.iter().zip(last.chunks_exact_mut(4)) {
-                let sampled = view.sample(*x);
-                let (u, p) = sampled.map_err(|e| CouplingError::Output {
-                    what: format!("the probe {} at {x:?} m", setup.name),
-                    source: io::Error::other(e),
-                })?;
-                last.copy_from_slice(&[u[0], u[1], u[2], p]);
-            }
+            let mut take = |i: usize, u: [f64; 3], p: f64| {
+                last[4 * i..4 * i + 4].copy_from_slice(&[u[0], u[1], u[2], p])
+            };
+            view.sample(&setup.points, &mut take).map_err(|e| CouplingError::Output {
+                what: format!("the probes {}", setup.name),
+                source: io::Error::other(e),
+            })?;
             let values = last.chunks_exact(4).flat_map(|v| v[..dim].iter().chain(&v[3..]).copied());
             table.row(info.time, None, values)?;
         }

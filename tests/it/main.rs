@@ -4,6 +4,7 @@ mod edges;
 mod files;
 mod frame;
 mod free_bodies;
+mod hooked;
 mod immersed_scalar;
 mod immersed_stress;
 mod meshes;

@@ -1,5 +1,8 @@
 //! What is asked of a flow.
-use fv_mesh::{CartesianGrid, Field, FlowError, FlowStatistics, Fluid, Piso, Projection, Sides, Velocity};
+use fv_mesh::{
+    BodyForce, CartesianGrid, ClosureSlot, Field, FlowError, FlowStatistics, Fluid, Hooked, Piso, Projection,
+    ScalarTransport, Sides, Velocity,
+};
 use interfaces::{Checkpoint, Vector};
 
 /// An algorithm for incompressible flow whose step has parts, so that bodies can act in between: `predict`, then as many
@@ -154,5 +157,23 @@ impl<const D: usize> FlowSolver<D> for Piso<D> {
     }
     fn weights(&self) -> [f64; 3] {
         Piso::weights(self)
+    }
+}
+
+impl<const D: usize, B, C, S> FlowSolver<D> for Hooked<D, B, C, S>
+where
+    B: BodyForce<D, S>,
+    C: ClosureSlot<D> + Checkpoint,
+    S: ScalarTransport<D> + Checkpoint,
+{
+    forward!(Hooked);
+    fn project(&mut self, dt: f64) -> Result<(), FlowError> {
+        Hooked::project(self, dt)
+    }
+    fn viscous_limit(&self) -> f64 {
+        self.flow.viscous_limit()
+    }
+    fn implicit_diffusion(&self) -> Vector {
+        self.flow.implicit_diffusion()
     }
 }

@@ -1,6 +1,7 @@
 //! The books of momentum and energy.
 use crate::particles::Stake;
-use crate::{CouplingError, Observer, Particles, Simulation, StepInfo, Strategy};
+use crate::{CouplingError, FlowSolver, Observer, Particles, Simulation, StepInfo, Strategy};
+use fv_mesh::{Hooked, Projection};
 use ibm::Forcing;
 use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Vector};
 
@@ -107,8 +108,8 @@ impl Ledger {
         brought
     }
 
-    fn balance<const D: usize, F: Forcing, B: Dynamics, S: Strategy>(
-        simulation: &mut Simulation<D, Particles<F, B, S>>,
+    fn balance<const D: usize, F: Forcing, B: Dynamics, S: Strategy, A: Accounted<D>>(
+        simulation: &mut Simulation<D, Particles<F, B, S>, A>,
     ) -> (Books, LedgerReport) {
         let force = simulation.body_force();
         let flow = simulation.flow.statistics();
@@ -132,10 +133,32 @@ impl Ledger {
     }
 }
 
-impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy> Observer<Simulation<D, Particles<F, B, S>>>
-    for Ledger
+/// A flow that tells what the sides of its box did to it.
+pub trait Accounted<const D: usize>: FlowSolver<D> {
+    /// Impulse of the bounded sides on the fluid during the last step \[N s\].
+    fn wall_impulse(&self) -> Vector;
+}
+
+impl<const D: usize> Accounted<D> for Projection<D> {
+    fn wall_impulse(&self) -> Vector {
+        Projection::wall_impulse(self)
+    }
+}
+
+/// What hooks do to momentum and energy (a force that differs from place to place, an eddy viscosity) is not in the books.
+impl<const D: usize, B, C, S> Accounted<D> for Hooked<D, B, C, S>
+where
+    Self: FlowSolver<D>,
 {
-    fn begin(&mut self, simulation: &mut Simulation<D, Particles<F, B, S>>) {
+    fn wall_impulse(&self) -> Vector {
+        self.flow.wall_impulse()
+    }
+}
+
+impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy, A: Accounted<D>>
+    Observer<Simulation<D, Particles<F, B, S>, A>> for Ledger
+{
+    fn begin(&mut self, simulation: &mut Simulation<D, Particles<F, B, S>, A>) {
         if std::mem::take(&mut self.resumed) {
             return;
         }
@@ -147,7 +170,7 @@ impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy> Observer<Simulation<D
 
     fn step(
         &mut self,
-        simulation: &mut Simulation<D, Particles<F, B, S>>,
+        simulation: &mut Simulation<D, Particles<F, B, S>, A>,
         info: &StepInfo,
     ) -> Result<(), CouplingError> {
         let (books, now) = Self::balance(simulation);

@@ -63,7 +63,9 @@ impl<B, F, C, S> Hooks<B, F, C, S> {
 /// of place and time; [`Boussinesq`] is buoyancy by a scalar.
 pub trait BodyForce<const D: usize, S = ()> {
     /// Does it differ from place to place? If not, [`add`](Self::add) is not called.
-    const VARIES: bool = false;
+    fn varies(&self) -> bool {
+        false
+    }
     /// The part that is the same everywhere.
     fn uniform(&self, _time: f64) -> [f64; D] {
         [0.0; D]
@@ -73,6 +75,21 @@ pub trait BodyForce<const D: usize, S = ()> {
 }
 
 impl<const D: usize, S> BodyForce<D, S> for () {}
+
+/// A force, or none.
+impl<const D: usize, S, B: BodyForce<D, S>> BodyForce<D, S> for Option<B> {
+    fn varies(&self) -> bool {
+        self.as_ref().is_some_and(B::varies)
+    }
+    fn uniform(&self, time: f64) -> [f64; D] {
+        self.as_ref().map_or([0.0; D], |force| force.uniform(time))
+    }
+    fn add(&self, flow: &Projection<D>, scalars: &S, source: &mut [Field<D>; D]) {
+        if let Some(force) = self {
+            force.add(flow, scalars, source);
+        }
+    }
+}
 
 impl<const D: usize, S> BodyForce<D, S> for [f64; D] {
     fn uniform(&self, _time: f64) -> [f64; D] {
@@ -88,7 +105,9 @@ pub struct ForceField<F>(
 );
 
 impl<const D: usize, S, F: Fn([f64; D], f64) -> [f64; D]> BodyForce<D, S> for ForceField<F> {
-    const VARIES: bool = true;
+    fn varies(&self) -> bool {
+        true
+    }
     fn add(&self, flow: &Projection<D>, _scalars: &S, source: &mut [Field<D>; D]) {
         let time = flow.time();
         for (c, source) in source.iter_mut().enumerate() {
@@ -109,7 +128,9 @@ pub struct Boussinesq {
 }
 
 impl<const D: usize> BodyForce<D, Scalar<D>> for Boussinesq {
-    const VARIES: bool = true;
+    fn varies(&self) -> bool {
+        true
+    }
     fn add(&self, flow: &Projection<D>, scalar: &Scalar<D>, source: &mut [Field<D>; D]) {
         let phi = scalar.field().data();
         for (c, source) in source.iter_mut().enumerate().filter(|(c, _)| self.gravity[*c] != 0.0) {
@@ -126,7 +147,9 @@ impl<const D: usize> BodyForce<D, Scalar<D>> for Boussinesq {
 }
 
 impl<const D: usize> BodyForce<D, Vec<Scalar<D>>> for Boussinesq {
-    const VARIES: bool = true;
+    fn varies(&self) -> bool {
+        true
+    }
     fn add(&self, flow: &Projection<D>, scalars: &Vec<Scalar<D>>, source: &mut [Field<D>; D]) {
         if let Some(first) = scalars.first() {
             self.add(flow, first, source);
@@ -180,23 +203,44 @@ impl<const D: usize> Projection<D> {
         C: ClosureSlot<D>,
         S: ScalarTransport<D>,
     {
-        let Hooks { body_force, forcing, closure, scalars } = hooks;
+        let uniform = self.prepare(dt, hooks)?;
+        self.predict(dt, uniform)?;
+        let end = self.time() + dt;
+        hooks.forcing.force(self.velocity_mut(), end, dt)?;
+        self.project(dt)?;
+        self.finish(dt)?;
+        self.correct(dt, &mut hooks.closure)
+    }
+
+    /// What hooks do before the predictor: scalars move on, forces and eddy stress are laid ready. Answers the uniform part of the force.
+    pub(crate) fn prepare<B, F, C, S>(
+        &mut self,
+        dt: f64,
+        hooks: &mut Hooks<B, F, C, S>,
+    ) -> Result<[f64; D], FlowError>
+    where
+        B: BodyForce<D, S>,
+        C: ClosureSlot<D>,
+        S: ScalarTransport<D>,
+    {
+        let Hooks { body_force, closure, scalars, .. } = hooks;
         self.forget_sources();
         self.choose_implicit(dt)?;
-        // Of the middle of the step, as what is explicit is extrapolated to it.
-        let uniform = body_force.uniform(self.time() + 0.5 * dt);
-        if B::VARIES {
+        if body_force.varies() {
             self.with_sources(|flow, sources| body_force.add(flow, scalars, sources));
         }
         if let Some(stress) = closure.stress(self)? {
             self.add_eddy_stress(stress, dt)?;
         }
         scalars.advance(self.velocity(), self.time(), dt)?;
-        self.predict(dt, uniform)?;
-        let end = self.time() + dt;
-        forcing.force(self.velocity_mut(), end, dt)?;
-        self.project(dt)?;
-        self.finish(dt)?;
-        closure.correct(self, dt)
+        // Of the middle of the step, as what is explicit is extrapolated to it.
+        Ok(body_force.uniform(self.time() + 0.5 * dt))
+    }
+
+    /// What hooks do at the end of a step: the closure follows the flow, and the next step's limit the closure.
+    pub(crate) fn correct<C: ClosureSlot<D>>(&mut self, dt: f64, closure: &mut C) -> Result<(), FlowError> {
+        closure.correct(self, dt)?;
+        self.expect_eddy_viscosity(closure.largest());
+        Ok(())
     }
 }

@@ -2,7 +2,7 @@
 use crate::metrics::Metrics;
 use crate::transport::{CellTransport, WallFaces};
 use crate::{CartesianGrid, EddyStress, Field, FlowError, Projection, Sides, TransportParams, Velocity};
-use interfaces::{Closure, SolveError, WallRow};
+use interfaces::{Checkpoint, Closure, RestartError, SolveError, WallRow};
 
 /// What a turbulence model does to a flow; `()` does nothing.
 pub trait ClosureSlot<const D: usize> {
@@ -16,6 +16,8 @@ pub trait ClosureSlot<const D: usize> {
     /// # Errors
     /// [`FlowError::Closure`].
     fn correct(&mut self, flow: &Projection<D>, dt: f64) -> Result<(), FlowError>;
+    /// The largest ν_t of any cell or wall \[m²/s\].
+    fn largest(&self) -> f64;
 }
 
 impl<const D: usize> ClosureSlot<D> for () {
@@ -26,6 +28,23 @@ impl<const D: usize> ClosureSlot<D> for () {
     #[inline(always)]
     fn correct(&mut self, _flow: &Projection<D>, _dt: f64) -> Result<(), FlowError> {
         Ok(())
+    }
+    #[inline(always)]
+    fn largest(&self) -> f64 {
+        0.0
+    }
+}
+
+/// A model, or none.
+impl<const D: usize, C: ClosureSlot<D>> ClosureSlot<D> for Option<C> {
+    fn stress(&mut self, flow: &Projection<D>) -> Result<Option<&EddyStress<D>>, FlowError> {
+        self.as_mut().map_or(Ok(None), |model| model.stress(flow))
+    }
+    fn correct(&mut self, flow: &Projection<D>, dt: f64) -> Result<(), FlowError> {
+        self.as_mut().map_or(Ok(()), |model| model.correct(flow, dt))
+    }
+    fn largest(&self) -> f64 {
+        self.as_ref().map_or(0.0, C::largest)
     }
 }
 
@@ -129,5 +148,19 @@ impl<const D: usize, C: Closure> ClosureSlot<D> for Modelled<D, C> {
     }
     fn correct(&mut self, flow: &Projection<D>, dt: f64) -> Result<(), FlowError> {
         self.update(flow.velocity(), &[], flow.fluid().viscosity, flow.time(), Some(dt))
+    }
+    fn largest(&self) -> f64 {
+        let walls = self.closure.wall_viscosity().iter();
+        self.closure.eddy_viscosity().unwrap_or_default().iter().chain(walls).copied().fold(0.0, f64::max)
+    }
+}
+
+/// The model's state.
+impl<const D: usize, C: Checkpoint> Checkpoint for Modelled<D, C> {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        self.closure.save(sink);
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        self.closure.restore(source)
     }
 }

@@ -22,6 +22,25 @@ impl Checkpoint for () {
     }
 }
 
+impl<T: Checkpoint + ?Sized> Checkpoint for Box<T> {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        (**self).save(sink);
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        (**self).restore(source)
+    }
+}
+
+/// What there is of it.
+impl<T: Checkpoint> Checkpoint for Option<T> {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        self.iter().for_each(|it| it.save(sink));
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        self.as_mut().map_or(Ok(()), |it| it.restore(source))
+    }
+}
+
 /// The names of element i begin with "i.".
 impl<T: Checkpoint> Checkpoint for Vec<T> {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {

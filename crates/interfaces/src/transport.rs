@@ -125,6 +125,30 @@ impl Closure for () {
     }
 }
 
+impl<C: Closure + ?Sized> Closure for Box<C> {
+    fn eddy_viscosity(&self) -> Option<&[f64]> {
+        (**self).eddy_viscosity()
+    }
+    fn kinetic_energy(&self) -> Option<&[f64]> {
+        (**self).kinetic_energy()
+    }
+    fn wall_viscosity(&self) -> &[f64] {
+        (**self).wall_viscosity()
+    }
+    fn residual(&self) -> f64 {
+        (**self).residual()
+    }
+    fn correct(
+        &mut self,
+        flow: &mut dyn Transport,
+        walls: &[WallRow],
+        nu: f64,
+        dt: Option<f64>,
+    ) -> Result<(), SolveError> {
+        (**self).correct(flow, walls, nu, dt)
+    }
+}
+
 /// Why an equation could not be solved.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SolveError {

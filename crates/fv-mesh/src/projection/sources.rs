@@ -59,6 +59,11 @@ impl<const D: usize> Projection<D> {
         self.sources.forget();
     }
 
+    /// Tells [`stable_dt`](Self::stable_dt) of the largest ν_t in the next step \[m²/s\].
+    pub(crate) fn expect_eddy_viscosity(&mut self, most: f64) {
+        self.sources.eddy_most = most;
+    }
+
     /// Adds ∇·[ν_t(∇u + ∇uᵀ)] and the friction of walls to the next predictor step of `dt`.
     pub(crate) fn add_eddy_stress(&mut self, stress: &EddyStress<D>, dt: f64) -> Result<(), FlowError> {
         stress.eddy.check(&self.state.grid)?;

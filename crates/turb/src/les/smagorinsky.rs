@@ -2,7 +2,7 @@
 use super::check;
 use crate::TurbulenceError;
 use crate::error::positive;
-use interfaces::{Closure, SolveError, Transport, WallRow};
+use interfaces::{Checkpoint, Closure, RestartError, SolveError, Transport, WallRow};
 
 /// Constants of [`Smagorinsky`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,6 +67,17 @@ impl Closure for Smagorinsky {
             let length = self.constants.c_s * flow.cell_volume(i).cbrt() * damping;
             *eddy *= length * length;
         }
+        Ok(())
+    }
+}
+
+impl Checkpoint for Smagorinsky {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        sink("eddy", &self.eddy);
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        let saved = RestartError::take(source, "eddy", self.eddy.len())?;
+        self.eddy.copy_from_slice(saved);
         Ok(())
     }
 }

@@ -2,7 +2,7 @@
 use super::check;
 use crate::TurbulenceError;
 use crate::error::positive;
-use interfaces::{Closure, SolveError, Transport, WallRow};
+use interfaces::{Checkpoint, Closure, RestartError, SolveError, Transport, WallRow};
 
 /// Constants of [`Wale`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,6 +82,17 @@ impl Closure for Wale {
             let length = self.constants.c_w * flow.cell_volume(i).cbrt();
             *eddy = length * length * rate(g);
         }
+        Ok(())
+    }
+}
+
+impl Checkpoint for Wale {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        sink("eddy", &self.eddy);
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        let saved = RestartError::take(source, "eddy", self.eddy.len())?;
+        self.eddy.copy_from_slice(saved);
         Ok(())
     }
 }

@@ -399,12 +399,14 @@ impl<L> Checkpoint for TwoEquation<L> {
         sink("k", &self.k);
         sink("scale", &self.scale);
         sink("eddy", &self.eddy);
+        sink("walls", &self.layer.viscosity);
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         for (name, list) in [("k", &mut self.k), ("scale", &mut self.scale), ("eddy", &mut self.eddy)] {
             let saved = RestartError::take(source, name, list.len())?;
             list.copy_from_slice(saved);
         }
+        self.layer.restore(source("walls").ok_or_else(|| RestartError::Missing("walls".into()))?);
         Ok(())
     }
 }

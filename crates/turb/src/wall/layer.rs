@@ -15,6 +15,8 @@ pub(crate) struct WallLayer {
     pub(crate) pins: Vec<(usize, f64)>,
     /// ν_t on the wall of every row \[m²/s\].
     pub(crate) viscosity: Vec<f64>,
+    /// Is `viscosity` that of a saved state, whose rows are still to come?
+    restored: bool,
 }
 
 /// A cell beside one or several walls, and what these do to it: means over its rows, weighted by area.
@@ -43,7 +45,16 @@ impl WallLayer {
             cells: Vec::new(),
             pins: Vec::new(),
             viscosity: Vec::new(),
+            restored: false,
         }
+    }
+
+    /// ν_t on the walls as it was saved.
+    pub(crate) fn restore(&mut self, viscosity: &[f64]) {
+        self.viscosity.clear();
+        self.viscosity.extend_from_slice(viscosity);
+        self.order.clear();
+        self.restored = true;
     }
 
     /// Sorts the rows by cell, if they are not as they were.
@@ -68,8 +79,10 @@ impl WallLayer {
                 _ => cells.push(WallCell { cell: rows[r].cell, first: i, rows: 1, ..WallCell::default() }),
             }
         }
-        viscosity.clear();
-        viscosity.resize(rows.len(), 0.0);
+        if !std::mem::take(&mut self.restored) || viscosity.len() != rows.len() {
+            viscosity.clear();
+            viscosity.resize(rows.len(), 0.0);
+        }
         Ok(())
     }
 

@@ -1,16 +1,13 @@
 //! From a setup to what the libraries run.
 use crate::cast::Cast;
-use crate::setup::{
-    Algorithm, Bodies, BodySetup, ContactLawChoice, ForcingChoice, InflowSetup, Motion, Setup,
-};
+use crate::physics::Physics;
+use crate::setup::{Algorithm, Bodies, ContactLawChoice, ForcingChoice, InflowSetup, Motion, Setup};
 use crate::still::Still;
 use dem::placing::{PlacingError, Region};
 use dem::{Chen, ContactLaw, DemError, Entrant, Inflow, Lubricated, Population, RigidBodies};
-use fv_mesh::{
-    CartesianGrid, Diffusion, FlowError, Piso, PisoParams, Projection, Side, Simple, SimpleParams, TimeScheme,
-};
-use ibm::{Hfdib, IbmError, SmoothFilm, SmoothForcing, StaticBodies, cut_walls};
-use interfaces::{Freedom, Periods, Twist};
+use fv_mesh::{CartesianGrid, Diffusion, FlowError, Piso, PisoParams, Projection, Side, TimeScheme};
+use ibm::{Hfdib, IbmError, SmoothFilm, SmoothForcing, cut_walls};
+use interfaces::{Freedom, Kinematics, Periods, Twist};
 
 /// Why a scene cannot be put together.
 #[derive(Debug, thiserror::Error)]
@@ -27,6 +24,9 @@ pub enum BuildError {
     /// Bodies on the grid.
     #[error(transparent)]
     Immersed(#[from] IbmError),
+    /// The turbulence model.
+    #[error(transparent)]
+    Turbulence(#[from] turb::TurbulenceError),
     /// Both together.
     #[error(transparent)]
     Coupling(#[from] coupling::CouplingError),
@@ -70,15 +70,15 @@ impl Setup {
         self.cells() as f64 * (DOUBLES[self.dim() - 2] + averages) * 8.0
     }
 
-    fn grid<const D: usize>(&self) -> Result<CartesianGrid<D>, FlowError> {
+    pub(crate) fn grid<const D: usize>(&self) -> Result<CartesianGrid<D>, FlowError> {
         CartesianGrid::from_axes(std::array::from_fn(|a| self.axes[a].clone()))
     }
-    fn all_sides<const D: usize>(&self) -> [[Side; 2]; D] {
+    pub(crate) fn all_sides<const D: usize>(&self) -> [[Side; 2]; D] {
         std::array::from_fn(|a| self.sides[a].clone())
     }
 
     /// The velocity at time 0, if one is given.
-    fn initial<const D: usize>(
+    pub(crate) fn initial<const D: usize>(
         &self,
         grid: &CartesianGrid<D>,
     ) -> Result<Option<impl Fn([f64; D]) -> [f64; D] + '_>, BuildError> {
@@ -99,7 +99,7 @@ impl Setup {
     }
 
     /// Is there room for the grid?
-    fn check_memory(&self) -> Result<(), BuildError> {
+    pub(crate) fn check_memory(&self) -> Result<(), BuildError> {
         let (cells, needed) = (self.cells() as f64, self.memory());
         match free_memory() {
             Some(free) if needed > free => Err(BuildError::Memory { cells, needed, free }),
@@ -108,7 +108,7 @@ impl Setup {
     }
 
     /// The body force has to have a value at both ends of the run.
-    fn check_force(&self) -> Result<(), BuildError> {
+    pub(crate) fn check_force(&self) -> Result<(), BuildError> {
         for (t, force) in self.force.iter().flat_map(|f| [0.0, self.end].map(|t| (t, f))) {
             if let Some(value) = force.iter().map(|f| f.at(&[t])).find(|f| !f.is_finite()) {
                 return Err(BuildError::Formula { what: "the body force", value, at: [t, 0.0, 0.0] });
@@ -117,7 +117,7 @@ impl Setup {
         Ok(())
     }
 
-    /// The projection algorithm, without bodies.
+    /// The projection algorithm, without bodies or anything that acts on it.
     pub(crate) fn projection<const D: usize>(&self) -> Result<Projection<D>, BuildError> {
         self.check_memory()?;
         self.check_force()?;
@@ -137,16 +137,14 @@ impl Setup {
     }
 
     /// The projection algorithm with bodies at rest as walls.
-    pub(crate) fn walled<const D: usize>(&self) -> Result<(Projection<D>, Still), BuildError> {
+    pub(crate) fn walled<const D: usize>(&self) -> Result<(Physics<D>, Still), BuildError> {
         let mut flow = self.projection()?;
-        let list = &self.bodies.list;
-        let put = |still: StaticBodies, b: &BodySetup| still.with(b.shape.clone(), b.pose);
-        let still = list.iter().fold(StaticBodies::new(), put);
-        if !list.is_empty() {
+        let still = self.still();
+        if still.n_bodies() > 0 {
             let walls = cut_walls(flow.velocity(), &still)?;
             flow.set_walls(Some(walls))?;
         }
-        Ok((flow, Still(still)))
+        Ok((self.physics(flow)?, Still(still)))
     }
 
     /// PISO by Euler's scheme in time, as the paper has it.
@@ -160,23 +158,6 @@ impl Setup {
             .with_params(params)?;
         if let Some(u) = self.initial(&grid)? {
             flow.set_velocity(u);
-        }
-        Ok(flow)
-    }
-
-    /// The steady algorithm.
-    pub(crate) fn simple<const D: usize>(&self) -> Result<Simple<D>, BuildError> {
-        self.check_memory()?;
-        self.check_force()?;
-        let grid = self.grid()?;
-        let mut flow = Simple::new(grid.clone(), self.all_sides(), self.fluid)?
-            .with_convection(self.flow.convection)
-            .with_params(SimpleParams::default())?;
-        if let Some(u) = self.initial(&grid)? {
-            flow.set_velocity(u);
-        }
-        if let Some(force) = &self.force {
-            flow.set_force(std::array::from_fn(|a| force[a].at(&[self.end])));
         }
         Ok(flow)
     }
@@ -298,8 +279,15 @@ impl Setup {
         } else {
             "switched off"
         };
+        let turbulence = match &self.turbulence {
+            Some(t) => t.model.name().to_owned(),
+            None => "no `turbulence`: the flow is resolved, or laminar".into(),
+        };
+        let names: Vec<&str> = self.scalars.iter().map(|s| s.name.as_str()).collect();
         vec![
             ("flow", true, algorithm.into()),
+            ("turbulence model", self.turbulence.is_some(), turbulence),
+            ("scalars", !names.is_empty(), if names.is_empty() { "none".into() } else { names.join(", ") }),
             ("immersed boundary", any, forcing.into()),
             (
                 "rigid bodies",

@@ -15,26 +15,20 @@ pub(crate) trait Books<S>: Observer<S> + Checkpoint {
     fn report(&self) -> Option<&LedgerReport>;
 }
 
-/// No books.
-pub(crate) struct NoBooks;
-impl<S> Observer<S> for NoBooks {}
-impl Checkpoint for NoBooks {
-    fn save(&self, _: &mut dyn FnMut(&str, &[f64])) {}
-    fn restore<'a>(&mut self, _: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
-        Ok(())
-    }
-}
-impl<S> Books<S> for NoBooks {
-    fn report(&self) -> Option<&LedgerReport> {
-        None
-    }
-}
-impl<S> Books<S> for Ledger
+/// Books, or none.
+impl<S> Books<S> for Option<Ledger>
 where
     Ledger: Observer<S>,
 {
     fn report(&self) -> Option<&LedgerReport> {
-        Some(Ledger::report(self))
+        self.as_ref().map(Ledger::report)
+    }
+}
+
+/// No books, for what cannot have any.
+impl<S> Books<S> for () {
+    fn report(&self) -> Option<&LedgerReport> {
+        None
     }
 }
 

@@ -1,7 +1,8 @@
 //! What a scene would do.
 use crate::build::BuildError;
 use crate::setup::{Algorithm, Setup};
-use fv_mesh::{Axis, Side, Simple};
+use crate::steady::Steady;
+use fv_mesh::{Axis, Side};
 use std::fmt;
 
 /// What running a scene would mean: told before it is run.
@@ -53,17 +54,17 @@ impl Setup {
         }
         let (dt, pressure) = match self.flow.algorithm {
             Algorithm::Simple => {
-                let _: Simple<D> = self.simple()?;
+                let _: Steady<D> = self.steady()?;
                 (None, "multigrid".to_owned())
             }
             Algorithm::Piso => (self.dt, "multigrid".to_owned()),
             Algorithm::Projection => {
-                let flow = self.projection::<D>()?;
+                let flow = self.physics(self.projection::<D>()?)?;
                 let speed = self.speed();
                 let rate: f64 = self.axes.iter().map(|axis| speed / axis.narrowest()).sum();
                 let stable = flow.stable_dt(self.courant);
                 let dt = self.dt.unwrap_or(if rate > 0.0 { stable.min(self.courant / rate) } else { stable });
-                (Some(dt.min(self.end)), flow.pressure_solver().to_owned())
+                (Some(dt.min(self.end)), flow.flow.pressure_solver().to_owned())
             }
         };
         let steps = match dt {
@@ -93,7 +94,7 @@ impl Setup {
     }
 
     /// A speed \[m/s\] that the scene is likely to see: of inlets and walls, of bodies, of what falls or is driven.
-    fn speed(&self) -> f64 {
+    pub(crate) fn speed(&self) -> f64 {
         let centre = self.axes.iter().map(|axis| 0.5 * (axis.lower() + axis.upper()));
         let mut middle = [0.0; 4];
         centre.enumerate().for_each(|(a, x)| middle[a] = x);

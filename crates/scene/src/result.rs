@@ -92,6 +92,25 @@ impl RunResult {
                 "mean_velocity": mean,
             },
         });
+        let others: serde_json::Map<String, Value> = view
+            .others()
+            .into_iter()
+            .map(|other| {
+                let start = [0.0, f64::INFINITY, f64::NEG_INFINITY, 0.0];
+                let [sum, least, most, n] = other
+                    .values
+                    .fold(start, |[sum, least, most, n], v| [sum + v, least.min(v), most.max(v), n + 1.0]);
+                let of = json!({ "mean": number(sum / n), "least": number(least), "most": number(most), "unit": other.unit });
+                (other.name.to_owned(), of)
+            })
+            .collect();
+        if !others.is_empty() {
+            // Means over the cells, whatever their size.
+            result["fields"] = Value::Object(others);
+        }
+        if let Some(y) = view.y_plus() {
+            result["y_plus"] = json!({ "least": number(y.least), "mean": number(y.mean), "most": number(y.most), "warnings": y.warnings() });
+        }
         let names: Vec<&str> = setup.bodies.list.iter().map(|b| b.name.as_str()).collect();
         let bodies: Vec<Value> = (0..view.bodies().n_bodies())
             .map(BodyId)

@@ -2,27 +2,28 @@
 use crate::build::BuildError;
 use crate::cast::Cast;
 use crate::log::Log;
-use crate::look::{Books, Extremes, Kept, Look, NoBooks, Whole};
+use crate::look::{Books, Extremes, Kept, Look, Whole};
 use crate::options::Options;
+use crate::physics::Physics;
 use crate::result::{Ending, RunResult};
 use crate::setup::{Algorithm, ContactLawChoice, ForcingChoice, Setup, StrategyChoice};
-use crate::view::{Flow, Guests, Seen, View};
+use crate::still::Still;
+use crate::view::{Flow, Guests, Seen};
 use crate::watch::{
     Audience, AveragesWatch, FieldsWatch, ForcesWatch, ImagesWatch, ProbesWatch, TrajectoriesWatch, Watch,
     output,
 };
 use coupling::{
     CheckpointError, CouplingError, Exchange, Explicit, FlowSolver, Immersed, Iterated, Ledger, Particles,
-    Schedule, Simulation, StepInfo, Strategy,
+    Schedule, Simulation, Strategy,
 };
 use dem::{ContactLaw, Population, Rolling};
 use example_support::cpu::Stopwatch;
 use example_support::progress::Progress;
-use fv_mesh::{Projection, Simple};
 use ibm::Forcing;
 use interfaces::{Checkpoint, RestartError};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 /// Why a run ended before its time.
@@ -70,20 +71,19 @@ impl Setup {
         let stage = Stage { setup: self, options, fingerprint, stop };
         let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
         match self.flow.algorithm {
-            Algorithm::Simple => return stage.steady(self.simple::<D>()?),
+            Algorithm::Simple => return stage.steady(self.steady::<D>()?),
             Algorithm::Piso if bodies => {
                 let particles = self.particles(self.hfdib(), self.cast(self.chen())?).with_strategy(Explicit);
-                return stage.march(self.simulation(self.piso::<D>()?, particles)?, NoBooks);
+                return stage.march(self.simulation(self.piso::<D>()?, particles)?, ());
             }
             Algorithm::Piso => {
-                return stage
-                    .march(self.simulation(self.piso::<D>()?, crate::still::Still::default())?, NoBooks);
+                return stage.march(self.simulation(self.piso::<D>()?, Still::default())?, ());
             }
             Algorithm::Projection => {}
         }
         if !bodies || self.bodies.forcing() == ForcingChoice::CutLinks {
             let (flow, still) = self.walled::<D>()?;
-            return stage.march(self.simulation(flow, still)?, NoBooks);
+            return stage.march(self.simulation(flow, still)?, ());
         }
         match self.bodies.forcing() {
             ForcingChoice::Hfdib => self.bodies_by::<D, _>(&stage, self.hfdib()),
@@ -96,7 +96,7 @@ impl Setup {
         stage: &Stage<'_>,
         forcing: F,
     ) -> Result<RunResult, RunError> {
-        let flow = self.projection::<D>()?;
+        let flow = self.physics(self.projection::<D>()?)?;
         match (self.bodies.law, self.bodies.coupling.strategy, self.bodies.lubrication) {
             (ContactLawChoice::Chen, StrategyChoice::OneSolve, Some(roughness)) => {
                 stage.bodies(flow, self.particles(forcing, self.cast(self.lubricated(roughness)?)?))
@@ -147,11 +147,11 @@ impl Setup {
 }
 
 /// A run that is about to begin.
-struct Stage<'a> {
-    setup: &'a Setup,
-    options: &'a Options,
+pub(crate) struct Stage<'a> {
+    pub(crate) setup: &'a Setup,
+    pub(crate) options: &'a Options,
     fingerprint: u64,
-    stop: &'a AtomicBool,
+    pub(crate) stop: &'a AtomicBool,
 }
 
 /// Name of the saved state in the folder.
@@ -160,23 +160,26 @@ const STATE: &str = "state.bin";
 impl Stage<'_> {
     fn bodies<const D: usize, F, L, S>(
         &self,
-        flow: Projection<D>,
+        flow: Physics<D>,
         particles: Particles<F, Cast<L>, S>,
     ) -> Result<RunResult, RunError>
     where
         F: Forcing,
         L: ContactLaw,
-        S: Strategy + Exchange<D, Projection<D>>,
+        S: Strategy + Exchange<D, Physics<D>>,
         Population<L>: Checkpoint,
     {
-        self.march(self.setup.simulation(flow, particles)?, Ledger::new())
+        // What acts on the flow beside bodies is not in the books.
+        let hooks =
+            self.setup.turbulence.is_some() || self.setup.scalars.iter().any(|s| s.buoyancy.is_some());
+        self.march(self.setup.simulation(flow, particles)?, (!hooks).then(Ledger::new))
     }
 
-    fn folder(&self) -> &Path {
+    pub(crate) fn folder(&self) -> &Path {
         self.options.out.as_deref().unwrap_or(&self.setup.output.folder)
     }
 
-    fn audience(&self, resume: Option<f64>) -> Result<Audience, CouplingError> {
+    pub(crate) fn audience(&self, resume: Option<f64>) -> Result<Audience, CouplingError> {
         let (setup, folder) = (self.setup, self.folder());
         let dim = setup.dim();
         let names: Vec<String> = setup.bodies.list.iter().map(|b| b.name.clone()).collect();
@@ -203,7 +206,7 @@ impl Stage<'_> {
         Ok(Audience::new(watches))
     }
 
-    fn make_folder(&self) -> Result<(), CouplingError> {
+    pub(crate) fn make_folder(&self) -> Result<(), CouplingError> {
         let folder = self.folder();
         std::fs::create_dir_all(folder).map_err(output("making the folder", folder))?;
         if !self.options.resume {
@@ -314,65 +317,6 @@ impl Stage<'_> {
             CheckpointError::Mismatch(RestartError::Differs(_)) => RunError::OtherScene(state.into()),
             error => RunError::Resume(error),
         }
-    }
-
-    /// Iterates to the steady flow.
-    fn steady<const D: usize>(&self, mut flow: Simple<D>) -> Result<RunResult, RunError> {
-        let watch = Stopwatch::start();
-        let setup = self.setup;
-        self.make_folder()?;
-        let mut audience = self.audience(None)?;
-        let mut log = Log::open(self.folder(), false)?;
-        log.line(&format!(
-            "iterating {}: {} cells, to residuals of {:e}",
-            setup.name,
-            setup.cells(),
-            setup.flow.tolerance
-        ))?;
-        // Progress is the way of the residual's logarithm.
-        let target = -setup.flow.tolerance.log10();
-        let mut progress = (!self.options.quiet).then(|| Progress::new(0.0, target));
-        let mut ending = Ending::NotConverged;
-        let mut residual = f64::INFINITY;
-        for _ in 0..setup.flow.iterations {
-            if self.stop.load(Ordering::Relaxed) {
-                ending = Ending::Stopped;
-                break;
-            }
-            let info = flow.iterate().map_err(BuildError::from)?;
-            residual = info.largest();
-            if let Some(progress) = &mut progress {
-                progress.tell(info.iterations as u64, (-residual.log10()).clamp(0.0, target), || {
-                    format!("residual {residual:.2e}")
-                });
-            }
-            if info.iterations % 50 == 1 {
-                log.line(&format!("iteration {}: residual {residual:.3e}", info.iterations))?;
-            }
-            if residual <= setup.flow.tolerance {
-                ending = Ending::Done;
-                break;
-            }
-        }
-        if let Some(progress) = progress.take() {
-            let word = match ending {
-                Ending::Done => "converged",
-                Ending::Stopped => "stopped",
-                Ending::NotConverged => "not converged",
-            };
-            progress.finish(flow.iterations() as u64, word);
-        }
-        log.line(&format!("{} iterations, residual {residual:.3e}", flow.iterations()))?;
-        let still = crate::still::Still::default();
-        let mut seen = Seen { flow: &mut flow, guests: &still, timings: coupling::Timings::default() };
-        let info = StepInfo { step: seen.steps(), time: 0.0, dt: 0.0, courant: 0.0, snapshot: None };
-        audience.snapshot(&mut seen, 0, &info)?;
-        audience.finish(&mut seen)?;
-        let extremes = Extremes::default();
-        let seconds = audience.seconds;
-        let mut result = RunResult::new(setup, &mut seen, &extremes, None, &audience, ending, self.folder());
-        result.set("residual", residual.into());
-        Ok(result.with_timings(watch.elapsed(), self.options.threads, seconds, &seen).write()?)
     }
 }
 

@@ -7,6 +7,7 @@ mod factories;
 mod flow;
 mod json;
 mod manual;
+mod physics;
 mod run;
 
 pub(crate) use check::{check, number};
@@ -187,6 +188,20 @@ pub(crate) static SCENE: Table = Table {
             "all its defaults",
             "How the flow is computed.",
             "{ convection = \"quick\" }",
+        ),
+        optional(
+            "turbulence",
+            Kind::Choice("model", &physics::TURBULENCE),
+            "none",
+            "A turbulence model.",
+            "{ model = \"sst\", intensity = 0.05, length = 0.07 }",
+        ),
+        optional(
+            "scalars",
+            Kind::Named(&physics::SCALAR),
+            "none",
+            "Scalars by name.",
+            "{ temperature = { diffusivity = 2e-5 } }",
         ),
         optional(
             "materials",

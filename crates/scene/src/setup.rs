@@ -4,6 +4,7 @@ mod factories;
 mod flow;
 mod grid;
 mod measures;
+mod physics;
 mod shapes;
 mod sides;
 
@@ -11,6 +12,7 @@ pub(crate) use bodies::{Bodies, BodySetup, ContactLawChoice, ForcingChoice, Moti
 pub(crate) use factories::InflowSetup;
 pub(crate) use flow::{Algorithm, FlowSetup};
 pub(crate) use measures::{Averages, Forces, Images, Output, ProbeSetup, Quantity, Reference};
+pub(crate) use physics::{ModelChoice, ScalarSetup, ScaleChoice, TurbulenceSetup};
 
 use crate::document::{Document, Place};
 use crate::expression::Expression;
@@ -36,6 +38,8 @@ pub(crate) struct Setup {
     pub(crate) force: Option<[Expression; 3]>,
     pub(crate) initial: Option<[Expression; 3]>,
     pub(crate) flow: FlowSetup,
+    pub(crate) turbulence: Option<TurbulenceSetup>,
+    pub(crate) scalars: Vec<ScalarSetup>,
     pub(crate) bodies: Bodies,
     pub(crate) balance: WeightBalance,
     pub(crate) end: f64,
@@ -121,6 +125,8 @@ impl Setup {
             ramp: time.flag("ramp").unwrap_or(bodies.any_free()),
             save_every: checkpoint.number("every").unwrap_or(10.0),
             save_at_end: checkpoint.flag("at_end").unwrap_or(true),
+            turbulence: physics::turbulence(root, dim)?,
+            scalars: physics::scalars(root, &context, &sides)?,
             axes,
             sides,
             flow,
@@ -148,10 +154,25 @@ impl Setup {
             None => root.fail("flow", message),
         };
         match self.flow.algorithm {
-            Algorithm::Simple if bodies => {
+            Algorithm::Simple if bodies && self.bodies.any_moves() => {
                 return Err(fail(
                     "algorithm",
-                    "steady flow with bodies is not offered yet; take \"projection\" and let the run go on until it is steady",
+                    "a steady flow has no bodies that move; make them `motion = \"fixed\"`, or take \"projection\"",
+                ));
+            }
+            Algorithm::Simple if self.turbulence.as_ref().is_some_and(|t| !t.model.averages()) => {
+                return Err(fail(
+                    "algorithm",
+                    "large eddies are not steady; take \"projection\", or a model of two equations such as \"sst\"",
+                ));
+            }
+            Algorithm::Simple | Algorithm::Piso if !self.scalars.is_empty() => {
+                return Err(fail("algorithm", "scalars go with \"projection\" only"));
+            }
+            Algorithm::Piso if self.turbulence.is_some() => {
+                return Err(fail(
+                    "algorithm",
+                    "turbulence models go with \"projection\" and \"simple\"; take one of these",
                 ));
             }
             Algorithm::Simple if !self.probes.is_empty() || self.averages.is_some() => {
@@ -173,6 +194,41 @@ impl Setup {
                 ));
             }
             _ => {}
+        }
+        if let Some(Quantity::Field(name)) = self.output.images.as_ref().map(|i| &i.quantity) {
+            let of_model = match &self.turbulence {
+                Some(t) if t.model.averages() => &["k", "eddy_viscosity"][..],
+                Some(_) => &["eddy_viscosity"],
+                None => &[],
+            };
+            let known: Vec<&str> =
+                self.scalars.iter().map(|s| s.name.as_str()).chain(of_model.iter().copied()).collect();
+            if !known.contains(&name.as_str()) {
+                let known = if known.is_empty() { "none".into() } else { known.join(", ") };
+                let output = root.table("output").unwrap_or_else(|| root.clone());
+                return Err(
+                    output.fail("field", format!("there is no field \"{name}\" here; there are: {known}"))
+                );
+            }
+        }
+        if let Some(t) = &self.turbulence
+            && t.model.averages()
+            && self.bodies.any_moves()
+        {
+            return Err(root.fail(
+                "turbulence",
+                "models of two equations do not see bodies that move yet; take \"wale\" (in space), or hold the bodies",
+            ));
+        }
+        if let Some(s) = self.scalars.iter().find(|s| s.bodies.is_some())
+            && (self.bodies.any_moves() || self.bodies.list.is_empty())
+        {
+            let message = format!(
+                "scalars.{}.bodies is for bodies at rest, and there {}; leave it out, or hold the bodies",
+                s.name,
+                if self.bodies.list.is_empty() { "are no bodies" } else { "is one that moves" }
+            );
+            return Err(root.fail("scalars", message));
         }
         if dim == 2 && self.bodies.lubrication.is_some() {
             return Err(

@@ -1,15 +1,18 @@
 //! A running simulation as those see it who look on, whatever its types.
 use crate::cast::Cast;
+use crate::physics::{Model, Physics};
+use crate::steady::Steady;
 use crate::still::Still;
 use coupling::{Particles, Strategy, Timings};
 use dem::{ContactLaw, Population, RigidDynamics};
 use fv_mesh::{
-    Axis, CartesianGrid, CellWriter, Field, FlowStatistics, OutputError, Piso, Projection, SampleError,
-    Sampler, Sides, Simple, Velocity,
+    Axis, CartesianGrid, CellWriter, Field, FlowStatistics, Hooked, OutputError, Piso, SampleError, Sampler,
+    Sides, Velocity,
 };
 use ibm::Forcing;
-use interfaces::{Bodies, BodyId, Checkpoint, Lattice, Point, Wrench};
+use interfaces::{Bodies, BodyId, Checkpoint, Closure, Lattice, Point, Wrench};
 use std::io::{self, Write};
+use turb::YPlus;
 
 /// What is asked of a simulation by its observers.
 pub(crate) trait View {
@@ -25,6 +28,10 @@ pub(crate) trait View {
     /// Component `c` of the velocity at the centres, x fastest.
     fn centred(&self, c: usize, out: &mut Vec<f64>);
     fn pressure(&self, out: &mut Vec<f64>);
+    /// Fields besides these at the centres, x fastest: what scalars and a turbulence model have.
+    fn others(&self) -> Vec<Other<'_>>;
+    /// How far from walls a turbulence model finds the first cells.
+    fn y_plus(&self) -> Option<YPlus>;
     /// Hands velocity and pressure at every point to `take`, under the point's number.
     fn sample(
         &self,
@@ -50,6 +57,26 @@ pub(crate) trait View {
     fn write_bodies(&self, out: &mut dyn Write) -> io::Result<bool>;
 }
 
+/// A field besides velocity and pressure.
+pub(crate) struct Other<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) unit: &'a str,
+    pub(crate) values: Box<dyn Iterator<Item = f64> + 'a>,
+}
+
+/// What a turbulence model has to show.
+fn of_model<const D: usize>(model: &Option<Model<D>>) -> Vec<Other<'_>> {
+    let Some(Model { closure, .. }) = model else { return Vec::new() };
+    let field = |name: &'static str, unit: &'static str, values: &'_ [f64]| Other {
+        name,
+        unit,
+        values: Box::new(values.to_vec().into_iter()),
+    };
+    let k = closure.kinetic_energy().map(|k| field("k", "m²/s²", k));
+    let eddy = closure.eddy_viscosity().map(|e| field("eddy_viscosity", "m²/s", e));
+    k.into_iter().chain(eddy).collect()
+}
+
 /// A flow, whatever computes it.
 pub(crate) trait Flow<const D: usize> {
     fn grid(&self) -> &CartesianGrid<D>;
@@ -61,60 +88,103 @@ pub(crate) trait Flow<const D: usize> {
     fn time(&self) -> f64;
     fn steps(&self) -> u64;
     fn pressure_iterations(&self) -> usize;
-    /// Impulses on walls inside the box in the last step.
+    /// Impulses on walls inside the box in the last step; of a steady flow loads.
     fn wall_impulses(&self) -> &[Wrench];
+    /// Fields besides velocity and pressure.
+    fn others(&self) -> Vec<Other<'_>> {
+        Vec::new()
+    }
+    /// How far from walls a turbulence model finds the first cells.
+    fn y_plus(&self) -> Option<YPlus> {
+        None
+    }
 }
 
-/// What all flows have, and what one has besides.
+/// What all flows have, by the part that keeps it.
 macro_rules! flow {
-    ($flow:ident, $time:expr, $steps:expr, $iterations:expr, $impulses:expr) => {
-        impl<const D: usize> Flow<D> for $flow<D> {
-            fn grid(&self) -> &CartesianGrid<D> {
-                $flow::grid(self)
-            }
-            fn sides(&self) -> &Sides<D> {
-                $flow::sides(self)
-            }
-            fn velocity(&self) -> &Velocity<D> {
-                $flow::velocity(self)
-            }
-            fn pressure(&self) -> &Field<D> {
-                $flow::pressure(self)
-            }
-            fn centred_velocity(&self, c: usize) -> impl Iterator<Item = f64> + '_ {
-                $flow::centred_velocity(self, c)
-            }
-            fn statistics(&mut self) -> FlowStatistics {
-                $flow::statistics(self)
-            }
-            fn time(&self) -> f64 {
-                $time(self)
-            }
-            fn steps(&self) -> u64 {
-                $steps(self)
-            }
-            fn pressure_iterations(&self) -> usize {
-                $iterations(self)
-            }
-            fn wall_impulses(&self) -> &[Wrench] {
-                $impulses(self)
-            }
+    ($($part:ident)?) => {
+        fn grid(&self) -> &CartesianGrid<D> {
+            self$(.$part)?.grid()
+        }
+        fn sides(&self) -> &Sides<D> {
+            self$(.$part)?.sides()
+        }
+        fn velocity(&self) -> &Velocity<D> {
+            self$(.$part)?.velocity()
+        }
+        fn pressure(&self) -> &Field<D> {
+            self$(.$part)?.pressure()
+        }
+        fn centred_velocity(&self, c: usize) -> impl Iterator<Item = f64> + '_ {
+            self$(.$part)?.centred_velocity(c)
+        }
+        fn statistics(&mut self) -> FlowStatistics {
+            self$(.$part)?.statistics()
         }
     };
 }
 
-flow!(
-    Projection,
-    Projection::time,
-    Projection::steps,
-    |f: &Self| f.pressure_info().iterations,
-    Projection::wall_impulses
-);
-flow!(Piso, Piso::time, Piso::steps, |_: &Self| 0, no_walls);
-flow!(Simple, |_: &Self| 0.0, |f: &Self| f.iterations() as u64, |_: &Self| 0, no_walls);
+impl<const D: usize> Flow<D> for Physics<D> {
+    flow!(flow);
+    fn time(&self) -> f64 {
+        Hooked::time(self)
+    }
+    fn steps(&self) -> u64 {
+        Hooked::steps(self)
+    }
+    fn pressure_iterations(&self) -> usize {
+        self.flow.pressure_info().iterations
+    }
+    fn wall_impulses(&self) -> &[Wrench] {
+        self.flow.wall_impulses()
+    }
+    fn others(&self) -> Vec<Other<'_>> {
+        let scalars = self.hooks.scalars.iter();
+        let scalars =
+            scalars.map(|(name, unit, field)| Other { name, unit, values: Box::new(field.values()) });
+        scalars.chain(of_model(&self.hooks.closure)).collect()
+    }
+    fn y_plus(&self) -> Option<YPlus> {
+        self.hooks.closure.as_ref()?.closure.y_plus()
+    }
+}
 
-fn no_walls<T>(_: &T) -> &'static [Wrench] {
-    &[]
+impl<const D: usize> Flow<D> for Piso<D> {
+    flow!();
+    fn time(&self) -> f64 {
+        Piso::time(self)
+    }
+    fn steps(&self) -> u64 {
+        Piso::steps(self)
+    }
+    fn pressure_iterations(&self) -> usize {
+        0
+    }
+    fn wall_impulses(&self) -> &[Wrench] {
+        &[]
+    }
+}
+
+impl<const D: usize> Flow<D> for Steady<D> {
+    flow!(flow);
+    fn time(&self) -> f64 {
+        self.time
+    }
+    fn steps(&self) -> u64 {
+        self.flow.iterations() as u64
+    }
+    fn pressure_iterations(&self) -> usize {
+        0
+    }
+    fn wall_impulses(&self) -> &[Wrench] {
+        &self.loads
+    }
+    fn others(&self) -> Vec<Other<'_>> {
+        of_model(&self.model)
+    }
+    fn y_plus(&self) -> Option<YPlus> {
+        self.model.as_ref()?.closure.y_plus()
+    }
 }
 
 /// A flow and what is immersed in it, as observers see them.
@@ -215,6 +285,12 @@ impl<const D: usize, A: Flow<D>, P: Guests> View for Seen<'_, D, A, P> {
         out.clear();
         out.extend(self.flow.pressure().values());
     }
+    fn others(&self) -> Vec<Other<'_>> {
+        self.flow.others()
+    }
+    fn y_plus(&self) -> Option<YPlus> {
+        self.flow.y_plus()
+    }
     fn sample(
         &self,
         points: &[[f64; 3]],
@@ -233,11 +309,12 @@ impl<const D: usize, A: Flow<D>, P: Guests> View for Seen<'_, D, A, P> {
         self.flow.pressure_iterations()
     }
     fn write_fields(&self, lambda: &[f64], mut out: &mut dyn Write) -> Result<(), OutputError> {
-        CellWriter::new(self.flow.grid())
+        let writer = CellWriter::new(self.flow.grid())
             .scalar("lambda", lambda.iter().copied())
             .vector("velocity", std::array::from_fn(|c| self.flow.centred_velocity(c)))
-            .scalar("pressure", self.flow.pressure().values())
-            .write(&mut out)
+            .scalar("pressure", self.flow.pressure().values());
+        let others = self.flow.others();
+        others.into_iter().fold(writer, |w, other| w.scalar(other.name, other.values)).write(&mut out)
     }
     fn write_named(
         &self,

@@ -2,10 +2,10 @@
 use super::one_solve::{OneSolve, foresee};
 use super::{Strategy, sealed};
 use crate::particles::{State, six};
-use crate::{CouplingError, Module, Particles, Timings};
-use fv_mesh::{Prediction, Projection};
+use crate::{CouplingError, FlowSolver, Module, Particles, Timings};
+use fv_mesh::{BodyForce, ClosureSlot, Hooked, Prediction, Projection, ScalarTransport};
 use ibm::Forcing;
-use interfaces::{BodyId, Dynamics, Load};
+use interfaces::{BodyId, Checkpoint, Dynamics, Load};
 use nalgebra::Vector6;
 
 /// Starts like [`OneSolve`], then corrects the bodies' velocities by what their equations of motion leave,
@@ -55,10 +55,41 @@ impl sealed::Strategy for Iterated {
     }
 }
 
-impl<const D: usize> sealed::Exchange<D, Projection<D>> for Iterated {
+/// A flow that can go back to u*.
+pub trait Rewind<const D: usize>: FlowSolver<D> {
+    /// Notes the velocity after the predictor.
+    fn note(&self, prediction: &mut Prediction);
+    /// Goes back to it.
+    fn go_back(&mut self, prediction: &Prediction);
+}
+
+impl<const D: usize> Rewind<D> for Projection<D> {
+    fn note(&self, prediction: &mut Prediction) {
+        Projection::note(self, prediction);
+    }
+    fn go_back(&mut self, prediction: &Prediction) {
+        Projection::go_back(self, prediction);
+    }
+}
+
+impl<const D: usize, B, C, S> Rewind<D> for Hooked<D, B, C, S>
+where
+    B: BodyForce<D, S>,
+    C: ClosureSlot<D> + Checkpoint,
+    S: ScalarTransport<D> + Checkpoint,
+{
+    fn note(&self, prediction: &mut Prediction) {
+        self.flow.note(prediction);
+    }
+    fn go_back(&mut self, prediction: &Prediction) {
+        self.flow.go_back(prediction);
+    }
+}
+
+impl<const D: usize, A: Rewind<D>> sealed::Exchange<D, A> for Iterated {
     fn exchange<F: Forcing, B: Dynamics>(
         particles: &mut Particles<F, B, Self>,
-        flow: &mut Projection<D>,
+        flow: &mut A,
         dt: f64,
         timings: &mut Timings,
     ) -> Result<(), CouplingError> {
@@ -102,7 +133,13 @@ impl<F: Forcing, B: Dynamics> Particles<F, B, Iterated> {
     }
 
     /// Notes J and what the equation of motion of body `b` leaves; is that little?
-    fn compare<const D: usize>(&mut self, flow: &Projection<D>, b: BodyId, dt: f64, tolerance: f64) -> bool {
+    fn compare<const D: usize, A: FlowSolver<D>>(
+        &mut self,
+        flow: &A,
+        b: BodyId,
+        dt: f64,
+        tolerance: f64,
+    ) -> bool {
         let [impulse, _] = self.impulse(flow, b);
         let now = self.mass_matrix(b) * self.velocity(b);
         let (weight, contact) = (dt * self.pull(b), six(self.bodies.contact_impulse(b)));

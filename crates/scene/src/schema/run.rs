@@ -73,6 +73,13 @@ pub(super) static OUTPUT: Table = Table {
             "\"vorticity\"",
         ),
         optional(
+            "field",
+            Kind::Text,
+            "`quantity` tells",
+            "What pictures show instead: a scalar by its name, or a turbulence model's k or eddy_viscosity.",
+            "\"temperature\"",
+        ),
+        optional(
             "limits",
             Kind::List(&Kind::Number(Range::Any, ""), 2, 2),
             "those of each picture",

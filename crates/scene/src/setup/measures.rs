@@ -27,8 +27,10 @@ pub(crate) struct Images {
     pub(crate) slice: (usize, f64),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Quantity {
+    /// A scalar, or what a turbulence model has.
+    Field(String),
     Speed,
     Component(usize),
     Pressure,
@@ -106,6 +108,7 @@ const PICTURES: usize = 20;
 
 fn images(t: &Reader<'_>, axes: &[Axis], snapshots: usize) -> Result<Images, Problem> {
     let quantity = match t.text("quantity") {
+        _ if t.has("field") => Quantity::Field(t.text("field").unwrap_or_default().into()),
         Some("u") => Quantity::Component(0),
         Some("v") => Quantity::Component(1),
         Some("w") if axes.len() == 2 => {

@@ -97,13 +97,22 @@ impl Watch for ImagesWatch {
         for (c, field) in self.fields.iter_mut().enumerate().take(dim) {
             view.centred(c, field);
         }
-        let quantity = self.images.quantity;
-        match quantity {
+        let quantity = self.images.quantity.clone();
+        let mut unit = String::new();
+        match &quantity {
+            Quantity::Field(name) => {
+                if let Some(other) = view.others().into_iter().find(|o| o.name == name) {
+                    self.fields[0].clear();
+                    self.fields[0].extend(other.values);
+                    unit = other.unit.into();
+                }
+                self.values = slice(&self.fields[0]);
+            }
             Quantity::Speed => {
                 let squares = |c: usize| self.fields[..dim].iter().map(|u| u[c] * u[c]).sum::<f64>();
                 self.values = cells.iter().map(|&c| squares(c).sqrt()).collect();
             }
-            Quantity::Component(c) => self.values = slice(&self.fields[c]),
+            Quantity::Component(c) => self.values = slice(&self.fields[*c]),
             Quantity::Pressure => {
                 view.pressure(&mut self.fields[0]);
                 self.values = slice(&self.fields[0]);
@@ -114,9 +123,19 @@ impl Watch for ImagesWatch {
             }
         }
         self.solid = slice(lambda);
-        let signed = !matches!(quantity, Quantity::Speed);
+        let signed = match &quantity {
+            Quantity::Speed => false,
+            Quantity::Field(_) => self.values.iter().any(|v| *v < 0.0),
+            _ => true,
+        };
         let limits = self.images.limits.unwrap_or_else(|| limits(&self.values, &self.solid, signed));
-        let label = match quantity {
+        let of_field;
+        let label = match &quantity {
+            Quantity::Field(name) => {
+                of_field =
+                    format!("{} in {}", name.replace('_', " "), if unit.is_empty() { "1" } else { &unit });
+                of_field.as_str()
+            }
             Quantity::Speed => "speed |u| in m/s",
             Quantity::Component(0) => "u in m/s",
             Quantity::Component(1) => "v in m/s",

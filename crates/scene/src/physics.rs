@@ -1,0 +1,224 @@
+//! The flow of a scene and what acts on it.
+use crate::build::BuildError;
+use crate::setup::{ModelChoice, ScalarSetup, ScaleChoice, Setup};
+use fv_mesh::{
+    BodyForce, Boussinesq, CartesianGrid, Field, FlowError, Hooked, Hooks, Modelled, Projection, Scalar,
+    ScalarTransport, Sides, TransportParams, Velocity,
+};
+use ibm::{Given, ImmersedScalar, StaticBodies, WallDistance};
+use interfaces::{BodyId, Checkpoint, Closure, Kinematics, RestartError};
+use turb::{
+    Inflow, KEpsilon, KOmega, KOmegaSst, Law, Realizable, RealizableKEpsilon, Smagorinsky,
+    SmagorinskyConstants, Sst, StandardKEpsilon, TwoEquation, Wale, WaleConstants, Wilcox, YPlus,
+};
+
+/// The flow, whatever acts on it: what a scene does not ask for is `None` or empty.
+pub(crate) type Physics<const D: usize> = Hooked<D, Option<Lift>, Option<Model<D>>, Scalars<D>>;
+/// A turbulence model, chosen at run time.
+pub(crate) type Model<const D: usize> = Modelled<D, Box<dyn SavedClosure>>;
+
+/// A closure whose state is saved.
+pub(crate) trait SavedClosure: Closure + Checkpoint {
+    /// How far from walls the first cells are, where wall functions ask for it.
+    fn y_plus(&self) -> Option<YPlus> {
+        None
+    }
+}
+impl SavedClosure for Smagorinsky {}
+impl SavedClosure for Wale {}
+impl<L: Law> SavedClosure for TwoEquation<L>
+where
+    Self: Closure,
+{
+    fn y_plus(&self) -> Option<YPlus> {
+        Some(TwoEquation::y_plus(self))
+    }
+}
+
+/// Buoyancy by one of the scalars.
+pub(crate) struct Lift {
+    scalar: usize,
+    law: Boussinesq,
+}
+
+impl<const D: usize> BodyForce<D, Scalars<D>> for Lift {
+    fn varies(&self) -> bool {
+        true
+    }
+    fn add(&self, flow: &Projection<D>, scalars: &Scalars<D>, source: &mut [Field<D>; D]) {
+        if let Some(one) = scalars.list.get(self.scalar) {
+            self.law.add(flow, &one.scalar, source);
+        }
+    }
+}
+
+/// The scalars of a scene.
+#[derive(Default)]
+pub(crate) struct Scalars<const D: usize> {
+    list: Vec<Carried<D>>,
+    bodies: StaticBodies,
+}
+
+/// A scalar, and what bodies at rest do to it.
+struct Carried<const D: usize> {
+    scalar: Scalar<D>,
+    setup: ScalarSetup,
+    held: Option<ImmersedScalar>,
+}
+
+impl<const D: usize> Scalars<D> {
+    /// Name, unit and field of each.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (&str, &str, &Field<D>)> {
+        self.list.iter().map(|s| (s.setup.name.as_str(), s.setup.unit.as_str(), s.scalar.field()))
+    }
+}
+
+impl<const D: usize> ScalarTransport<D> for Scalars<D> {
+    fn advance(&mut self, velocity: &Velocity<D>, time: f64, dt: f64) -> Result<(), FlowError> {
+        let bodies = &self.bodies;
+        self.list.iter_mut().try_for_each(|one| {
+            one.scalar.advance(velocity, time, dt)?;
+            one.hold(bodies, time + dt);
+            Ok(())
+        })
+    }
+    fn longest_step(&self) -> f64 {
+        self.list.iter().map(|s| s.scalar.longest_step()).fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl<const D: usize> Carried<D> {
+    fn hold(&mut self, bodies: &StaticBodies, time: f64) {
+        if let (Some(held), Some(formula)) = (&self.held, &self.setup.bodies) {
+            let value = formula.at(&[time]);
+            self.scalar.impose(|field| {
+                for b in (0..bodies.n_bodies()).map(BodyId) {
+                    held.apply(b, field, |_, _| value, |_| value);
+                }
+            });
+        }
+    }
+}
+
+impl<const D: usize> Checkpoint for Scalars<D> {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        for one in &self.list {
+            one.scalar.save(&mut |name, values| sink(&format!("{}.{name}", one.setup.name), values));
+        }
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        self.list.iter_mut().try_for_each(|one| {
+            let prefix = &one.setup.name;
+            one.scalar.restore(&|name| source(&format!("{prefix}.{name}")))
+        })
+    }
+}
+
+impl Setup {
+    /// The scene's bodies as solids at rest.
+    pub(crate) fn still(&self) -> StaticBodies {
+        self.bodies.list.iter().fold(StaticBodies::new(), |all, b| all.with(b.shape.clone(), b.pose))
+    }
+
+    /// `flow` with all that acts on it.
+    pub(crate) fn physics<const D: usize>(&self, flow: Projection<D>) -> Result<Physics<D>, BuildError> {
+        let scalars = self.scalars(&flow)?;
+        let lift = self.scalars.iter().enumerate().find_map(|(scalar, s)| {
+            let (expansion, reference) = s.buoyancy?;
+            Some(Lift { scalar, law: Boussinesq { expansion, reference, gravity: self.gravity } })
+        });
+        let model = self.model(flow.grid(), flow.sides(), TransportParams::default())?;
+        let hooks = Hooks { body_force: lift, forcing: (), closure: model, scalars };
+        Ok(Hooked::new(flow, hooks))
+    }
+
+    fn scalars<const D: usize>(&self, flow: &Projection<D>) -> Result<Scalars<D>, BuildError> {
+        let grid = flow.grid();
+        let mut all = Scalars { list: Vec::new(), bodies: self.still() };
+        for setup in &self.scalars {
+            let sides = std::array::from_fn(|a| setup.sides[a].clone());
+            let mut scalar = Scalar::new(grid, sides, setup.diffusivity)?.with_convection(setup.convection);
+            let value = |x: [f64; D]| {
+                setup.initial.at(&std::array::from_fn::<f64, 3, _>(|a| x.get(a).copied().unwrap_or(0.0)))
+            };
+            for c in 0..grid.n_cells() {
+                let x = grid.centre(grid.cell(c));
+                if !value(x).is_finite() {
+                    let at = std::array::from_fn(|a| x.get(a).copied().unwrap_or(0.0));
+                    let what = "the initial field of a scalar";
+                    return Err(BuildError::Formula { what, value: value(x), at });
+                }
+            }
+            scalar.set(value);
+            let held = match &setup.bodies {
+                Some(_) if all.bodies.n_bodies() > 0 => {
+                    let lattice = grid.lattice(None, flow.sides());
+                    let mut held = ImmersedScalar::new(Given::Value);
+                    held.place(&lattice, scalar.field().data().len(), &all.bodies)?;
+                    Some(held)
+                }
+                _ => None,
+            };
+            let mut one = Carried { scalar, setup: setup.clone(), held };
+            one.hold(&all.bodies, 0.0);
+            all.list.push(one);
+        }
+        Ok(all)
+    }
+
+    /// The turbulence model on the cells of `grid`, if the scene has one.
+    pub(crate) fn model<const D: usize>(
+        &self,
+        grid: &CartesianGrid<D>,
+        sides: &Sides<D>,
+        params: TransportParams,
+    ) -> Result<Option<Model<D>>, BuildError> {
+        let Some(turbulence) = &self.turbulence else { return Ok(None) };
+        let n = grid.n_cells();
+        let inflow = || -> Result<Inflow, turb::TurbulenceError> {
+            let (speed, intensity) = (turbulence.speed.unwrap_or(self.flow_speed()), turbulence.intensity);
+            match turbulence.scale {
+                ScaleChoice::Length(length) => Inflow::from_length(speed, intensity, length),
+                ScaleChoice::ViscosityRatio(ratio) => {
+                    Inflow::from_viscosity_ratio(speed, intensity, ratio, self.fluid.viscosity)
+                }
+            }
+        };
+        let closure: Box<dyn SavedClosure> = match turbulence.model {
+            ModelChoice::Sst => Box::new(KOmegaSst::new(Sst::default(), n, inflow()?)?),
+            ModelChoice::KOmega(beta, gamma) => {
+                let law = Wilcox::default();
+                let law = Wilcox { beta: beta.unwrap_or(law.beta), gamma: gamma.unwrap_or(law.gamma), ..law };
+                Box::new(KOmega::new(law, n, inflow()?)?)
+            }
+            ModelChoice::KEpsilon => Box::new(KEpsilon::new(StandardKEpsilon::default(), n, inflow()?)?),
+            ModelChoice::Realizable => {
+                Box::new(RealizableKEpsilon::new(Realizable::default(), n, inflow()?)?)
+            }
+            ModelChoice::Smagorinsky(c) => {
+                let usual = SmagorinskyConstants::default();
+                let constants = SmagorinskyConstants { c_s: c.unwrap_or(usual.c_s), ..usual };
+                Box::new(Smagorinsky::new(constants, n)?)
+            }
+            ModelChoice::Wale(c) => {
+                let usual = WaleConstants::default();
+                Box::new(Wale::new(WaleConstants { c_w: c.unwrap_or(usual.c_w) }, n)?)
+            }
+        };
+        let mut model = Modelled::new(closure, grid, sides, params)?;
+        let bodies = self.still();
+        if bodies.n_bodies() > 0 {
+            let mut distance = WallDistance::new();
+            distance.update(&grid.lattice(None, sides), &bodies)?;
+            let ours = model.transport_mut().wall_distance_mut();
+            ours.iter_mut().zip(distance.values()).for_each(|(d, b)| *d = d.min(*b));
+        }
+        Ok(Some(model))
+    }
+
+    /// The fastest of what sides, initial flow and bodies bring \[m/s\]; 1 without any.
+    fn flow_speed(&self) -> f64 {
+        let speed = self.speed();
+        if speed > 0.0 { speed } else { 1.0 }
+    }
+}

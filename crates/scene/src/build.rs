@@ -262,6 +262,7 @@ impl Setup {
         let moves = bodies.any_moves();
         let forcing = match bodies.forcing() {
             _ if !any => "no bodies",
+            _ if self.flow.algorithm == Algorithm::Simple => "walls at rest by cut cells",
             ForcingChoice::CutLinks => "walls at rest by cut links",
             ForcingChoice::Hfdib => "hybrid fictitious domain–immersed boundary",
             _ => "smooth direct forcing",
@@ -312,7 +313,6 @@ impl Setup {
                     "not asked for".into()
                 },
             ),
-            ("turbulence", false, "no closure".into()),
         ]
     }
 }

@@ -136,9 +136,21 @@ impl Setup {
                 out.push(format!("the smallest body is {cells:.1} cells across; below 8 its drag is off by 5 % and more: take more cells"));
             }
         }
+        // Bodies that reach beyond the box are its walls.
+        let within = |b: &&crate::setup::BodySetup| {
+            let bounds = b.shape.aabb().posed(&b.pose);
+            self.axes
+                .iter()
+                .enumerate()
+                .all(|(a, axis)| bounds.min[a] >= axis.lower() && bounds.max[a] <= axis.upper())
+        };
         for (a, axis) in self.axes.iter().enumerate() {
             let name = ["x", "y", "z"][a];
-            let widest = list.iter().map(|b| b.shape.aabb().posed(&b.pose).extent()[a]).fold(0.0, f64::max);
+            let widest = list
+                .iter()
+                .filter(within)
+                .map(|b| b.shape.aabb().posed(&b.pose).extent()[a])
+                .fold(0.0, f64::max);
             if widest > 0.5 * axis.length() && !self.bodies.any_moves() {
                 out.push(format!(
                     "bodies block {:.0} % of the box along {name}",
@@ -172,7 +184,7 @@ impl Setup {
                 ));
             }
         }
-        let fluid_inside = list.iter().map(|b| b.shape.inertia(1.0).volume).sum::<f64>();
+        let fluid_inside = list.iter().filter(within).map(|b| b.shape.inertia(1.0).volume).sum::<f64>();
         let volume: f64 = self.axes.iter().map(Axis::length).product();
         if fluid_inside > 0.6 * volume {
             out.push(format!("bodies fill {:.0} % of the box", 100.0 * fluid_inside / volume));

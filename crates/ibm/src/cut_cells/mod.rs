@@ -8,9 +8,9 @@ use interfaces::{Bodies, BodyId, CutCells, OpenFace, Point, Vector, VelocityFiel
 
 /// Vertices nearer to a surface than this share of the narrowest spacing are on it, which is inside: walls along the lines of
 /// the grid leave no slivers.
-const ON: f64 = 1e-9;
+const ON: f64 = 1e-6;
 /// Faces and walls below this share of a face are none.
-const LEAST: f64 = 1e-12;
+const LEAST: f64 = 1e-6;
 
 /// Which part of every face of a staggered grid bodies at rest leave open, and which wall every cell has: see [`CutCells`].
 ///

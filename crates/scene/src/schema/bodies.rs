@@ -1,5 +1,5 @@
 //! Materials, shapes, bodies and what moves them.
-use super::{Key, Kind, LENGTH, METRES, POINT, Range, TIME, Table, optional, required};
+use super::{Key, Kind, LENGTH, METRES, POINT, Range, SPACE, TIME, Table, optional, required};
 
 const SPACE_POINT: Kind = Kind::List(&METRES, 3, 3);
 const SHARE: Kind = Kind::Number(Range::Within(0.0, 1.0), "1");
@@ -49,7 +49,7 @@ pub(super) static MATERIAL: Table = Table {
 };
 
 const RADIUS: Key = required("radius", LENGTH, "Radius.", "5e-4");
-pub(super) static SHAPES: [(&str, &Table); 9] = [
+pub(super) static SHAPES: [(&str, &Table); 10] = [
     ("disc", &Table { about: "A disc, in plane scenes.", keys: &[RADIUS] }),
     ("sphere", &Table { about: "A sphere.", keys: &[RADIUS] }),
     (
@@ -126,6 +126,22 @@ pub(super) static SHAPES: [(&str, &Table); 9] = [
                 "The parts.",
                 "[{ shape = { type = \"sphere\", radius = 1e-3 } }, { shape = { type = \"sphere\", radius = 1e-3 }, position = [2e-3, 0.0, 0.0] }]",
             )],
+        },
+    ),
+    (
+        "formula",
+        &Table {
+            about: "Any solid, by a formula of the signed distance from its surface: negative inside, and near the surface the distance itself. In the plane z is 0.",
+            keys: &[
+                required(
+                    "distance",
+                    Kind::Formula(SPACE, "m"),
+                    "The distance, in the shape's own frame.",
+                    "\"sqrt(x^2 + y^2) - 0.05 - 0.01*cos(5*atan2(y, x))\"",
+                ),
+                required("lower", POINT, "Lower corner of a box that holds the solid.", "[-0.06, -0.06]"),
+                required("upper", POINT, "Its upper corner.", "[0.06, 0.06]"),
+            ],
         },
     ),
 ];
@@ -205,7 +221,12 @@ pub(super) static BODY: Table = Table {
         required("shape", Kind::Choice("type", &SHAPES), "Its shape.", "{ type = \"disc\", radius = 5e-4 }"),
         BODY_MATERIAL,
         DENSITY,
-        required("position", POINT, "Where its centre is.", "[5e-3, 1.6e-2]"),
+        required(
+            "position",
+            POINT,
+            "Where its centre of mass is; of a formula, where the origin of its coordinates is.",
+            "[5e-3, 1.6e-2]",
+        ),
         ORIENTATION,
         VELOCITY,
         SPIN,

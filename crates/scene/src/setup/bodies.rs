@@ -339,14 +339,14 @@ fn body(
             damping: spring.number("damping").unwrap_or(0.0),
         }),
     };
+    let (shape, centre) = shapes::placed(t, "shape", context)?;
+    let orientation = shapes::orientation(t)?;
+    let position = t.point_of("position", dim)?.unwrap_or_default() + orientation * centre;
     Ok(BodySetup {
         name: t.text("name").map_or_else(|| number.to_string(), Into::into),
-        shape: shapes::shape(t, "shape", context, 1.0)?,
+        shape,
         material: materials.of(t)?,
-        pose: Pose {
-            position: t.point_of("position", dim)?.unwrap_or_default(),
-            orientation: shapes::orientation(t)?,
-        },
+        pose: Pose { position, orientation },
         twist,
         motion,
         tether,

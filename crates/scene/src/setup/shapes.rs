@@ -1,13 +1,42 @@
 //! Shapes.
 use super::Context;
+use crate::expression::Expression;
 use crate::problem::Problem;
 use crate::reader::Reader;
 use dem::{
-    Capsule, ConvexPolyhedron, Cuboid, Cylinder, Disc, Ellipsoid, Part, Shape, Sphere, TriangleMesh, Union,
+    Capsule, ConvexPolyhedron, Cuboid, Cylinder, Disc, Ellipsoid, Implicit, Part, Shape, Sphere,
+    TriangleMesh, Union,
 };
-use interfaces::{Pose, Rotation, Vector};
+use interfaces::{Aabb, Point, Pose, Rotation, Solid, Vector};
 use nalgebra::Unit;
 use std::sync::Arc;
+
+/// A solid by the formula of its signed distance.
+struct ByFormula {
+    distance: Expression,
+    /// By how much it is enlarged.
+    factor: f64,
+    bounds: Aabb,
+    plane: bool,
+}
+
+/// How well volume and moments of a formula's solid have to be known.
+const VOLUME_TOLERANCE: f64 = 1e-3;
+
+impl Solid for ByFormula {
+    fn signed_distance(&self, x: Point, _: f64) -> f64 {
+        let own = [x.x, x.y, if self.plane { 0.0 } else { x.z }].map(|c| c / self.factor);
+        let mut distance = self.factor * self.distance.at(&own);
+        // Nothing of it is outside its box.
+        for a in 0..if self.plane { 2 } else { 3 } {
+            distance = distance.max(self.bounds.min[a] - x[a]).max(x[a] - self.bounds.max[a]);
+        }
+        if self.plane { distance.max(x.z.abs() - self.bounds.max.z) } else { distance }
+    }
+    fn aabb(&self) -> Aabb {
+        self.bounds
+    }
+}
 
 /// A shape that can be made in any size.
 pub(crate) type Recipe<'a> = Box<dyn Fn(f64) -> Result<Arc<dyn Shape>, Problem> + 'a>;
@@ -15,6 +44,47 @@ pub(crate) type Recipe<'a> = Box<dyn Fn(f64) -> Result<Arc<dyn Shape>, Problem> 
 /// The shape in `key`, to be enlarged by a factor.
 pub(super) fn recipe<'a>(body: &'a Reader<'a>, key: &'static str, context: &'a Context<'_>) -> Recipe<'a> {
     Box::new(move |factor| shape(body, key, context, factor))
+}
+
+/// The shape in `key`, and where its centre of mass is in the coordinates that its formula, if it has one, is written in.
+pub(super) fn placed(
+    body: &Reader<'_>,
+    key: &str,
+    context: &Context<'_>,
+) -> Result<(Arc<dyn Shape>, Vector), Problem> {
+    match body.choice(key, "type") {
+        Some(("formula", t)) => {
+            let shape = formula(body, key, &t, context, 1.0)?;
+            let centre = shape.centre().coords;
+            Ok((Arc::new(shape), centre))
+        }
+        _ => Ok((shape(body, key, context, 1.0)?, Vector::zeros())),
+    }
+}
+
+fn formula(
+    body: &Reader<'_>,
+    key: &str,
+    t: &Reader<'_>,
+    context: &Context<'_>,
+    factor: f64,
+) -> Result<Implicit<ByFormula>, Problem> {
+    let corner = |key: &str| -> Result<Vector, Problem> {
+        Ok(factor * t.vector_of(key, context.dim)?.unwrap_or_default())
+    };
+    let (mut lower, mut upper) = (corner("lower")?, corner("upper")?);
+    if (0..context.dim).any(|a| lower[a] >= upper[a]) {
+        return Err(t.fail("upper", "the upper corner has to be above the lower one along every axis"));
+    }
+    if context.dim == 2 {
+        // The same at all heights.
+        let height = (upper - lower).norm();
+        (lower[2], upper[2]) = (-height, height);
+    }
+    let distance = t.formula("distance", &["x", "y", "z"])?.unwrap_or(Expression::constant(0.0));
+    let bounds = Aabb { min: lower.into(), max: upper.into() };
+    let solid = ByFormula { distance, factor, bounds, plane: context.dim == 2 };
+    Implicit::new("formula", solid, VOLUME_TOLERANCE).map_err(|e| body.fail(key, e))
 }
 
 /// The shape in `key`, enlarged by `factor`.
@@ -90,6 +160,7 @@ pub(super) fn shape(
                 _ => Err(told(&"which format? The name has to end in .stl or .obj")),
             }
         }
+        "formula" => Ok(Arc::new(formula(body, key, &t, context, factor)?)),
         _ => {
             let part = |t: &Reader<'_>| -> Result<Part, Problem> {
                 let position = factor * t.vector_of("position", context.dim)?.unwrap_or_default();

@@ -26,3 +26,8 @@ pub use interfaces;
 pub use mor;
 #[cfg(feature = "turb")]
 pub use turb;
+
+/// The programs of the guide.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/guide.md")]
+struct Guide;

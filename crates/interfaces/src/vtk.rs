@@ -37,23 +37,30 @@ impl<'a> DataArray<'a> {
     }
     /// Single-precision numbers: half the file, seven digits, enough for pictures.
     pub fn float32(name: &'a str, components: usize, values: impl IntoIterator<Item = f64>) -> Self {
-        let bytes = values.into_iter().flat_map(|v| (v as f32).to_le_bytes()).collect();
+        let bytes = bytes(values, |v: f64| (v as f32).to_le_bytes());
         Self { name, components, kind: "Float32", bytes }
     }
     /// Double-precision numbers.
     pub fn float64(name: &'a str, components: usize, values: impl IntoIterator<Item = f64>) -> Self {
-        let bytes = values.into_iter().flat_map(f64::to_le_bytes).collect();
+        let bytes = bytes(values, f64::to_le_bytes);
         Self { name, components, kind: "Float64", bytes }
     }
     /// Whole numbers: connectivity, offsets, ids.
     pub fn int64(name: &'a str, values: impl IntoIterator<Item = i64>) -> Self {
-        let bytes = values.into_iter().flat_map(i64::to_le_bytes).collect();
+        let bytes = bytes(values, i64::to_le_bytes);
         Self { name, components: 1, kind: "Int64", bytes }
     }
     /// Bytes: types of cells, flags.
     pub fn uint8(name: &'a str, values: impl IntoIterator<Item = u8>) -> Self {
         Self { name, components: 1, kind: "UInt8", bytes: values.into_iter().collect() }
     }
+}
+
+fn bytes<T, const N: usize>(values: impl IntoIterator<Item = T>, of: impl Fn(T) -> [u8; N]) -> Vec<u8> {
+    let values = values.into_iter();
+    let mut bytes = Vec::with_capacity(N * values.size_hint().0);
+    values.for_each(|v| bytes.extend_from_slice(&of(v)));
+    bytes
 }
 
 /// A section of a piece: `("CellData", "Scalars=\"lambda\"", arrays)`.

@@ -279,7 +279,7 @@ impl<const D: usize, A: Flow<D>, P: Guests> View for Seen<'_, D, A, P> {
     }
     fn centred(&self, c: usize, out: &mut Vec<f64>) {
         out.clear();
-        out.extend(self.flow.centred_velocity(c));
+        self.flow.centred_velocity(c).for_each(|u| out.push(u));
     }
     fn pressure(&self, out: &mut Vec<f64>) {
         out.clear();

@@ -28,28 +28,25 @@ impl<'a> Arrays<'a> {
             return Err(OutputError::Name { name: name.into() });
         }
         let expected = cells * components;
-        let (mut found, mut beyond) = (0, None);
-        let kept =
-            values.into_iter().take(expected.saturating_add(1)).enumerate().filter_map(|(i, value)| {
-                found += 1;
-                let wanted = i < expected && keep.is_none_or(|k| k[i / components]);
-                if wanted
-                    && precision == Precision::Single
-                    && value.is_finite()
-                    && !(value as f32).is_finite()
-                {
-                    beyond.get_or_insert(value);
-                }
-                wanted.then_some(value)
-            });
-        let array = DataArray::float(name, components, precision, kept);
-        if found != expected {
-            let found = found.div_ceil(components);
+        let mut all = Vec::with_capacity(expected);
+        values.into_iter().take(expected.saturating_add(1)).for_each(|value| all.push(value));
+        if all.len() != expected {
+            let found = all.len().div_ceil(components);
             return Err(OutputError::Count { name: name.into(), expected: cells, found });
         }
-        if let Some(value) = beyond {
+        if let Some(keep) = keep {
+            let mut number = 0;
+            all.retain(|_| {
+                number += 1;
+                keep[(number - 1) / components]
+            });
+        }
+        if precision == Precision::Single
+            && let Some(&value) = all.iter().find(|v| v.is_finite() && !(**v as f32).is_finite())
+        {
             return Err(OutputError::Range { name: name.into(), value });
         }
+        let array = DataArray::float(name, components, precision, all);
         self.names.push(name);
         self.arrays.push(array);
         Ok(())

@@ -68,23 +68,20 @@ impl<'a, const D: usize> CellWriter<'a, D> {
     #[must_use]
     pub fn vector<I: IntoIterator<Item = f64>>(mut self, name: &'a str, components: [I; D]) -> Self {
         let expected = self.grid.n_cells();
-        let mut components = components.map(IntoIterator::into_iter);
-        let mut found = [0; D];
-        let mut next = |i: usize, c: usize| match components.get_mut(c) {
-            Some(component) => {
-                let value = component.next();
-                found[c] += usize::from(value.is_some() && found[c] == i);
-                value.unwrap_or(0.0)
+        let mut values = vec![0.0; 3 * expected];
+        for (c, component) in components.into_iter().enumerate() {
+            let mut found = 0;
+            component.into_iter().take(expected.saturating_add(1)).for_each(|value| {
+                if let Some(slot) = values.get_mut(3 * found + c) {
+                    *slot = value;
+                }
+                found += 1;
+            });
+            if found != expected {
+                self.error.get_or_insert(OutputError::Count { name: name.into(), expected, found });
             }
-            None => 0.0,
-        };
-        self.add(name, 3, (0..3 * expected).map(|i| next(i / 3, i % 3)));
-        for c in 0..D {
-            next(expected, c);
         }
-        if let Some(&found) = found.iter().find(|&&f| f != expected) {
-            self.error.get_or_insert(OutputError::Count { name: name.into(), expected, found });
-        }
+        self.add(name, 3, values);
         self
     }
 

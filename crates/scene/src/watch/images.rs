@@ -94,10 +94,12 @@ impl Watch for ImagesWatch {
         let ([a, b], cells) = Self::cells(view, self.images.slice);
         let slice = |field: &[f64]| -> Vec<f64> { cells.iter().map(|&c| field[c]).collect() };
         let dim = view.dim();
-        for (c, field) in self.fields.iter_mut().enumerate().take(dim) {
-            view.centred(c, field);
-        }
         let quantity = self.images.quantity.clone();
+        if !matches!(quantity, Quantity::Field(_) | Quantity::Pressure) {
+            for (c, field) in self.fields.iter_mut().enumerate().take(dim) {
+                view.centred(c, field);
+            }
+        }
         let mut unit = String::new();
         match &quantity {
             Quantity::Field(name) => {
@@ -110,7 +112,8 @@ impl Watch for ImagesWatch {
             }
             Quantity::Speed => {
                 let squares = |c: usize| self.fields[..dim].iter().map(|u| u[c] * u[c]).sum::<f64>();
-                self.values = cells.iter().map(|&c| squares(c).sqrt()).collect();
+                self.values.clear();
+                self.values.extend(cells.iter().map(|&c| squares(c).sqrt()));
             }
             Quantity::Component(c) => self.values = slice(&self.fields[*c]),
             Quantity::Pressure => {

@@ -49,7 +49,7 @@ impl Canvas {
     /// A white canvas.
     pub(crate) fn new(width: usize, height: usize) -> Self {
         let clip = [0, 0, width as i32, height as i32];
-        let rgb = WHITE.into_iter().cycle().take(3 * width * height).collect();
+        let rgb = WHITE.repeat(width * height);
         Self { width, height, rgb, mask: vec![0.0; width * height], clip }
     }
 

@@ -93,8 +93,8 @@ impl Section<'_> {
             for (pixel, column) in pixels.chunks_exact_mut(3).zip(&columns) {
                 let value = at(layer.values, column, row);
                 let mut colour = map.at((value - low) / (high - low));
-                if let Some(solid) = layer.solid {
-                    let share = at(solid, column, row).clamp(0.0, 1.0);
+                let share = layer.solid.map_or(0.0, |solid| at(solid, column, row).clamp(0.0, 1.0));
+                if share > 0.0 {
                     colour = mix(colour, WHITE, 0.55 * share);
                     // A line where half of a cell is solid.
                     if (share - 0.5).abs() < 0.25 {

@@ -6,6 +6,28 @@
 //! the strategy that gives the bodies their new velocities with one pressure solution per step;
 //! `()` in its place is the plain flow loop; any [`FlowSolver`] may be the flow. [`hfdib_dem`] is the paper's algorithm. [`run`] makes the steps and calls [`Observer`]s;
 //! [`Ledger`] keeps the books of momentum and energy; [`SnapshotFeed`] and [`BodyPaths`] feed models made of snapshots; [`save`] and [`load`] keep a run's state.
+//!
+//! ```
+//! use coupling::{Particles, Simulation, WeightBalance};
+//! use dem::{Disc, Material, RigidBodies};
+//! use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Side};
+//! use ibm::SmoothForcing;
+//! use interfaces::{BodyId, Freedom, Kinematics, Periods, Pose, Twist, Vector};
+//! let water = Fluid { density: 1000.0, viscosity: 1e-6 };
+//! let grid = CartesianGrid::new([40, 60], [4e-3, 6e-3])?;
+//! let flow = Projection::new(grid, Side::WALL.everywhere(), water)?.with_diffusion(Diffusion::Explicit);
+//! let mut bodies = RigidBodies::new(Periods::default());
+//! let stone = Material { density: 2500.0, ..Material::default() };
+//! bodies.add(Disc::new(5e-4)?, stone, Pose::at([2e-3, 4e-3, 0.0]), Twist::default(), Freedom::PLANAR)?;
+//! let gravity = Vector::new(0.0, -9.81, 0.0);
+//! let discs = Particles::new(bodies, SmoothForcing::new(water.density), water.density, gravity);
+//! let mut fall = Simulation::new(flow, discs, WeightBalance::None)?;
+//! for _ in 0..20 {
+//!     fall.step(1e-4)?;
+//! }
+//! assert!(fall.particles.bodies.twist(BodyId(0)).linear.y < 0.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 #![deny(missing_docs)]
 
 mod checkpoint;

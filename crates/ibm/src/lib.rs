@@ -20,6 +20,30 @@
 //! from [`WallRows`].
 //!
 //! The crate works on any [`interfaces::VelocityField`] and any [`interfaces::Bodies`].
+//!
+//! ```
+//! use ibm::{SolidFraction, StaticBodies};
+//! use interfaces::{Aabb, Lattice, Nodes, Point, Pose, Solid, Vector};
+//! struct Disc(f64);
+//! impl Solid for Disc {
+//!     fn signed_distance(&self, x: Point, _: f64) -> f64 {
+//!         x.x.hypot(x.y) - self.0
+//!     }
+//!     fn aabb(&self) -> Aabb {
+//!         Aabb::around(Point::origin(), Vector::new(self.0, self.0, 0.0))
+//!     }
+//! }
+//! // The centres of 40 × 40 cells of a unit square, walls around.
+//! let centres = || Nodes::uniform(0.0125, 0.025, 40, false);
+//! let lattice = Lattice::new([centres(), centres()], 0, [1, 40]);
+//! let bodies = StaticBodies::new().with(Disc(0.3), Pose::at([0.5, 0.5, 0.0]));
+//! let (mut fraction, mut lambda) = (SolidFraction::new(), vec![0.0; 1600]);
+//! fraction.update(&lattice, &bodies)?;
+//! fraction.add_to_dense(&lattice, &mut lambda);
+//! let area = lambda.iter().sum::<f64>() / 1600.0;
+//! assert!((area / (std::f64::consts::PI * 0.09) - 1.0).abs() < 1e-3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 #![deny(missing_docs)]
 
 mod clip;

@@ -290,3 +290,118 @@ fn a_cylinder_swings() {
     let velocity = result["bodies"][0]["velocity"][0].as_f64().unwrap();
     assert!((velocity + 1.0).abs() < 1e-4, "{velocity}");
 }
+
+/// A warm sphere in a stream, large eddies modelled: `\n`-separated tables.
+const WARM: &str = r#"
+gravity = [0.0, -9.81, 0.0]
+turbulence = { model = "smagorinsky", constant = 0.1 }
+[grid]
+cells = [16, 12, 12]
+size = [1.6, 1.2, 1.2]
+[sides]
+x_min = { type = "inlet", velocity = [1.0, 0.0, 0.0] }
+x_max = "outlet"
+y = "symmetry"
+z = "wall"
+[fluid]
+density = 1.0
+nu = 1e-3
+[scalars.temperature]
+diffusivity = 1e-3
+bodies = 1.0
+expansion = 0.05
+[[bodies]]
+shape = { type = "sphere", radius = 0.25 }
+position = [0.6, 0.6, 0.6]
+motion = "fixed"
+[time]
+end = 0.6
+[output]
+snapshots = 2
+field = "temperature"
+"#;
+
+/// Half a run, and the rest of it: the same bits as the whole.
+#[test]
+fn a_warm_sphere_with_large_eddies_goes_on_as_if_it_had_not_stopped() {
+    let [whole, halves] = ["warm-whole", "warm-halves"].map(folder);
+    let run = |out: &Path, more: &[&str], resume: bool| {
+        let more: Vec<String> = more.iter().map(|s| (*s).into()).collect();
+        let scene = Scene::parse("warm.toml", WARM, &more).unwrap();
+        scene.run(&Options { resume, ..quiet(out) }, &AtomicBool::new(false)).unwrap().result
+    };
+    let all = run(&whole, &[], false);
+    run(&halves, &["time.end=0.3", "output.snapshots=1"], false);
+    let rest = run(&halves, &[], true);
+    assert_eq!(all, rest);
+    let temperature = &all["fields"]["temperature"];
+    assert!((temperature["most"].as_f64().unwrap() - 1.0).abs() < 1e-2, "{temperature}");
+    assert!(all["fields"]["eddy_viscosity"]["most"].as_f64().unwrap() > 1e-4);
+    assert!(whole.join("images/00002.png").exists());
+    [whole, halves].iter().for_each(|out| std::fs::remove_dir_all(out).unwrap());
+}
+
+/// What cannot be together is told, by its key.
+#[test]
+fn physics_that_does_not_go_together_is_told() {
+    for (more, told) in [
+        ("turbulence=\"sst\"", None),
+        ("flow.algorithm=\"simple\"", Some("large eddies are not steady")),
+        ("output.field=\"salt\"", Some("there are: temperature, eddy_viscosity")),
+        ("bodies.0.motion=\"free\"", Some("for bodies at rest")),
+        ("turbulence.length=0.1", Some("no key \"length\"")),
+        ("scalars.temperature.sides.x_min={type=\"value\"}", Some("value")),
+    ] {
+        let told_here = Scene::parse("warm.toml", WARM, &[more.into()]).err().map(|e| e.to_string());
+        match told {
+            None => assert!(told_here.is_none(), "{more}: {told_here:?}"),
+            Some(part) => {
+                assert!(told_here.as_ref().is_some_and(|t| t.contains(part)), "{more}: {told_here:?}")
+            }
+        }
+    }
+}
+
+/// A steady channel with a wall inside, by k–ω SST: it slows the fluid down, and its drag is told.
+#[test]
+fn a_wall_in_a_steady_channel_has_friction() {
+    let text = r#"
+        turbulence = { model = "sst", intensity = 0.05, length = 0.07 }
+        [grid]
+        cells = [40, 20]
+        size = [4.0, 1.1]
+        [sides]
+        x_min = { type = "inlet", velocity = [1.0, 0.0] }
+        x_max = { type = "pressure" }
+        y = "symmetry"
+        [fluid]
+        density = 1.0
+        nu = 1e-5
+        [flow]
+        algorithm = "simple"
+        convection = "upwind"
+        tolerance = 1e-4
+        iterations = 400
+        [[bodies]]
+        name = "floor"
+        shape = { type = "formula", distance = "y - 0.12", lower = [-1.0, -1.0], upper = [5.0, 0.2] }
+        position = [0.0, 0.0]
+        motion = "fixed"
+        [forces]
+        velocity = 1.0
+        area = 4.0
+        [time]
+        end = 1.0
+        [output]
+        field = "k"
+    "#;
+    let out = folder("steady");
+    let scene = Scene::parse("channel.toml", text, &[]).unwrap();
+    let run = scene.run(&quiet(&out), &AtomicBool::new(false)).unwrap();
+    std::fs::remove_dir_all(&out).unwrap();
+    assert_eq!(run.ending, Ending::Done, "{}", run.result["residual"]);
+    let drag = run.result["forces"][0]["coefficients"]["last"][0].as_f64().unwrap();
+    // Between those of a smooth plate at Re 4e5 with and without a fully turbulent layer, twice as wide for the coarse cells.
+    assert!((2e-3..1.2e-2).contains(&drag), "{drag}");
+    assert!(run.result["y_plus"]["mean"].as_f64().unwrap() > 10.0);
+}

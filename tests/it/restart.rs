@@ -94,23 +94,6 @@ fn n_steps_are_k_and_then_n_minus_k() {
     });
 }
 
-/// The slip that markers on the surface expect is in a saved state, too.
-#[test]
-fn markers_remember_the_shear() {
-    with_threads(1, || {
-        let build = || build_with(false, SmoothForcing::new(FLUID.density).with_viscosity(FLUID.viscosity));
-        let path = scratch("shear.bin");
-        let (mut first, mut second) = (build(), build());
-        (0..20).for_each(|_| first.step(2e-4).unwrap());
-        coupling::save(&path, &first).unwrap();
-        coupling::load(&path, &mut second).unwrap();
-        for fall in [&mut first, &mut second] {
-            (0..5).for_each(|_| fall.step(2e-4).unwrap());
-        }
-        assert!(bits(&first) == bits(&second));
-    });
-}
-
 /// The state before the last is kept, and offered when the last one is damaged.
 #[test]
 fn an_older_state_is_at_hand() {

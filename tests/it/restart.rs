@@ -18,17 +18,13 @@ fn scratch(name: &str) -> PathBuf {
 
 /// Two discs, or one that lands on the floor and is in contact when the run is cut.
 fn build(floor: bool) -> Fall {
-    build_with(floor, SmoothForcing::new(FLUID.density))
-}
-
-fn build_with(floor: bool, forcing: SmoothForcing) -> Fall {
     let mut scene = Scene { cells_per_diameter: 8, floor, ..Scene::default() };
     if floor {
         scene.bodies = 1;
         scene.densities = vec![8000.0];
         scene.shift = [0.0, -15.45e-3];
     }
-    scene.build(forcing).unwrap()
+    scene.build(SmoothForcing::new(FLUID.density)).unwrap()
 }
 
 fn bits(fall: &Fall) -> Vec<u64> {

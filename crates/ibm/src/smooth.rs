@@ -1,4 +1,5 @@
 //! Direct forcing at surface markers, spread by a smooth kernel.
+mod curvature;
 mod markers;
 mod slip;
 mod stencils;
@@ -7,25 +8,30 @@ use crate::crowd::Crowd;
 use crate::forcing::LayerSums;
 use crate::solid_fraction::check;
 use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction, ViscousStep, surface_elements};
+use curvature::follow_curvature;
 use interfaces::{
     Bodies, BodyId, Kinematics, Point, Renumbering, Vector, VelocityField, Wrench,
 };
 use markers::Markers;
 
-/// Smooth direct forcing (Uhlmann 2005; several passes as in Wang et al. 2008; a smooth [`Kernel`] as Yang et al. 2009) by markers on the bodies' surface.
+/// Smooth direct forcing (Uhlmann 2005; several passes as in Wang et al. 2008; a smooth [`Kernel`] as Yang et al. 2009), with
+/// markers moved into the solid by the kernel's own [`Kernel::retraction`] r_d and, where the surface is curved, by 1.75 r_d² times the sum of
+/// its principal curvatures more, which puts the no-slip surface where the body's is.
 ///
 /// ```text
-/// (1 + β P_t) Δg_m = (U + Ω×r_m + u_s + s − E u)_m,   u += Σ_m δ_h(x − x_m) (Δg_m/c) A_m h,   s = −β P_t g_m,   P_t = 1 − nnᵀ
+/// Δg_m = (U + Ω×r_m + u_s − E u)_m,   u += Σ_m δ_h(x − x_m) (Δg_m/c) A_m h
 /// ```
 ///
-/// u_s is the surface's own motion, if it has one; E reads the velocity at the markers with the same kernel that spreads; g sums up the Δg of the passes of a step.
+/// u_s is the surface's own motion, if it has one; E reads the velocity at the markers with the same kernel that spreads.
 /// Momentum is conserved: what the fluid gets, the body loses.
 ///
-/// s is what markers read past the surface where the fluid does not slip: the kernel blurs the kink of the velocity there, so they read r τ_t/μ too little, τ being the force per area that they put on the fluid and
-/// r = 0.31 to 0.34 cells ([`Kernel::Yang`]). With β = r h/(c ν dt) ([`begin`](Forcing::begin) tells ν dt) the surface is right to second order in the size of the cells for drag, torque and strain alike.
+/// [`with_surface_markers`](Self::with_surface_markers) puts the markers on the surface itself and makes up for the kernel's blur by the shear there, which is right to second order in the size of the cells
+/// for drag, torque and strain alike.
 #[derive(Clone, Debug)]
 pub struct SmoothForcing {
     density: f64,
+    /// Are the markers on the surface itself?
+    on_surface: bool,
     /// The step under way, once one is known.
     step: Option<ViscousStep>,
     /// Other than that suited.
@@ -52,6 +58,7 @@ impl SmoothForcing {
     pub fn new(density: f64) -> Self {
         Self {
             density,
+            on_surface: false,
             step: None,
             kernel: None,
             passes: 3,
@@ -75,6 +82,20 @@ impl SmoothForcing {
     #[must_use]
     pub fn with_passes(mut self, passes: usize) -> Self {
         self.passes = passes.max(1);
+        self
+    }
+    /// Markers on the surface itself. Where there is shear γ = τ/μ, the kernel blurs the kink of the velocity, and they read r γ less than there is without slip (r = 0.31 to 0.34 cells for
+    /// [`Kernel::Yang`]), τ being the force per area that they put on the fluid. They ask for that:
+    ///
+    /// ```text
+    /// (1 + β P_t) Δg_m = (U + Ω×r_m + u_s + s − E u)_m,   s = −β P_t g_m,   β = r h/(c ν dt),   P_t = 1 − nnᵀ
+    /// ```
+    ///
+    /// g is the sum of the Δg of the passes of a step. ν dt is told by [`begin`](Forcing::begin) (`coupling::Particles` do); before, it is as if there were no shear. The film that this leaves is
+    /// [`SmoothFilm::of_surface_markers`](crate::SmoothFilm::of_surface_markers).
+    #[must_use]
+    pub fn with_surface_markers(mut self) -> Self {
+        self.on_surface = true;
         self
     }
     /// How often λ of a body was computed, over all velocity components.
@@ -107,9 +128,14 @@ impl SmoothForcing {
                 return Err(IbmError::TooCoarse { body: b, size, spacing: h, least: LEAST_CELLS });
             }
             let spacing = if dim == 2 { 1.0 } else { SPACING };
-            markers.elements = surface_elements(bodies.solid(b), spacing * h, 0.0);
+            let (retraction, solid) = (kernel.retraction() * h, bodies.solid(b));
+            let offset = if self.on_surface { 0.0 } else { -retraction };
+            markers.elements = surface_elements(solid, spacing * h, offset);
             if markers.elements.is_empty() {
-                return Err(IbmError::NoSurface { body: b, offset: 0.0 });
+                return Err(IbmError::NoSurface { body: b, offset });
+            }
+            if !self.on_surface {
+                markers.elements.iter_mut().for_each(|e| follow_curvature(e, solid, dim, h, retraction));
             }
             let scale = self.density * h / kernel.self_overlap();
             markers.masses = markers.elements.iter().map(|e| e.area * scale).collect();
@@ -217,7 +243,8 @@ impl Forcing for SmoothForcing {
             }
             self.bodies[b].reaction = Wrench::default();
             let (kernel, markers) = (self.kernel(velocity.dim()), &mut self.bodies[b]);
-            markers.slip.begin(self.step, kernel, markers.cell.powf(1.0 / velocity.dim() as f64));
+            let step = self.step.filter(|_| self.on_surface);
+            markers.slip.begin(step, kernel, markers.cell.powf(1.0 / velocity.dim() as f64));
         }
         if std::mem::take(&mut self.moved) {
             self.find_alone(velocity, bodies);

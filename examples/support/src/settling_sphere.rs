@@ -1,6 +1,7 @@
 //! A sphere that settles in a closed box (ten Cate, Nieuwstad, Derksen & Van den Akker 2002, Phys. Fluids 14, 4012).
 use crate::Outcome;
 use crate::axes::gathered;
+use crate::film::film;
 use crate::coupled::{Fall, Slice, View};
 use crate::picture::{Disc, Domain};
 use crate::prescribed_bodies::{PrescribedBodies, forced_step};
@@ -9,7 +10,7 @@ use clap::ValueEnum;
 use coupling::{Particles, Simulation, WeightBalance};
 use dem::{Chen, ContactLaw, HalfSpace, Lubricated, Material, RigidBodies, Sphere};
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Sampler, Side};
-use ibm::{Forcing, SmoothFilm, SmoothForcing};
+use ibm::{Forcing, SmoothForcing};
 use interfaces::{BodyId, Freedom, Kinematics, Periods, Point, Pose, Twist, Vector};
 use std::f64::consts::PI;
 
@@ -124,9 +125,9 @@ impl SettlingSphere {
     ///
     /// # Errors
     /// None with a sensible number of cells.
-    pub fn lubricated(&self) -> Outcome<Lubricated<Chen>> {
+    pub fn lubricated(&self, surface_markers: bool) -> Outcome<Lubricated<Chen>> {
         let [_, viscosity] = self.case.oil();
-        Ok(Lubricated::new(Chen::default(), viscosity, SmoothFilm::new(self.spacing())?)?)
+        Ok(Lubricated::new(Chen::default(), viscosity, film(surface_markers, self.spacing())?)?)
     }
 
     /// The box: cubes where the sphere falls, cells that grow by a tenth towards the sides and the top.
@@ -180,7 +181,7 @@ impl SettlingSphere {
         let grid = CartesianGrid::from_axes([axis(0, 0.37)?, axis(1, 0.3)?, axis(2, 0.11)?])?;
         let mut flow =
             Projection::new(grid, Side::WALL.everywhere(), fluid)?.with_diffusion(Diffusion::Explicit);
-        let mut forcing = SmoothForcing::new(fluid.density);
+        let mut forcing = SmoothForcing::new(fluid.density).with_surface_markers();
         let at = BOX.map(|l| 0.5 * l);
         // Reynolds number 1e-6.
         let speed = 1e-6 * fluid.viscosity / DIAMETER;

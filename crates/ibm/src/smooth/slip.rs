@@ -2,7 +2,7 @@
 use crate::{Kernel, ViscousStep};
 use interfaces::Vector;
 
-/// The velocity past the surface that markers on it read where the fluid does not slip.
+/// The velocity past the surface that markers on it read where the fluid does not slip; none if they lie deeper.
 ///
 /// The force per area τ of a sheet of markers bends the velocity along it by τ/μ. Spread and read with the kernel, this kink is blurred: the markers read too little by
 ///

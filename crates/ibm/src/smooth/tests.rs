@@ -85,7 +85,7 @@ fn any_shape_has_markers() {
 /// A body cut by a bounded side: the stencils that are cut off too do not make passes diverge.
 #[test]
 fn passes_converge_at_a_wall() {
-    let mut bodies = Balls::new(2, 0.5, vec![[1.5, 0.455, 0.0]]);
+    let mut bodies = Balls::new(2, 0.5, vec![[1.5, 0.44, 0.0]]);
     bodies.twists[0].linear.x = 1.0;
     let axes = [true, false].map(|periodic| Nodes::uniform(0.025, 0.05, 60, periodic));
     let lattice = Lattice::new(axes, 0, [1, 60]);
@@ -106,6 +106,7 @@ fn the_layer_foresees_what_the_markers_outside_take() {
     for step in [None, Some(ViscousStep { diffused: 2e-4, implicit: Vector::new(0.5, 0.0, 0.0) })] {
         let (bodies, velocity, mut forcing) = scene(|x| [x[1].sin(), x[0].cos(), 0.0]);
         if let Some(step) = step {
+            forcing = SmoothForcing::new(2.0).with_surface_markers();
             forcing.begin(step);
             forcing.place(&velocity, &bodies).unwrap();
         }
@@ -116,8 +117,9 @@ fn the_layer_foresees_what_the_markers_outside_take() {
         let mut found = [const { Vec::new() }; 2];
         for c in 0..2 {
             forcing.find_outside(&velocity, c, BodyId(0), &mut weights[c]);
-            // About half of what markers on the surface reach is outside.
-            assert!(weights[c].iter().all(|share| (0.3..0.7).contains(share)), "{:?}", weights[c]);
+            // About half of what markers on the surface reach is outside, less of those a third of a cell inside.
+            let known = if step.is_some() { 0.3..0.7 } else { 0.1..0.5 };
+            assert!(weights[c].iter().all(|share| known.contains(share)), "{:?}", weights[c]);
             forcing.bodies[0].stencils.read(c, &velocity.lattice, &velocity.values[c], &mut found[c]);
         }
         let (mut sum, markers) = (Wrench::default(), &forcing.bodies[0]);
@@ -187,7 +189,7 @@ fn near_bodies_take_turns() {
     };
     let (alone, ratio) = pair(0.5);
     assert!(alone == [true, true] && (ratio - 1.0).abs() < 1e-12, "{alone:?} {ratio}");
-    let (alone, ratio) = pair(0.09);
+    let (alone, ratio) = pair(0.05);
     assert!(alone == [false, false] && (ratio - 1.0).abs() < 1e-3, "{alone:?} {ratio}");
 }
 

@@ -1,27 +1,35 @@
 //! What the grid resolves of the film between a sphere and a wall or another sphere, and the whole with the model of the rest.
 //! `cargo bench --bench lubrication`, or with the names of cases after `--`; on one thread.
 use example_support::cpu::Stopwatch;
-use example_support::film::{Before, brenner, film, forcing, resistance, sinking, spheres};
+use example_support::film::{Before, brenner, resistance, sinking, spheres};
 use example_support::{Outcome, run_cases};
 use siltflow::dem::{Chen, Lubricated};
+use siltflow::ibm::{SmoothFilm, SmoothForcing};
 use siltflow::interfaces::UnresolvedFilm;
 
 fn main() -> Outcome<()> {
     run_cases(&[
-        ("wall", || table(Before::Wall, false)),
-        ("spheres", || table(Before::Sphere, false)),
-        ("sinking", || sink(false)),
-        ("surface-wall", || table(Before::Wall, true)),
-        ("surface-spheres", || table(Before::Sphere, true)),
-        ("surface-sinking", || sink(true)),
+        ("wall", || table(Before::Wall, deeper)),
+        ("spheres", || table(Before::Sphere, deeper)),
+        ("surface-wall", || table(Before::Wall, on_surface)),
+        ("surface-spheres", || table(Before::Sphere, on_surface)),
+        ("sinking", sink),
     ])
+}
+
+fn deeper() -> SmoothForcing {
+    SmoothForcing::new(1.0)
+}
+
+fn on_surface() -> SmoothForcing {
+    deeper().with_surface_markers()
 }
 
 /// Gaps in cells.
 const GAPS: [f64; 10] = [3.0, 2.0, 1.2, 0.9, 0.6, 0.4, 0.3, 0.2, 0.1, 0.05];
 
-/// A sphere of diameter 1 at gaps that stay.
-fn table(before: Before, surface_markers: bool) -> Outcome<()> {
+/// A sphere of diameter 1 at gaps that stay; the model is that of deeper markers.
+fn table(before: Before, forcing: fn() -> SmoothForcing) -> Outcome<()> {
     println!(
         "\nSphere before {before:?}: force over 6πμRU (with the model), torque over 8πμR³Ω by the grid alone"
     );
@@ -40,11 +48,11 @@ fn table(before: Before, surface_markers: bool) -> Outcome<()> {
         "CPU s"
     );
     for per_diameter in [6, 8, 12, 16] {
-        let film = film(surface_markers, 1.0 / per_diameter as f64)?;
+        let film = SmoothFilm::new(1.0 / per_diameter as f64)?;
         for cells in GAPS {
             let watch = Stopwatch::start();
             let gap = cells / per_diameter as f64;
-            let found = resistance(before, per_diameter, gap, 0.25, Box::new(forcing(surface_markers)))?;
+            let found = resistance(before, per_diameter, gap, 0.25, Box::new(forcing()))?;
             // 6πμR*²U/δ over 6πμRV, V the speed of one of them: R*/R is 1 or a half, U/V 1 or 2.
             let (exact, part, wall) = match before {
                 Before::Wall => (brenner(2.0 * gap), 0.5, true),
@@ -68,16 +76,16 @@ fn table(before: Before, surface_markers: bool) -> Outcome<()> {
 }
 
 /// A sphere that sinks onto a wall.
-fn sink(surface_markers: bool) -> Outcome<()> {
+fn sink() -> Outcome<()> {
     println!("\nSphere sinking onto a wall: net weight over 6πμRU");
     println!(
         "{:>6} {:>8} {:>8} {:>10} {:>10} {:>8} {:>12} {:>8}",
         "per d", "δ/h", "δ/R", "exact", "grid", "off, %", "with model", "off, %"
     );
-    for per_diameter in [6, 8, 12, 16] {
-        let bare = sinking(per_diameter, forcing(surface_markers), Chen::default(), [1.2, 0.045], 0.1)?;
-        let film = film(surface_markers, 1.0 / per_diameter as f64)?;
-        let whole = sinking(per_diameter, forcing(surface_markers), Lubricated::new(Chen::default(), 1.0, film)?, [1.2, 0.045], 0.1)?;
+    for per_diameter in [8, 12, 16] {
+        let bare = sinking(per_diameter, Chen::default(), [1.2, 0.045], 0.1)?;
+        let film = SmoothFilm::new(1.0 / per_diameter as f64)?;
+        let whole = sinking(per_diameter, Lubricated::new(Chen::default(), 1.0, film)?, [1.2, 0.045], 0.1)?;
         for gap in [1.0, 0.5, 0.3, 0.2, 0.1, 0.05] {
             let exact = brenner(gap);
             let at = |series: &[[f64; 2]]| series.iter().find(|s| s[0] <= gap).map_or(f64::NAN, |s| s[1]);

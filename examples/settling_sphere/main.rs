@@ -49,7 +49,7 @@ fn main() -> ExitCode {
     let scene = SettlingSphere { case: cli.case, cells_per_diameter: cli.cells_per_diameter };
     main_of(cli.run.threads, |stop| match cli.no_lubrication {
         true => settle(&cli, &scene, Chen::default(), stop),
-        false => settle(&cli, &scene, scene.lubricated(cli.surface_markers)?, stop),
+        false => settle(&cli, &scene, scene.lubricated()?, stop),
     })
 }
 

@@ -2,14 +2,14 @@
 //! `drafting_kissing_tumbling` and `cargo bench --bench moving -- shear jeffery` do the same on finer grids.
 use crate::with_threads;
 use example_support::coupled::{Fall, Motion};
-use example_support::film::{brenner, film, forcing, sinking};
+use example_support::film::{brenner, sinking};
 use example_support::reference_curve::{Distance, read};
 use example_support::settling_sphere::{Case, SettlingSphere};
 use example_support::sheared_body::{Shear, settled_spin};
 use example_support::sinking_discs::{BOX, DIAMETER, FLUID_DENSITY, SinkingDiscs};
 use siltflow::coupling::{self, Schedule};
 use siltflow::dem::{Chen, ContactLaw, Lubricated};
-use siltflow::ibm::SmoothForcing;
+use siltflow::ibm::{SmoothFilm, SmoothForcing};
 use std::sync::atomic::AtomicBool;
 
 /// How the bodies moved up to `end` \[s\].
@@ -28,7 +28,7 @@ fn a_sphere_settles_as_measured() {
         let case = Case::E4;
         let scene = SettlingSphere { case, cells_per_diameter: 8 };
         let mut fall =
-            scene.build(SmoothForcing::new(case.fluid().density), scene.lubricated(false).unwrap()).unwrap();
+            scene.build(SmoothForcing::new(case.fluid().density), scene.lubricated().unwrap()).unwrap();
         let velocity = motion(&mut fall, 1.0, 0.2).over_time(0, |s| s.velocity[2]);
         let peak = velocity.iter().fold(0.0, |most: f64, v| most.max(-v.1));
         let measured = case.peak().unwrap();
@@ -90,15 +90,12 @@ fn free_bodies_turn_with_the_shear() {
 #[test]
 fn a_sphere_sinks_onto_a_wall() {
     with_threads(1, || {
-        for surface_markers in [false, true] {
-            let film = film(surface_markers, 1.0 / 6.0).unwrap();
-            let law = Lubricated::new(Chen::default(), 1.0, film).unwrap();
-            let found = sinking(6, forcing(surface_markers), law, [0.35, 0.095], 0.2).unwrap();
-            for gap in [0.2, 0.1] {
-                let off = found.iter().find(|s| s[0] <= gap).unwrap()[1] / brenner(gap) - 1.0;
-                println!("{surface_markers} {gap}: {off}");
-                assert!(off.abs() < 0.08, "{surface_markers} {gap}: {off}");
-            }
+        let film = SmoothFilm::new(1.0 / 6.0).unwrap();
+        let law = Lubricated::new(Chen::default(), 1.0, film).unwrap();
+        let found = sinking(6, law, [0.35, 0.095], 0.2).unwrap();
+        for gap in [0.2, 0.1] {
+            let off = found.iter().find(|s| s[0] <= gap).unwrap()[1] / brenner(gap) - 1.0;
+            assert!(off.abs() < 0.08, "{gap}: {off}");
         }
     });
 }

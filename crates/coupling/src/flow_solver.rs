@@ -70,7 +70,10 @@ pub trait FlowSolver<const D: usize>: Checkpoint {
     }
     /// What viscosity does in the step under way, of `dt` \[s\].
     fn viscous_step(&self, dt: f64) -> ViscousStep {
-        ViscousStep { diffused: self.fluid().viscosity * dt / self.weights()[0], implicit: self.implicit_diffusion() }
+        ViscousStep {
+            diffused: self.fluid().viscosity * dt / self.weights()[0],
+            implicit: self.implicit_diffusion(),
+        }
     }
     /// The longest step that viscous terms allow \[s\]; infinite if any is stable.
     fn viscous_limit(&self) -> f64 {

@@ -9,9 +9,7 @@ use crate::forcing::LayerSums;
 use crate::solid_fraction::check;
 use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction, ViscousStep, surface_elements};
 use curvature::follow_curvature;
-use interfaces::{
-    Bodies, BodyId, Kinematics, Point, Renumbering, Vector, VelocityField, Wrench,
-};
+use interfaces::{Bodies, BodyId, Kinematics, Point, Renumbering, Vector, VelocityField, Wrench};
 use markers::Markers;
 
 /// Smooth direct forcing (Uhlmann 2005; several passes as in Wang et al. 2008; a smooth [`Kernel`] as Yang et al. 2009), with
@@ -91,8 +89,8 @@ impl SmoothForcing {
     /// (1 + β P_t) Δg_m = (U + Ω×r_m + u_s + s − E u)_m,   s = −β P_t g_m,   β = r h/(c ν dt),   P_t = 1 − nnᵀ
     /// ```
     ///
-    /// g is the sum of the Δg of the passes of a step. ν dt is told by [`begin`](Forcing::begin) (`coupling::Particles` do); before, it is as if there were no shear. The film that this leaves is
-    /// [`SmoothFilm::of_surface_markers`](crate::SmoothFilm::of_surface_markers).
+    /// g is the sum of the Δg of the passes of a step. ν dt is told by [`begin`](Forcing::begin) (`coupling::Particles` do); before, it is as if there were no shear. Films thinner than a cell are up to twice as stiff with them as they are, more than
+    /// [`SmoothFilm`](crate::SmoothFilm) takes away.
     #[must_use]
     pub fn with_surface_markers(mut self) -> Self {
         self.on_surface = true;

@@ -5,24 +5,9 @@ use crate::prescribed_bodies::{PrescribedBodies, forced_step};
 use coupling::{Particles, Simulation, WeightBalance};
 use dem::{ContactLaw, HalfSpace, Material, RigidBodies, Sphere};
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Side};
-use ibm::{Forcing, SmoothFilm, SmoothForcing};
+use ibm::{Forcing, SmoothForcing};
 use interfaces::{BodyId, Freedom, Kinematics, Periods, Point, Pose, Twist, Vector, Wrench};
 use std::f64::consts::PI;
-
-/// Smooth forcing in fluid of density 1, its markers on the surface or deeper.
-pub fn forcing(surface_markers: bool) -> SmoothForcing {
-    let forcing = SmoothForcing::new(1.0);
-    if surface_markers { forcing.with_surface_markers() } else { forcing }
-}
-
-/// What such markers leave of films on cells of this `spacing`.
-///
-/// # Errors
-/// Unless it is positive.
-pub fn film(surface_markers: bool, spacing: f64) -> Outcome<SmoothFilm> {
-    let film = if surface_markers { SmoothFilm::of_surface_markers } else { SmoothFilm::new };
-    Ok(film(spacing)?)
-}
 
 /// What a sphere of diameter 1 stands before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,7 +103,6 @@ pub fn resistance(
 /// Those of grid, flow and bodies.
 pub fn sinking<L: ContactLaw>(
     per_diameter: usize,
-    forcing: SmoothForcing,
     law: L,
     [start, least]: [f64; 2],
     stokes: f64,
@@ -137,7 +121,7 @@ pub fn sinking<L: ContactLaw>(
     bodies.add(Sphere::new(0.5)?, stone, start, Twist::default(), Freedom::FREE)?;
     let volume = PI / 6.0;
     let gravity = Vector::new(0.0, 0.0, -3.0 * PI * stokes / volume);
-    let particles = Particles::new(bodies, forcing, 1.0, gravity);
+    let particles = Particles::new(bodies, SmoothForcing::new(1.0), 1.0, gravity);
     let mut fall = Simulation::new(flow, particles, WeightBalance::None)?;
     let mut found = Vec::new();
     loop {

@@ -1,7 +1,6 @@
 //! A sphere that settles in a closed box (ten Cate, Nieuwstad, Derksen & Van den Akker 2002, Phys. Fluids 14, 4012).
 use crate::Outcome;
 use crate::axes::gathered;
-use crate::film::film;
 use crate::coupled::{Fall, Slice, View};
 use crate::picture::{Disc, Domain};
 use crate::prescribed_bodies::{PrescribedBodies, forced_step};
@@ -10,7 +9,7 @@ use clap::ValueEnum;
 use coupling::{Particles, Simulation, WeightBalance};
 use dem::{Chen, ContactLaw, HalfSpace, Lubricated, Material, RigidBodies, Sphere};
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Sampler, Side};
-use ibm::{Forcing, SmoothForcing};
+use ibm::{Forcing, SmoothFilm, SmoothForcing};
 use interfaces::{BodyId, Freedom, Kinematics, Periods, Point, Pose, Twist, Vector};
 use std::f64::consts::PI;
 
@@ -125,9 +124,9 @@ impl SettlingSphere {
     ///
     /// # Errors
     /// None with a sensible number of cells.
-    pub fn lubricated(&self, surface_markers: bool) -> Outcome<Lubricated<Chen>> {
+    pub fn lubricated(&self) -> Outcome<Lubricated<Chen>> {
         let [_, viscosity] = self.case.oil();
-        Ok(Lubricated::new(Chen::default(), viscosity, film(surface_markers, self.spacing())?)?)
+        Ok(Lubricated::new(Chen::default(), viscosity, SmoothFilm::new(self.spacing())?)?)
     }
 
     /// The box: cubes where the sphere falls, cells that grow by a tenth towards the sides and the top.

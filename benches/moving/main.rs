@@ -37,8 +37,7 @@ const WAYS: [Way; 4] = [
     ("hfdib", || Box::new(Hfdib::new(1.0))),
 ];
 
-/// Where the viscosity is 1.
-const ON_SURFACE: Way = ("surface, Yang", || Box::new(SmoothForcing::new(1.0).with_viscosity(1.0)));
+const ON_SURFACE: Way = ("surface, Yang", || Box::new(SmoothForcing::new(1.0).with_surface_markers()));
 
 fn measured() -> Outcome<Vec<[f64; 2]>> {
     let row = |line: &str| -> Outcome<[f64; 2]> {

@@ -37,7 +37,7 @@ struct Cli {
     /// No model of what the grid does not resolve of the film between sphere and floor.
     #[arg(long)]
     no_lubrication: bool,
-    /// Markers on the surface itself, the kernel's blur made up for by the shear (`SmoothForcing::with_viscosity`).
+    /// Markers on the surface itself, the kernel's blur made up for by the shear (`SmoothForcing::with_surface_markers`).
     #[arg(long)]
     surface_markers: bool,
     #[command(flatten)]
@@ -57,7 +57,7 @@ fn settle<L: ContactLaw>(cli: &Cli, scene: &SettlingSphere, law: L, stop: &Atomi
     let fluid = cli.case.fluid();
     let mut forcing = SmoothForcing::new(fluid.density);
     if cli.surface_markers {
-        forcing = forcing.with_viscosity(fluid.viscosity);
+        forcing = forcing.with_surface_markers();
     }
     if let Some(kernel) = cli.run.kernel {
         forcing = forcing.with_kernel(kernel);

@@ -50,7 +50,7 @@ fn it_does_not_matter_what_moves() {
 /// diffusion, whose steps are ten times as long, the torque is the same within 1 % (deeper markers: 20 % less).
 #[test]
 fn markers_on_the_surface_are_right_for_drag_and_torque() {
-    let forcing = || Box::new(SmoothForcing::new(1.0).with_viscosity(1.0));
+    let forcing = || Box::new(SmoothForcing::new(1.0).with_surface_markers());
     let drag = periodic_cube::drag(6, forcing()).unwrap() / periodic_cube::hasimoto();
     let [explicit, implicit] =
         [Diffusion::Explicit, Diffusion::Implicit].map(|d| turning(6, forcing(), d).unwrap());

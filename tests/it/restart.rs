@@ -18,17 +18,13 @@ fn scratch(name: &str) -> PathBuf {
 
 /// Two discs, or one that lands on the floor and is in contact when the run is cut.
 fn build(floor: bool) -> Fall {
-    build_with(floor, SmoothForcing::new(FLUID.density))
-}
-
-fn build_with(floor: bool, forcing: SmoothForcing) -> Fall {
     let mut scene = Scene { cells_per_diameter: 8, floor, ..Scene::default() };
     if floor {
         scene.bodies = 1;
         scene.densities = vec![8000.0];
         scene.shift = [0.0, -15.45e-3];
     }
-    scene.build(forcing).unwrap()
+    scene.build(SmoothForcing::new(FLUID.density)).unwrap()
 }
 
 fn bits(fall: &Fall) -> Vec<u64> {
@@ -91,23 +87,6 @@ fn n_steps_are_k_and_then_n_minus_k() {
             coupling::run(&mut second, &schedule, &mut (), &stop).unwrap();
             assert!(bits(&whole) == bits(&second), "floor {floor}");
         }
-    });
-}
-
-/// The slip that markers on the surface expect is in a saved state, too.
-#[test]
-fn markers_remember_the_shear() {
-    with_threads(1, || {
-        let build = || build_with(false, SmoothForcing::new(FLUID.density).with_viscosity(FLUID.viscosity));
-        let path = scratch("shear.bin");
-        let (mut first, mut second) = (build(), build());
-        (0..20).for_each(|_| first.step(2e-4).unwrap());
-        coupling::save(&path, &first).unwrap();
-        coupling::load(&path, &mut second).unwrap();
-        for fall in [&mut first, &mut second] {
-            (0..5).for_each(|_| fall.step(2e-4).unwrap());
-        }
-        assert!(bits(&first) == bits(&second));
     });
 }
 

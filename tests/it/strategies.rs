@@ -56,7 +56,7 @@ fn heavy_discs_fall_alike_by_every_strategy() {
 /// Markers on the surface keep the same books, in which what the kernel hides of the dissipation counts, and the same motion by either strategy; two discs that meet, one of a thousandth of the fluid's density, are stable.
 #[test]
 fn markers_on_the_surface_keep_the_books() {
-    let forcing = || SmoothForcing::new(FLUID.density).with_viscosity(FLUID.viscosity);
+    let forcing = || SmoothForcing::new(FLUID.density).with_surface_markers();
     let schedule = Schedule { end: 0.05, intervals: 5, ..Schedule::default() };
     let apart = Scene { cells_per_diameter: 10, densities: vec![3000.0, 2000.0], ..Scene::default() };
     let meeting = Scene { densities: vec![3000.0, 1.0], ..apart.clone() };

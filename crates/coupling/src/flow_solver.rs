@@ -3,6 +3,7 @@ use fv_mesh::{
     BodyForce, CartesianGrid, ClosureSlot, Field, FlowError, FlowStatistics, Fluid, Hooked, Piso, Projection,
     ScalarTransport, Sides, Velocity,
 };
+use ibm::ViscousStep;
 use interfaces::{Checkpoint, Vector};
 
 /// An algorithm for incompressible flow whose step has parts, so that bodies can act in between: `predict`, then as many
@@ -69,6 +70,13 @@ pub trait FlowSolver<const D: usize>: Checkpoint {
     /// Crank–Nicolson's scheme.
     fn implicit_diffusion(&self) -> Vector {
         Vector::zeros()
+    }
+    /// What viscosity does in the step under way, of `dt` \[s\].
+    fn viscous_step(&self, dt: f64) -> ViscousStep {
+        ViscousStep {
+            diffused: self.fluid().viscosity * dt / self.weights()[0],
+            implicit: self.implicit_diffusion(),
+        }
     }
     /// The longest step that viscous terms allow \[s\]; infinite if any is stable.
     fn viscous_limit(&self) -> f64 {

@@ -326,10 +326,9 @@ where
         let time = flow.time();
         timings.measure(Module::Contact, || self.advance(dt, time))?;
         self.check_inside(flow)?;
+        self.forcing.begin(flow.viscous_step(dt));
         timings.measure(Module::SolidFraction, || self.forcing.place(flow.velocity(), &self.bodies))?;
-        S::exchange(self, flow, dt, timings)?;
-        self.forcing.finish(dt, flow.implicit_diffusion());
-        Ok(())
+        S::exchange(self, flow, dt, timings)
     }
 
     fn begin(&mut self, flow: &A) -> Result<(), CouplingError> {
@@ -381,7 +380,6 @@ where
 impl<F: Forcing, B: Dynamics, S: Strategy> Checkpoint for Particles<F, B, S> {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         self.bodies.save(&mut |name, values| sink(&format!("bodies.{name}"), values));
-        self.forcing.save(&mut |name, values| sink(&format!("forcing.{name}"), values));
         let mut values = Vec::with_capacity(self.states.len() * STATE);
         for s in &self.states {
             let [now, before] = s.internal;
@@ -398,7 +396,6 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Checkpoint for Particles<F, B, S> {
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         self.bodies.restore(&|name| source(&format!("bodies.{name}")))?;
-        self.forcing.restore(&|name| source(&format!("forcing.{name}")))?;
         self.last_dt = RestartError::take(source, "last_dt", 1)?[0];
         let values = RestartError::take(source, "coupling", self.bodies.n_bodies() * STATE)?;
         let serials = RestartError::take(source, "serials", self.bodies.n_bodies() + 1)?;

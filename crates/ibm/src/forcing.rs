@@ -1,6 +1,6 @@
 //! What every immersed boundary offers.
 use crate::IbmError;
-use interfaces::{Bodies, BodyId, Kinematics, Renumbering, RestartError, Vector, VelocityField, Wrench};
+use interfaces::{Bodies, BodyId, Kinematics, Renumbering, Vector, VelocityField, Wrench};
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
 /// How the fluid that a forcing drags along resists a change of a body's motion: with generalised
@@ -34,6 +34,16 @@ impl Layer {
     }
 }
 
+impl Layer {
+    /// Adds a point at the arm r where a fluid mass w moves along the unit vector n only: `along` is √w n, `momentum` √w n·û.
+    pub(crate) fn add_along(&mut self, along: Vector, arm: Vector, momentum: f64) {
+        let turn = arm.cross(&along);
+        let j = Vector6::new(along.x, along.y, along.z, turn.x, turn.y, turn.z);
+        self.mass += j * j.transpose();
+        self.momentum += momentum * j;
+    }
+}
+
 /// Sums over forced points of one velocity component: a fluid mass w at the arm r, whose velocity was û before, is moved to the
 /// body's velocity.
 #[derive(Clone, Copy, Debug, Default)]
@@ -60,10 +70,22 @@ impl LayerSums {
     }
 }
 
-/// A way to make the fluid move with the bodies, used between the halves of a projection step:
+/// What viscosity does in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViscousStep {
+    /// ν dt \[m²\], over the weight of the velocity at the end of the step where the scheme in time has one (3/2 of BDF2).
+    pub diffused: f64,
+    /// The part θ of the viscous terms along each axis that was taken at the end of the step, before the forcing: 0 of explicit ones, ½ by Crank–Nicolson's scheme.
+    pub implicit: Vector,
+}
+
+/// A way to make the fluid move with the bodies, used between the halves of a projection step: [`begin`](Self::begin),
 /// [`place`](Self::place), then [`force`](Self::force) before each of
 /// [`rounds`](Self::rounds) pressure solutions. Impulses are per step, about each body's centre.
 pub trait Forcing: Send {
+    /// A step begins. Where nobody says so, the viscosity is not known: what follows from it is left out.
+    fn begin(&mut self, _step: ViscousStep) {}
+
     /// Takes note of where the bodies are; only those that moved cost anything. What tells of them below is asked for with
     /// the bodies where they are then.
     ///
@@ -90,24 +112,9 @@ pub trait Forcing: Send {
     /// Adds dt f_ib to the velocity so that it meets the bodies' motion.
     fn force(&mut self, velocity: &mut dyn VelocityField, bodies: &dyn Kinematics);
 
-    /// A step of `dt` \[s\] is over: what is kept of it for the next is noted here. `implicit` is the part of the viscous terms along each axis that was taken at the end of the step, before the forcing: 0 of explicit
-    /// ones, ½ by Crank–Nicolson's scheme.
-    fn finish(&mut self, _dt: f64, _implicit: Vector) {}
-
     /// What was dissipated in the last step where the forcing blurs the flow, besides what the flow itself shows \[J\].
     fn hidden_dissipation(&self) -> f64 {
         0.0
-    }
-
-    /// Hands every array of what is kept from step to step to `sink`.
-    fn save(&self, _sink: &mut dyn FnMut(&str, &[f64])) {}
-
-    /// Takes back what was saved; markers are placed anew.
-    ///
-    /// # Errors
-    /// When something is missing.
-    fn restore<'a>(&mut self, _source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
-        Ok(())
     }
 
     /// −ρ ∫ f_ib dV dt over all forcing since [`place`](Self::place): the impulse that the fluid

@@ -81,7 +81,7 @@ pub use cut_cells::cut_cells;
 pub use cut_link::cut_walls;
 pub use error::IbmError;
 pub use film::SmoothFilm;
-pub use forcing::{Forcing, Layer};
+pub use forcing::{Forcing, Layer, ViscousStep};
 pub use fraction::{cell_fraction, plane_fraction};
 pub use hfdib::Hfdib;
 pub use immersed_scalar::ImmersedScalar;

@@ -1,38 +1,37 @@
 //! Direct forcing at surface markers, spread by a smooth kernel.
 mod curvature;
 mod markers;
-mod shear;
+mod slip;
 mod stencils;
 
 use crate::crowd::Crowd;
 use crate::forcing::LayerSums;
 use crate::solid_fraction::check;
-use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction, surface_elements};
+use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction, ViscousStep, surface_elements};
 use curvature::follow_curvature;
-use interfaces::{
-    Bodies, BodyId, Kinematics, Point, Renumbering, RestartError, Vector, VelocityField, Wrench,
-};
+use interfaces::{Bodies, BodyId, Kinematics, Point, Renumbering, Vector, VelocityField, Wrench};
 use markers::Markers;
-use shear::Shear;
 
 /// Smooth direct forcing (Uhlmann 2005; several passes as in Wang et al. 2008; a smooth [`Kernel`] as Yang et al. 2009), with
 /// markers moved into the solid by the kernel's own [`Kernel::retraction`] r_d and, where the surface is curved, by 1.75 r_d² times the sum of
 /// its principal curvatures more, which puts the no-slip surface where the body's is.
 ///
 /// ```text
-/// ΔF_m = (1/c) (U + Ω×r_m + u_s − E u)_m / dt,   u += dt Σ_m δ_h(x − x_m) ΔF_m ΔV_m,   ΔV_m = A_m h
+/// Δg_m = (U + Ω×r_m + u_s − E u)_m,   u += Σ_m δ_h(x − x_m) (Δg_m/c) A_m h
 /// ```
 ///
 /// u_s is the surface's own motion, if it has one; E reads the velocity at the markers with the same kernel that spreads.
 /// Momentum is conserved: what the fluid gets, the body loses.
 ///
-/// [`with_viscosity`](Self::with_viscosity) puts the markers on the surface itself and makes up for the kernel's blur by the shear there, which is right to second order in the size of the cells
+/// [`with_surface_markers`](Self::with_surface_markers) puts the markers on the surface itself and makes up for the kernel's blur by the shear there, which is right to second order in the size of the cells
 /// for drag, torque and strain alike.
 #[derive(Clone, Debug)]
 pub struct SmoothForcing {
     density: f64,
-    /// Kinematic, if the blur is made up for by the shear.
-    viscosity: Option<f64>,
+    /// Are the markers on the surface itself?
+    on_surface: bool,
+    /// The step under way, once one is known.
+    step: Option<ViscousStep>,
     /// Other than that suited.
     kernel: Option<Kernel>,
     passes: usize,
@@ -43,10 +42,10 @@ pub struct SmoothForcing {
     moved: bool,
     /// Places of the markers of a body.
     places: Vec<Point>,
-    /// One number per marker of a body.
-    values: Vec<f64>,
-    /// Another.
-    outside: Vec<f64>,
+    /// A velocity per marker of a body.
+    values: [Vec<f64>; 3],
+    /// Three numbers per marker.
+    outside: [Vec<f64>; 3],
     /// Zeros between uses, as long as a velocity component.
     scratch: Vec<f64>,
 }
@@ -57,7 +56,8 @@ impl SmoothForcing {
     pub fn new(density: f64) -> Self {
         Self {
             density,
-            viscosity: None,
+            on_surface: false,
+            step: None,
             kernel: None,
             passes: 3,
             inside: Default::default(),
@@ -65,8 +65,8 @@ impl SmoothForcing {
             crowd: Crowd::default(),
             moved: false,
             places: Vec::new(),
-            values: Vec::new(),
-            outside: Vec::new(),
+            values: Default::default(),
+            outside: Default::default(),
             scratch: Vec::new(),
         }
     }
@@ -82,13 +82,18 @@ impl SmoothForcing {
         self.passes = passes.max(1);
         self
     }
-    /// Markers on the surface, in a fluid of this kinematic viscosity ν \[m²/s\]: where there is shear γ = τ/μ, the kernel blurs the kink of the velocity, and the markers read r γ less than there is
-    /// without slip (r = 0.31 to 0.34 cells for [`Kernel::Yang`]). They expect that, from the force τ that they gave in the last 3 h²/ν (six times as long where bodies share fluid), so [`finish`](Forcing::finish) has to be called after every step
-    /// (`coupling::Particles` do); before the first call it is as if there were no shear. Shear that lives shorter than that is not made up for: a body that starts is larger by r. The tables of
-    /// [`SmoothFilm`](crate::SmoothFilm) are not made for it.
+    /// Markers on the surface itself. Where there is shear γ = τ/μ, the kernel blurs the kink of the velocity, and they read r γ less than there is without slip (r = 0.31 to 0.34 cells for
+    /// [`Kernel::Yang`]), τ being the force per area that they put on the fluid. They ask for that:
+    ///
+    /// ```text
+    /// (1 + β P_t) Δg_m = (U + Ω×r_m + u_s + s − E u)_m,   s = −β P_t g_m,   β = r h/(c ν dt),   P_t = 1 − nnᵀ
+    /// ```
+    ///
+    /// g is the sum of the Δg of the passes of a step. ν dt is told by [`begin`](Forcing::begin) (`coupling::Particles` do); before, it is as if there were no shear. Films thinner than a cell are up to twice as stiff with them as they are, more than
+    /// [`SmoothFilm`](crate::SmoothFilm) takes away.
     #[must_use]
-    pub fn with_viscosity(mut self, viscosity: f64) -> Self {
-        self.viscosity = Some(viscosity);
+    pub fn with_surface_markers(mut self) -> Self {
+        self.on_surface = true;
         self
     }
     /// How often λ of a body was computed, over all velocity components.
@@ -122,15 +127,13 @@ impl SmoothForcing {
             }
             let spacing = if dim == 2 { 1.0 } else { SPACING };
             let (retraction, solid) = (kernel.retraction() * h, bodies.solid(b));
-            if self.viscosity.is_some() {
-                markers.elements = surface_elements(solid, spacing * h, 0.0);
-                markers.shear.get_or_insert_default();
-            } else {
-                markers.elements = surface_elements(solid, spacing * h, -retraction);
-                markers.elements.iter_mut().for_each(|e| follow_curvature(e, solid, dim, h, retraction));
-            }
+            let offset = if self.on_surface { 0.0 } else { -retraction };
+            markers.elements = surface_elements(solid, spacing * h, offset);
             if markers.elements.is_empty() {
-                return Err(IbmError::NoSurface { body: b, offset: -retraction });
+                return Err(IbmError::NoSurface { body: b, offset });
+            }
+            if !self.on_surface {
+                markers.elements.iter_mut().for_each(|e| follow_curvature(e, solid, dim, h, retraction));
             }
             let scale = self.density * h / kernel.self_overlap();
             markers.masses = markers.elements.iter().map(|e| e.area * scale).collect();
@@ -139,9 +142,7 @@ impl SmoothForcing {
         if made || markers.pose.is_none_or(|old| old.orientation != pose.orientation) {
             markers.arms.clear();
             markers.arms.extend(markers.elements.iter().map(|e| pose.orientation * e.point.coords));
-            if let Some(shear) = &mut markers.shear {
-                shear.place(kernel, h, markers.elements.iter().map(|e| pose.orientation * e.normal));
-            }
+            markers.slip.turn(markers.elements.iter().map(|e| pose.orientation * e.normal));
         }
         self.places.clear();
         self.places.extend(markers.arms.iter().map(|arm| pose.position + arm));
@@ -225,8 +226,7 @@ impl Forcing for SmoothForcing {
         for (c, inside) in self.inside.iter_mut().enumerate().take(velocity.dim()) {
             if inside.resize(velocity.lattice(c), bodies.n_bodies()) {
                 // Another grid.
-                let anew = |old: &mut Markers| Markers { shear: old.shear.take(), ..Markers::default() };
-                self.bodies.iter_mut().for_each(|markers| *markers = anew(markers));
+                self.bodies.fill_with(Markers::default);
             }
         }
         for b in 0..bodies.n_bodies() {
@@ -240,7 +240,9 @@ impl Forcing for SmoothForcing {
                 self.bodies[b].pose = Some(pose);
             }
             self.bodies[b].reaction = Wrench::default();
-            self.bodies[b].shear.iter_mut().for_each(Shear::clear);
+            let (kernel, markers) = (self.kernel(velocity.dim()), &mut self.bodies[b]);
+            let step = self.step.filter(|_| self.on_surface);
+            markers.slip.begin(step, kernel, markers.cell.powf(1.0 / velocity.dim() as f64));
         }
         if std::mem::take(&mut self.moved) {
             self.find_alone(velocity, bodies);
@@ -262,19 +264,39 @@ impl Forcing for SmoothForcing {
         1
     }
 
+    fn begin(&mut self, step: ViscousStep) {
+        self.step = Some(step);
+    }
+
     fn layer(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies, b: BodyId) -> Layer {
         let mut layer = Layer::default();
         let (mut outside, mut found) = (std::mem::take(&mut self.outside), std::mem::take(&mut self.values));
-        for c in 0..velocity.dim() {
+        let dim = velocity.dim();
+        for c in 0..dim {
             let lattice = velocity.lattice(c);
             self.inside[c].cover(lattice, bodies, b);
-            self.find_outside(velocity, c, b, &mut outside);
-            let markers = &self.bodies[b.0];
-            markers.read(c, lattice, velocity.component(c), (bodies, b), &mut found);
-            let Markers { stencils, masses, arms, .. } = markers;
+            self.find_outside(velocity, c, b, &mut outside[c]);
+            let Markers { stencils, masses, .. } = &self.bodies[b.0];
+            for (m, outside) in outside[c].iter_mut().enumerate() {
+                *outside = (*outside * masses[m] * stencils.relax[c][m]).max(0.0);
+            }
+            self.bodies[b.0].read(c, lattice, velocity.component(c), (bodies, b), &mut found[c]);
+        }
+        let Markers { slip, arms, .. } = &self.bodies[b.0];
+        // √w (1 − y P_t) √w of each marker, y = β/(1 + β): its part along the normal, and what is the same all round.
+        for (m, arm) in arms.iter().enumerate() {
+            let (yields, n) = slip.yields(m);
+            let (mut along, mut momentum) = (Vector::zeros(), 0.0);
+            for c in 0..dim {
+                along[c] = (yields * outside[c][m]).sqrt() * n[c];
+                momentum += along[c] * found[c][m];
+            }
+            layer.add_along(along, *arm, momentum);
+        }
+        for c in 0..dim {
             let mut sums = LayerSums::default();
             for (m, arm) in arms.iter().enumerate() {
-                sums.add(*arm, outside[m] * masses[m] * stencils.relax[c][m], found[m]);
+                sums.add(*arm, (1.0 - slip.yields(m).0) * outside[c][m], found[c][m]);
             }
             layer.add(c, &sums);
         }
@@ -291,51 +313,23 @@ impl Forcing for SmoothForcing {
 
     fn force(&mut self, velocity: &mut dyn VelocityField, bodies: &dyn Kinematics) {
         let Self { density, passes, bodies: all, values, .. } = self;
-        // Components do not see one another.
-        for c in 0..velocity.dim() {
-            let lattice = velocity.lattice(c).clone();
-            let u = velocity.component_mut(c);
-            let mut pass = |b: usize, markers: &mut Markers| {
-                markers.pass(c, &lattice, u, (bodies, BodyId(b)), *density, values);
-            };
-            // While its numbers are at hand; those that share fluid in turn.
-            for (b, markers) in all.iter_mut().enumerate().filter(|(_, markers)| markers.alone) {
-                (0..*passes).for_each(|_| pass(b, markers));
-            }
-            for _ in 0..*passes {
-                for (b, markers) in all.iter_mut().enumerate().filter(|(_, markers)| !markers.alone) {
-                    pass(b, markers);
-                }
-            }
+        let lattices = [0, 1, 2].map(|c| velocity.lattice(c.min(velocity.dim() - 1)).clone());
+        let mut pass = |b: usize, markers: &mut Markers| {
+            markers.pass((velocity, &lattices), (bodies, BodyId(b)), *density, values);
+        };
+        // While its numbers are at hand; those that share fluid in turn.
+        for (b, markers) in all.iter_mut().enumerate().filter(|(_, markers)| markers.alone) {
+            (0..*passes).for_each(|_| pass(b, markers));
         }
-    }
-
-    fn finish(&mut self, dt: f64, implicit: Vector) {
-        let Some(viscosity) = self.viscosity else { return };
-        for Markers { shear, masses, alone, .. } in &mut self.bodies {
-            let rivals = if *alone { 1.0 } else { 2.0 * self.passes as f64 };
-            shear.iter_mut().for_each(|shear| shear.finish(viscosity * dt, implicit, (masses, rivals)));
+        for _ in 0..*passes {
+            for (b, markers) in all.iter_mut().enumerate().filter(|(_, markers)| !markers.alone) {
+                pass(b, markers);
+            }
         }
     }
 
     fn hidden_dissipation(&self) -> f64 {
-        self.bodies.iter().filter_map(|m| m.shear.as_ref()).map(|shear| shear.hidden).sum()
-    }
-
-    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
-        for (b, shear) in self.bodies.iter().enumerate().filter_map(|(b, m)| Some((b, m.shear.as_ref()?))) {
-            sink(&format!("shear.{b}"), &shear.numbers());
-        }
-    }
-
-    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
-        if self.viscosity.is_some() {
-            self.bodies.clear();
-            let saved = (0..).map_while(|b| source(&format!("shear.{b}")));
-            let markers = |numbers| Markers { shear: Some(Shear::of(numbers)), ..Markers::default() };
-            self.bodies.extend(saved.map(markers));
-        }
-        Ok(())
+        self.bodies.iter().map(|markers| markers.slip.hidden(&markers.masses)).sum()
     }
 
     fn reaction(&self, b: BodyId) -> Wrench {
@@ -344,14 +338,14 @@ impl Forcing for SmoothForcing {
 
     fn slip(&self, velocity: &dyn VelocityField, bodies: &dyn Kinematics) -> f64 {
         let (mut sum, mut n) = (0.0, 0.0);
-        let mut found = Vec::new();
+        let (dim, mut found) = (velocity.dim(), [const { Vec::new() }; 3]);
         for (b, markers) in self.bodies.iter().enumerate() {
-            let (twist, how) = (bodies.twist(BodyId(b)), (bodies, BodyId(b)));
-            for c in 0..velocity.dim() {
-                markers.read(c, velocity.lattice(c), velocity.component(c), how, &mut found);
-                let slips = found.iter().zip(&markers.arms).map(|(u, arm)| u - twist.at(*arm)[c]);
-                sum += slips.map(|slip| slip * slip).sum::<f64>();
+            let twist = bodies.twist(BodyId(b));
+            for (c, found) in found.iter_mut().enumerate().take(dim) {
+                markers.read(c, velocity.lattice(c), velocity.component(c), (bodies, BodyId(b)), found);
             }
+            let slips = (0..markers.arms.len()).map(|m| markers.missing(m, &twist, &found, dim));
+            sum += slips.map(|slip| slip.norm_squared()).sum::<f64>();
             n += markers.arms.len() as f64;
         }
         if n > 0.0 { (sum / n).sqrt() } else { 0.0 }

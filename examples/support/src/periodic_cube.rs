@@ -32,12 +32,12 @@ pub fn drag(per_diameter: usize, mut forcing: Box<dyn Forcing>) -> Outcome<f64> 
         while flow.time() < end {
             let dt = flow.stable_dt(0.4);
             flow.predict(dt, [PUSH, 0.0, 0.0])?;
+            forcing.begin(flow.viscous_step(dt));
             forcing.place(flow.velocity(), &sphere)?;
             for _ in 0..forcing.rounds() {
                 forcing.force(flow.velocity_mut(), &sphere);
                 flow.project(dt)?;
             }
-            forcing.finish(dt, flow.implicit_diffusion());
             flow.finish(dt)?;
         }
         let mean = flow.statistics().volume_flow.x / volume;

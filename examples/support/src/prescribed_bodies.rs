@@ -52,12 +52,12 @@ pub fn forced_step<const D: usize>(
     dt: f64,
 ) -> Outcome<()> {
     flow.predict(dt, [0.0; D])?;
+    forcing.begin(flow.viscous_step(dt));
     forcing.place(flow.velocity(), bodies)?;
     for _ in 0..forcing.rounds() {
         forcing.force(flow.velocity_mut(), bodies);
         flow.project(dt)?;
     }
-    forcing.finish(dt, flow.implicit_diffusion());
     Ok(flow.finish(dt)?)
 }
 

@@ -49,7 +49,7 @@ pub struct Shear {
     pub reynolds: f64,
     /// Other than that suited.
     pub kernel: Option<Kernel>,
-    /// Are the markers on the surface itself ([`SmoothForcing::with_viscosity`])?
+    /// Are the markers on the surface itself ([`SmoothForcing::with_surface_markers`])?
     pub surface_markers: bool,
     /// How viscous terms are advanced.
     pub diffusion: Diffusion,
@@ -123,7 +123,7 @@ impl Shear {
             forcing = forcing.with_kernel(kernel);
         }
         if self.surface_markers {
-            forcing = forcing.with_viscosity(viscosity);
+            forcing = forcing.with_surface_markers();
         }
         let particles = Particles::new(bodies, forcing, fluid.density, Vector::zeros());
         let fall = Simulation::new(flow, particles, WeightBalance::None)?;

@@ -1,6 +1,7 @@
 //! Steady flows beside immersed walls with exact or published answers.
 use crate::Outcome;
 use crate::prescribed_bodies::{Banks, Bore, PrescribedBodies};
+use coupling::FlowSolver;
 use dem::{Disc, Sphere};
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Side};
 use ibm::{ControlVolume, Forcing, SmoothForcing, SolidFraction, SurfaceLoads, SurfaceStress, cut_walls};
@@ -264,6 +265,7 @@ impl ForcedChannel {
                 let u = flow.velocity_mut().component_mut(c);
                 u.iter_mut().zip(&open[c]).for_each(|(u, open)| *u += dt * pull[c] * open);
             }
+            forcing.begin(flow.viscous_step(dt));
             forcing.place(flow.velocity(), bodies)?;
             forcing.force(flow.velocity_mut(), bodies);
             flow.project(dt)?;

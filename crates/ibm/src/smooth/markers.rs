@@ -1,7 +1,7 @@
 //! The markers of one body.
-use super::shear::Shear;
+use super::slip::Slip;
 use super::stencils::Stencils;
-use interfaces::{BodyId, Kinematics, Lattice, Pose, SurfaceElement, Vector, Wrench};
+use interfaces::{BodyId, Kinematics, Lattice, Pose, SurfaceElement, Twist, Vector, VelocityField, Wrench};
 
 /// The markers of one body.
 #[derive(Clone, Debug, Default)]
@@ -19,12 +19,12 @@ pub(super) struct Markers {
     pub(super) masses: Vec<f64>,
     pub(super) stencils: Stencils,
     pub(super) reaction: Wrench,
-    /// If they make up for the blur of the shear.
-    pub(super) shear: Option<Shear>,
+    /// What they read past the surface.
+    pub(super) slip: Slip,
 }
 
 impl Markers {
-    /// What the markers of body `b` read of component `c`, without what their surface does besides moving with it and what the blur leaves.
+    /// What the markers of body `b` read of component `c`, without what their surface does besides moving with it.
     pub(super) fn read(
         &self,
         c: usize,
@@ -39,42 +39,42 @@ impl Markers {
                 *value -= bodies.surface_motion(b, *arm).unwrap_or_default()[c];
             }
         }
-        if let Some(shear) = &self.shear {
-            out.iter_mut().zip(&shear.slip).for_each(|(value, slip)| *value -= slip[c]);
-        }
     }
 
-    /// Brings component `c` nearer to the body's motion.
+    /// U + Ω×r + s − E u of marker `m`, of which the markers read `found`.
+    #[inline]
+    pub(super) fn missing(&self, m: usize, twist: &Twist, found: &[Vec<f64>], dim: usize) -> Vector {
+        let mut missing = twist.at(self.arms[m]) + self.slip.of(m);
+        (0..dim).for_each(|c| missing[c] -= found[c][m]);
+        (dim..3).for_each(|c| missing[c] = 0.0);
+        missing
+    }
+
+    /// Brings the velocity nearer to the body's motion.
     pub(super) fn pass(
         &mut self,
-        c: usize,
-        lattice: &Lattice,
-        u: &mut [f64],
+        (velocity, lattices): (&mut dyn VelocityField, &[Lattice; 3]),
         (bodies, b): (&dyn Kinematics, BodyId),
         density: f64,
-        values: &mut Vec<f64>,
+        values: &mut [Vec<f64>; 3],
     ) {
+        let dim = velocity.dim();
         // All markers read before any of them spreads: their order must not matter.
-        self.read(c, lattice, u, (bodies, b), values);
+        for (c, values) in values.iter_mut().enumerate().take(dim) {
+            self.read(c, &lattices[c], velocity.component(c), (bodies, b), values);
+        }
         let (twist, per_mass) = (bodies.twist(b), 1.0 / (density * self.cell));
-        let (mut impulse, mut moment) = (0.0, Vector::zeros());
-        let weights = self.masses.iter().zip(&self.stencils.relax[c]);
-        for ((value, arm), (mass, relax)) in values.iter_mut().zip(&self.arms).zip(weights) {
-            let given = mass * relax * (twist.at(*arm)[c] - *value);
-            impulse += given;
-            moment += given * arm;
-            *value = given * per_mass;
+        for m in 0..self.arms.len() {
+            let mut change = self.slip.answer(m, self.missing(m, &twist, values, dim));
+            (0..dim).for_each(|c| change[c] *= self.stencils.relax[c][m]);
+            self.slip.given[m] += change;
+            let impulse = self.masses[m] * change;
+            self.reaction.force -= impulse;
+            self.reaction.torque -= self.arms[m].cross(&impulse);
+            (0..dim).for_each(|c| values[c][m] = per_mass * impulse[c]);
         }
-        if let Some(shear) = &mut self.shear {
-            // given/(ρ A h), c times what this part of the sheet changes by itself.
-            for ((sum, given), mass) in shear.given.iter_mut().zip(&*values).zip(&self.masses) {
-                sum[c] += given / (per_mass * mass);
-            }
+        for (c, values) in values.iter().enumerate().take(dim) {
+            self.stencils.spread(c, &lattices[c], values, velocity.component_mut(c));
         }
-        self.stencils.spread(c, lattice, values, u);
-        let mut unit = Vector::zeros();
-        unit[c] = 1.0;
-        self.reaction.force[c] -= impulse;
-        self.reaction.torque -= moment.cross(&unit);
     }
 }

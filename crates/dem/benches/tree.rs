@@ -1,7 +1,7 @@
 //! What the adaptive tree costs against its error, in µs of CPU time per pair, for bodies of which only a signed distance is
 //! known. Sample run: `cargo bench -p dem --bench tree` (a minute or so); `-- torus` takes only the pairs with this word.
 //!
-//! Each pair is posed twenty times at random, between a graze and half its depth. The errors are those of the volume, and of the
+//! Each pair is posed twenty times (or as often as POSES says) at random, between a graze and half its depth. The errors are those of the volume, and of the
 //! normal of the largest region in degrees, against the exact ones (spheres) or against a tolerance of 3e-6. The rows go to
 //! `out/overlap/tree.csv`, too: pair, tolerance, median and largest µs, median and largest error, median and largest degrees,
 //! median number of distances asked for, and the poses with boxes.
@@ -161,6 +161,7 @@ fn main() {
         [&*superellipsoid, &*torus],
         [&*ball, &*brick],
     ];
+    let n_poses: usize = std::env::var("POSES").ok().and_then(|n| n.parse().ok()).unwrap_or(20);
     let mut csv = String::from(
         "pair,tolerance,us_median,us_largest,error_median,error_largest,degrees_median,degrees_largest,distances_median,poses_with_boxes\n",
     );
@@ -172,7 +173,7 @@ fn main() {
         let tree = || OverlapSolver::new().with_route(Some(Route::Tree));
         let mut finest = tree().with_refinement(Refinement::Tolerance(3e-6));
         let (mut draw, mut poses) = (Draw(7), Vec::new());
-        while poses.len() < 20 {
+        while poses.len() < n_poses {
             let turn = draw.pose(0.0);
             // Push together until they overlap, then somewhat more.
             let mut at = draw.pose(2.2);

@@ -82,7 +82,8 @@ struct Torus;
 
 impl Solid for Torus {
     fn signed_distance(&self, x: Point, _: f64) -> f64 {
-        (x.x.hypot(x.y) - 0.7).hypot(x.z) - 0.3
+        let out = (x.x * x.x + x.y * x.y).sqrt() - 0.7;
+        (out * out + x.z * x.z).sqrt() - 0.3
     }
     fn aabb(&self) -> Aabb {
         Aabb::around(Point::origin(), Vector::new(1.0, 1.0, 0.3))

@@ -96,6 +96,19 @@ fn main() {
         std::hint::black_box(std::hint::black_box(&places).iter().fold(0.0, sum));
     });
     println!("{:44} {:9.4} µs", "spheres, by Sphere::overlap", us / places.len() as f64);
+    // The same through the solver, which is told of two shapes only.
+    let (mut balls, origin) = (OverlapSolver::new(), Pose::at([0.0; 3]));
+    let posed: Vec<Pose> = places.iter().map(|at| Pose::at((*at).into())).collect();
+    let us = time(|| {
+        let [a, b] = std::hint::black_box([&ball as &dyn Shape; 2]);
+        let mut sum = 0.0;
+        for at in std::hint::black_box(&posed) {
+            let patches = balls.solve(a, &origin, b, at);
+            sum += patches.expect("an overlap").iter().fold(0.0, |sum, o| sum + o.volume + o.centroid.x);
+        }
+        std::hint::black_box(sum);
+    });
+    println!("{:44} {:9.4} µs", "spheres, by OverlapSolver::solve", us / places.len() as f64);
     row("spheres", &ball, &ball, at([1.8, 0.3, 0.1], [0.0; 3]));
     let cube = Cuboid::new([1.0; 3]).expect("a box");
     row("cubes, corner in", &cube, &cube, at([0.8, 0.7, 0.75], [0.3, 0.2, 0.5]));

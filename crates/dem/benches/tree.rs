@@ -1,7 +1,7 @@
 //! What the adaptive tree costs against its error, in µs of CPU time per pair, for bodies of which only a signed distance is
 //! known. Sample run: `cargo bench -p dem --bench tree` (a minute or so); `-- torus` takes only the pairs with this word.
 //!
-//! Each pair is posed twenty times at random, between a graze and half its depth. The errors are those of the volume, and of the
+//! Each pair is posed twenty times (or as often as POSES says) at random, between a graze and half its depth. The errors are those of the volume, and of the
 //! normal of the largest region in degrees, against the exact ones (spheres) or against a tolerance of 3e-6. The rows go to
 //! `out/overlap/tree.csv`, too: pair, tolerance, median and largest µs, median and largest error, median and largest degrees,
 //! median number of distances asked for, and the poses with boxes.
@@ -12,20 +12,20 @@ use std::f64::consts::PI;
 use std::fmt::Write;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// A signed distance and a box.
-struct Body {
+/// A signed distance and a box, as a user's type would have them.
+struct Body<F> {
     name: &'static str,
-    distance: fn(Vector) -> f64,
+    distance: F,
     half: Vector,
 }
 
 /// The same, and counts how often its distance is asked for.
-struct Counted<'a>(&'a Body, AtomicUsize);
+struct Counted<'a>(&'a dyn Shape, AtomicUsize);
 
 impl Solid for Counted<'_> {
-    fn signed_distance(&self, x: Point, _: f64) -> f64 {
+    fn signed_distance(&self, x: Point, band: f64) -> f64 {
         self.1.fetch_add(1, Relaxed);
-        (self.0.distance)(x.coords)
+        self.0.signed_distance(x, band)
     }
     fn aabb(&self) -> Aabb {
         self.0.aabb()
@@ -34,7 +34,7 @@ impl Solid for Counted<'_> {
 
 impl Shape for Counted<'_> {
     fn name(&self) -> &'static str {
-        self.0.name
+        self.0.name()
     }
     fn inertia(&self, density: f64) -> Inertia {
         self.0.inertia(density)
@@ -44,7 +44,7 @@ impl Shape for Counted<'_> {
     }
 }
 
-impl Solid for Body {
+impl<F: Fn(Vector) -> f64 + Send + Sync> Solid for Body<F> {
     fn signed_distance(&self, x: Point, _: f64) -> f64 {
         (self.distance)(x.coords)
     }
@@ -53,7 +53,7 @@ impl Solid for Body {
     }
 }
 
-impl Shape for Body {
+impl<F: Fn(Vector) -> f64 + Send + Sync> Shape for Body<F> {
     fn name(&self) -> &'static str {
         self.name
     }
@@ -73,7 +73,8 @@ fn ball(x: Vector) -> f64 {
     x.norm() - 1.0
 }
 fn torus(x: Vector) -> f64 {
-    (x.x.hypot(x.y) - 0.7).hypot(x.z) - 0.3
+    let out = (x.x * x.x + x.y * x.y).sqrt() - 0.7;
+    (out * out + x.z * x.z).sqrt() - 0.3
 }
 /// Three balls about a fourth.
 fn union(x: Vector) -> f64 {
@@ -89,11 +90,12 @@ fn superellipsoid(x: Vector) -> f64 {
     let (sin, cos) = (0.8 * x.z).sin_cos();
     let p = Vector::new((cos * x.x + sin * x.y) / 0.9, (cos * x.y - sin * x.x) / 0.5, x.z / 0.7);
     let r = p.norm().max(1e-3);
-    let sum = p.map(|c| c.powi(4)).sum().max(1e-12);
-    let f = sum.powf(0.25) - 1.0;
-    let inner = p.map(|c| c.powi(3)) * sum.powf(-0.75);
-    let along = Vector::new(inner.x / 0.9, inner.y / 0.5, inner.z / 0.7);
-    f / (along.norm().max(0.2 / r) * 1.5)
+    let cubes = p.component_mul(&p).component_mul(&p);
+    let sum = cubes.dot(&p).max(1e-12);
+    let root = sum.sqrt().sqrt();
+    // Of the fourth root of the sum.
+    let slope = cubes.component_div(&Vector::new(0.9, 0.5, 0.7)).norm() * root / sum;
+    (root - 1.0) / (slope.max(0.2 / r) * 1.5)
 }
 
 struct Draw(u64);
@@ -138,33 +140,40 @@ fn sorted(mut values: Vec<f64>) -> [f64; 2] {
 
 fn main() {
     let only = std::env::args().skip(1).find(|a| !a.starts_with('-'));
-    let body = |name, distance, half: [f64; 3]| Body { name, distance, half: half.into() };
+    fn body(
+        name: &'static str,
+        distance: impl Fn(Vector) -> f64 + Send + Sync + 'static,
+        half: [f64; 3],
+    ) -> Box<dyn Shape> {
+        Box::new(Body { name, distance, half: half.into() })
+    }
     let ball = body("ball", ball, [1.0; 3]);
     let torus = body("torus", torus, [1.0, 1.0, 0.3]);
     let union = body("union", union, [0.95, 0.9, 0.95]);
     let superellipsoid = body("superellipsoid", superellipsoid, [1.05, 1.05, 0.72]);
     let brick = body("brick", brick, [0.8, 0.6, 0.5]);
-    let pairs = [
-        (&ball, &ball),
-        (&torus, &torus),
-        (&union, &union),
-        (&torus, &union),
-        (&superellipsoid, &superellipsoid),
-        (&superellipsoid, &torus),
-        (&ball, &brick),
+    let pairs: [[&dyn Shape; 2]; 7] = [
+        [&*ball, &*ball],
+        [&*torus, &*torus],
+        [&*union, &*union],
+        [&*torus, &*union],
+        [&*superellipsoid, &*superellipsoid],
+        [&*superellipsoid, &*torus],
+        [&*ball, &*brick],
     ];
+    let n_poses: usize = std::env::var("POSES").ok().and_then(|n| n.parse().ok()).unwrap_or(20);
     let mut csv = String::from(
         "pair,tolerance,us_median,us_largest,error_median,error_largest,degrees_median,degrees_largest,distances_median,poses_with_boxes\n",
     );
-    for (a, b) in pairs {
-        let name = format!("{}-{}", a.name, b.name);
+    for [a, b] in pairs {
+        let name = format!("{}-{}", a.name(), b.name());
         if only.as_ref().is_some_and(|o| !name.contains(o.as_str())) {
             continue;
         }
         let tree = || OverlapSolver::new().with_route(Some(Route::Tree));
         let mut finest = tree().with_refinement(Refinement::Tolerance(3e-6));
         let (mut draw, mut poses) = (Draw(7), Vec::new());
-        while poses.len() < 20 {
+        while poses.len() < n_poses {
             let turn = draw.pose(0.0);
             // Push together until they overlap, then somewhat more.
             let mut at = draw.pose(2.2);
@@ -175,7 +184,7 @@ fn main() {
             }
             at.position.coords *= 1.0 - 0.2 * draw.next().powi(2);
             let mut exact = measure(&mut finest, a, &turn, b, &at);
-            if a.name == "ball" && b.name == "ball" {
+            if name == "ball-ball" {
                 let d = 2.0 - at.position.coords.norm();
                 exact[0].x = PI * d * d * (6.0 - d) / 12.0;
                 exact[2] = -at.position.coords.normalize();

@@ -50,31 +50,30 @@ pub(crate) fn discs(ra: f64, a: Point, rb: f64, b: Point) -> Option<Overlap> {
     pair(ra, a, rb, b, segment, |r| PI * r * r)
 }
 
-/// Two caps on the common circle, s_a and s_b deep. The centroid divides the line of centres as the volumes of the caps do: both have
-/// the same moment about their own centre, π/4 of the circle's radius to the fourth.
 #[inline(always)]
 pub(crate) fn spheres(ra: f64, a: Point, rb: f64, b: Point) -> Option<Overlap> {
-    let mut found = None;
-    spheres_to(ra, a, rb, b, |patch| found = Some(patch));
-    found
+    let apart = a - b;
+    spheres_apart(ra, a, rb, b, apart, apart.norm())
 }
 
-/// The same, handed on where it is made: an overlap is long, and copying it takes as long as the rest.
-#[inline]
-pub(crate) fn spheres_to(ra: f64, a: Point, rb: f64, b: Point, mut add: impl FnMut(Overlap)) {
-    let apart = a - b;
-    let d = apart.norm();
-    let depth = ra + rb - d;
-    if depth <= 0.0 {
-        return;
+/// What two spheres share whose centres are `apart`, that far.
+#[inline(always)]
+pub(super) fn spheres_apart(ra: f64, a: Point, rb: f64, b: Point, apart: Vector, d: f64) -> Option<Overlap> {
+    if ra + rb - d <= 0.0 {
+        None
+    } else if d > (ra - rb).abs() {
+        Some(lens_apart(ra, a, rb, apart, d).overlap)
+    } else {
+        Some(nested(ra, a, rb, b, apart, d))
     }
-    if d <= (ra - rb).abs() {
-        if let Some(patch) = pair(ra, a, rb, b, cap, |r| 4.0 / 3.0 * PI * r.powi(3)) {
-            add(patch);
-        }
-        return;
-    }
-    add(lens(ra, a, rb, b).overlap);
+}
+
+/// What two spheres share of which one is within the other.
+#[cold]
+fn nested(ra: f64, a: Point, rb: f64, b: Point, apart: Vector, d: f64) -> Overlap {
+    let (r, centroid) = if ra < rb { (ra, a) } else { (rb, b) };
+    let normal = if d > 0.0 { apart / d } else { Vector::x() };
+    Overlap::whole(4.0 / 3.0 * PI * r.powi(3), centroid, normal)
 }
 
 /// What a sphere shares with another one or with a wall, and what is known about it because all lies along the normal.
@@ -90,16 +89,27 @@ pub(crate) struct Lens {
 #[inline(always)]
 pub(crate) fn lens(ra: f64, a: Point, rb: f64, b: Point) -> Lens {
     let apart = a - b;
-    let d = apart.norm();
+    lens_apart(ra, a, rb, apart, apart.norm())
+}
+
+/// Two caps on the common circle, s_a and s_b deep. The centroid divides the line of centres as the volumes of the caps do: both have
+/// the same moment about their own centre, π/4 of the circle's radius to the fourth. Of all, products with powers of the distance d of
+/// the centres are taken first, so that neither division waits for the other.
+#[inline(always)]
+fn lens_apart(ra: f64, a: Point, rb: f64, apart: Vector, d: f64) -> Lens {
     let depth = ra + rb - d;
     let per_distance = 1.0 / d;
-    let [sa, sb] = [rb, ra].map(|other| 0.5 * depth * (2.0 * other - depth) * per_distance);
-    let [va, vb] = [(ra, sa), (rb, sb)].map(|(r, s)| s * s * (r - s * (1.0 / 3.0)));
-    let (s, r) = if sa < sb { (sa, ra) } else { (sb, rb) };
+    // s d, and d³/π of the caps' volumes π s² (r − s/3).
+    let [ta, tb] = [rb, ra].map(|other| 0.5 * depth * (2.0 * other - depth));
+    let [va, vb] = [(ra, ta), (rb, tb)].map(|(r, t)| t * t * (r * d - t * (1.0 / 3.0)));
+    let both = va + vb;
+    let share = if both > 0.0 { vb / both } else { 0.5 };
+    let (t, r) = if ta < tb { (ta, ra) } else { (tb, rb) };
+    let s = t * per_distance;
     let normal = apart * per_distance;
-    let share = if va + vb > 0.0 { vb / (va + vb) } else { 0.5 };
     let area = PI * s * (2.0 * r - s);
-    let overlap = overlap(PI * (va + vb), a - apart * share, normal, area);
+    let volume = PI * both * (per_distance * per_distance * per_distance);
+    let overlap = overlap(volume, a - apart * share, normal, area);
     Lens { overlap, area, arms: [share * d, d - share * d] }
 }
 

@@ -61,6 +61,8 @@ pub struct OverlapSolver {
     route: Option<Route>,
     tolerance: Option<f64>,
     patches: Vec<Overlap>,
+    /// Of two spheres.
+    lens: Option<Overlap>,
     ball_faces: BallFaces,
     clipper: Clipper,
     facets: FacetOverlap,
@@ -117,6 +119,7 @@ impl OverlapSolver {
     /// # Errors
     /// [`DemError::Unsupported`] for pairs without a route, [`DemError::Route`] when the route asked for does not lead there,
     /// [`DemError::Pose`] when a pose is not finite, [`DemError::Boxes`] when the adaptive tree does not come to its tolerance.
+    #[inline(always)]
     pub fn solve(
         &mut self,
         a: &dyn Shape,
@@ -124,19 +127,31 @@ impl OverlapSolver {
         b: &dyn Shape,
         at_b: &Pose,
     ) -> Result<&[Overlap], DemError> {
-        self.patches.clear();
-        for (shape, at) in [(a, at_a), (b, at_b)] {
-            check(shape, at)?;
-        }
-        // The most frequent pair of all, before all else.
-        match (self.route, a.form(), b.form()) {
-            (None, Form::Sphere(p), Form::Sphere(q)) => {
-                let patches = &mut self.patches;
-                closed::spheres_to(p.radius(), at_a.position, q.radius(), at_b.position, |o| patches.push(o));
+        // The most frequent pair of all, before all else and where the caller is: there the shapes may be known.
+        if matches!(self.route, None | Some(Route::ClosedForm))
+            && let Form::Sphere(p) = a.form()
+            && let Form::Sphere(q) = b.form()
+        {
+            let apart = at_a.position - at_b.position;
+            let (d, turns) = (apart.norm(), at_a.orientation.coords + at_b.orientation.coords);
+            // Where this is too large, it is told below whether a pose is to blame.
+            if (d + ((turns.x + turns.z) + (turns.y + turns.w))).is_finite() {
+                self.lens =
+                    closed::spheres_apart(p.radius(), at_a.position, q.radius(), at_b.position, apart, d);
+                return Ok(self.lens.as_slice());
             }
-            _ => self.pair(a, at_a, b, at_b)?,
         }
+        self.patches.clear();
+        self.any_pair(a, at_a, b, at_b)?;
         Ok(&self.patches)
+    }
+
+    /// Adds the patches of a pair whose poses may not be finite.
+    #[inline(never)]
+    fn any_pair(&mut self, a: &dyn Shape, at_a: &Pose, b: &dyn Shape, at_b: &Pose) -> Result<(), DemError> {
+        check(a, at_a)?;
+        check(b, at_b)?;
+        self.pair(a, at_a, b, at_b)
     }
 
     /// Adds the patches of a pair.
@@ -314,11 +329,10 @@ fn best(a: &Form<'_>, b: &Form<'_>) -> Option<Route> {
     })
 }
 
-/// Refuses poses that are not finite. Short sums: they are not waited for.
+/// Refuses poses that are not finite.
 #[inline]
 pub(super) fn check(shape: &dyn Shape, at: &Pose) -> Result<(), DemError> {
-    let (x, q) = (&at.position, &at.orientation.coords);
-    if (((x.x + x.y) + (q.x + q.y)) + ((x.z + q.z) + q.w)).is_finite() {
+    if at.position.iter().chain(at.orientation.coords.iter()).all(|x| x.is_finite()) {
         Ok(())
     } else {
         Err(DemError::Pose { name: shape.name(), position: at.position.into() })
@@ -330,7 +344,5 @@ pub(super) fn check(shape: &dyn Shape, at: &Pose) -> Result<(), DemError> {
 /// # Errors
 /// Those of [`OverlapSolver::solve`].
 pub fn overlap(a: &dyn Shape, at_a: &Pose, b: &dyn Shape, at_b: &Pose) -> Result<Vec<Overlap>, DemError> {
-    let mut solver = OverlapSolver::new();
-    solver.solve(a, at_a, b, at_b)?;
-    Ok(solver.patches)
+    OverlapSolver::new().solve(a, at_a, b, at_b).map(<[_]>::to_vec)
 }

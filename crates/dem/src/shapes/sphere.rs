@@ -25,6 +25,7 @@ impl Sphere {
         }
     }
     /// Its radius \[m\].
+    #[inline]
     pub fn radius(&self) -> f64 {
         self.radius
     }
@@ -50,6 +51,7 @@ impl Shape for Sphere {
     fn bounding_radius(&self) -> f64 {
         self.radius
     }
+    #[inline]
     fn form(&self) -> Form<'_> {
         Form::Sphere(self)
     }

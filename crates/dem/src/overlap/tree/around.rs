@@ -144,7 +144,7 @@ impl Search<'_> {
                 }
                 last[i] = (s, level);
             }
-            s *= 1.5;
+            s *= 2.0;
         }
         width
     }

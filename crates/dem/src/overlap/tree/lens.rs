@@ -22,7 +22,7 @@ const FIRST: usize = 8;
 /// Where a surface is farther out than this, as a share of where it was guessed, few lines may agree by chance.
 const ODD: f64 = 1.3;
 /// And at most.
-const FINEST: usize = 64;
+const FINEST: usize = 128;
 
 /// What was found of a region, in a frame around its centre.
 #[derive(Clone, Copy, Debug)]
@@ -64,6 +64,22 @@ impl Lens {
         let height = |pole: f64| pole * (1.0 - s) + z * s;
         let above = (x.z - height(poles[0])).max(height(poles[1]) - x.z) - beyond;
         if out > 1.0 { above.max(x.x.hypot(x.y) * (1.0 - 1.0 / out) - beyond) } else { above }
+    }
+    /// Do they share nothing, as far as the ends, the middles and the rims of both tell?
+    pub(crate) fn is_apart_from(&self, o: &Self) -> bool {
+        let clear = |a: &Self, b: &Self| a.places().all(|x| b.outside(x) > 0.0);
+        clear(self, o) && clear(o, self)
+    }
+    /// Its middle, its poles and places of the rim, and between.
+    fn places(&self) -> impl Iterator<Item = Vector> + '_ {
+        let Outline { wide, rim, poles, .. } = &self.shape;
+        let around = rim.iter().enumerate().map(move |(k, [r, z])| {
+            let (sin, cos) = (std::f64::consts::TAU * k as f64 / FIRST as f64).sin_cos();
+            Vector::new(r * wide[0] * cos, r * wide[1] * sin, *z)
+        });
+        let ends = poles.map(|z| Vector::new(0.0, 0.0, z));
+        let all = around.chain(ends).flat_map(|x| [x, 0.5 * x]).chain([Vector::zeros()]);
+        all.map(move |x| self.centre + self.root.axes * x)
     }
     /// As a frame sees it in which this one's axes are the columns of `axes`.
     pub(crate) fn turn(&mut self, axes: &Matrix3<f64>) {
@@ -252,7 +268,8 @@ impl Lenses {
         let [mut coarse, fine] = totals;
         let mut sums = Totals { volume: coarse.volume + fine.volume, first: coarse.first + fine.first };
         let mut rims = [self.around(frame, FIRST / 2), self.around(frame, FIRST)];
-        let mut last = None;
+        // The last change, and by how much it was less than the one before.
+        let (mut last, mut last_rate) = (None, 1.0);
         // Of the half-planes that came last, and of those before.
         let mut newest = [f64::NAN, 2.0 * fine.volume / FIRST as f64];
         let odd = (0..FIRST).any(|k| self.meridians[k * step].beyond() > ODD);
@@ -269,9 +286,16 @@ impl Lenses {
                 change = change.max((newest[0] / newest[1] - 1.0).abs() / (0.5 * tolerance));
             }
             let odd_at_first = odd && n == FIRST;
-            // Errors fall by this much at every doubling; slowly where so many are needed.
-            let least = if n <= 2 * FIRST { 0.3 } else { 0.6 };
-            let rate = last.map_or(0.5, |last: f64| (change / last).clamp(least, 0.9));
+            // Errors fall by this much at every doubling; slowly where so many are needed, unless they have fallen fast twice.
+            let fell = last.map_or(0.5, |last: f64| change / last);
+            let least = if n <= 2 * FIRST {
+                (3.0 * fell).clamp(0.15, 0.3)
+            } else if fell.max(last_rate) < 0.3 {
+                0.3
+            } else {
+                0.6
+            };
+            let rate = fell.clamp(least, 0.9);
             if !((change.is_finite() || odd_at_first) && volume > 0.0) {
                 return None;
             }
@@ -282,10 +306,11 @@ impl Lenses {
                 let centroid = Vector::new(first.x * sight.wide[0], first.y * sight.wide[1], first.z);
                 return Some(self.lens(frame, poles, n, volume, centroid, rims[1]));
             }
-            if n == FINEST {
+            // As many again would not do.
+            if n == FINEST || (2 * n == FINEST && change * fell > 0.5) {
                 return None;
             }
-            last = Some(change).filter(|c| c.is_finite());
+            (last, last_rate) = (Some(change).filter(|c| c.is_finite()), fell);
             let stage = (n / FIRST).ilog2() as usize;
             let lines = (few + 1 + stage).min(MOST);
             coarse = sums;

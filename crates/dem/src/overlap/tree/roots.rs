@@ -82,10 +82,13 @@ impl Root {
             None => self.bounds.holds_ball(x, reach),
         }
     }
-    /// May what is said of both count something twice? What is convex holds nothing else.
+    /// May what is said of both count something twice? What is convex holds nothing else, and lenses end at their rims.
     fn must_be_one_with(&self, o: &Self) -> bool {
-        let apart = [self, o].iter().all(|r| r.region.is_some())
-            && [self, o].iter().any(|r| matches!(r.region, Some(Region::Convex(_))));
+        let apart = match (&self.region, &o.region) {
+            (Some(Region::Lens(a)), Some(Region::Lens(b))) => a.is_apart_from(b),
+            (Some(_), Some(_)) => true,
+            _ => false,
+        };
         !apart && self.bounds.may_meet(&o.bounds)
     }
     /// Is the straight way to `x` within both bodies?

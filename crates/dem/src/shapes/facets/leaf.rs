@@ -253,3 +253,6 @@ fn more(a: f32, b: f32) -> f32 {
 pub(crate) fn moved(row: &[f64; 3], shift: f64, x: [f64; 3]) -> f64 {
     row[0] * x[0] + row[1] * x[1] + row[2] * x[2] + shift
 }
+
+#[cfg(test)]
+mod tests;

@@ -129,6 +129,7 @@ impl Meridian {
             return None;
         }
         let r = rim.q.sqrt();
+        let between = near.iter().all(Option::is_some);
         for (j, [p, _]) in LOBATTO[n - FEWEST].iter().enumerate() {
             let s = p * p;
             for i in 0..2 {
@@ -136,7 +137,12 @@ impl Meridian {
                 let from = sight.place(azimuth, r * from[0], from[1]);
                 let along = sight.place(azimuth, r * to[0], to[1]) - from;
                 let start = Self::guess(near, i, s, poles, rim.z);
-                let hit = poles.hit(sight, i, from, along, start)?;
+                let hit = poles.hit(sight, i, from, along, start, between)?;
+                this.hits[i][j] = hit;
+                // Between others that were looked at every other line is, of either body.
+                if between && (i + j) % 2 == 1 {
+                    continue;
+                }
                 // Within the other body; this one's surface is met there only.
                 let other = sight.distance(1 - i, from + hit.t * along);
                 if other > 0.05 * (poles.z[i] * poles.slope[i]).abs()
@@ -145,7 +151,6 @@ impl Meridian {
                 {
                     return None;
                 }
-                this.hits[i][j] = hit;
             }
         }
         Some(this)
@@ -254,28 +259,47 @@ impl Poles {
     }
 
     /// Where the surface of body `i` is on a line: by secants from the guess, or, if they fail, from the line's beginning, no
-    /// farther at a time than it is to the surface.
-    fn hit(&self, sight: &Sight<'_>, i: usize, from: Vector, along: Vector, start: Hit) -> Option<Hit> {
-        self.secants(sight, i, from, along, start).or_else(|| {
+    /// farther at a time than it is to the surface. Guesses `between` others are good ones.
+    fn hit(
+        &self,
+        sight: &Sight<'_>,
+        i: usize,
+        from: Vector,
+        along: Vector,
+        start: Hit,
+        between: bool,
+    ) -> Option<Hit> {
+        // What is left of a step is its share by which the slope is wrong.
+        let short = self.accuracy * if between { 5.0 } else { 0.5 };
+        self.secants(sight, i, from, along, start, short).or_else(|| {
             let (length, mut t) = (along.norm(), 0.0);
             for _ in 0..20 {
                 let step = -sight.distance(i, from + t * along) / length;
                 t += step;
                 if step.abs() < 0.05 {
-                    return self.secants(sight, i, from, along, Hit { t, slope: length });
+                    return self.secants(sight, i, from, along, Hit { t, slope: length }, 0.0);
                 }
             }
             None
         })
     }
 
-    fn secants(&self, sight: &Sight<'_>, i: usize, from: Vector, along: Vector, start: Hit) -> Option<Hit> {
+    /// By secants, unless the first step is a `short` one.
+    fn secants(
+        &self,
+        sight: &Sight<'_>,
+        i: usize,
+        from: Vector,
+        along: Vector,
+        start: Hit,
+        mut short: f64,
+    ) -> Option<Hit> {
         let f = |t: f64| sight.distance(i, from + t * along);
         let Hit { mut t, mut slope } = start;
         let mut d = f(t);
         for _ in 0..8 {
             let step = (-d / slope).clamp(-0.5, 1.0);
-            if step.abs() <= 0.5 * self.accuracy {
+            if step.abs() <= short.max(0.5 * self.accuracy) {
                 return Some(Hit { t: t + step, slope });
             }
             let next = t + step;
@@ -288,7 +312,7 @@ impl Poles {
             if (second * step).abs() <= 0.2 * self.accuracy {
                 return Some(Hit { t: next + second, slope: secant });
             }
-            (t, d, slope) = (next, there, secant);
+            (t, d, slope, short) = (next, there, secant, 0.0);
         }
         None
     }

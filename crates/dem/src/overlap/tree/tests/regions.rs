@@ -157,3 +157,23 @@ fn lenses_and_boxes_agree() {
     assert!((lens.gradient - other.gradient).norm() < 2e-2 * area, "{lens:?} {other:?}");
     assert!((lens.moment - other.moment).norm() < 2e-2 * area.powf(1.5), "{lens:?} {other:?}");
 }
+
+/// Two lenses whose boxes meet and who share nothing are measured as two lenses: a ball between two others that do not touch.
+#[test]
+fn lenses_whose_boxes_meet_have_no_boxes() {
+    const TWO: Given = Given {
+        distance: |x| (x - Vector::x() * 1.01).norm().min((x + Vector::x() * 1.01).norm()) - 1.0,
+        half: [2.01, 1.0, 1.0],
+    };
+    for height in [1.2, 1.3, 1.4, 1.5] {
+        let mut solver = tolerance(1e-3);
+        let at_b = turned(at(0.0, 0.0, height), [0.3, -0.4, 0.5]);
+        let patches = solver.solve(&TWO, &at(0.0, 0.0, 0.0), &BALL, &at_b).unwrap().to_vec();
+        let exact = lens(1.01_f64.hypot(height));
+        assert_eq!(patches.len(), 2, "{height}");
+        for patch in patches {
+            assert!((patch.volume / exact - 1.0).abs() < 1e-3, "{height} {patch:?}");
+        }
+        assert_eq!(solver.boxes().count(), 0, "{height}");
+    }
+}

@@ -1,9 +1,7 @@
 //! Large-eddy simulation.
 use example_support::Outcome;
 use example_support::cpu::Stopwatch;
-use siltflow::flow::{
-    Axis, CartesianGrid, ClosureSlot, Cluster, Fluid, Hooks, Modelled, Projection, Side, TransportParams,
-};
+use siltflow::flow::{CartesianGrid, ClosureSlot, Fluid, Hooks, Modelled, Projection, Side, TransportParams};
 use std::f64::consts::TAU;
 use turb::{Wale, WaleConstants};
 
@@ -55,75 +53,5 @@ fn of_vortices<C: ClosureSlot<3>>(
         100.0 * (peak / PEAK[0] - 1.0),
         watch.elapsed().cpu
     );
-    Ok(())
-}
-
-/// Channel at Re_τ 180 on few cells, driven by the force of the direct numerical simulation (Moser, Kim & Mansour 1999): the mean
-/// profile. Cells from the environment variable `LES_CELLS` (32 along, 48 across, 32 in span).
-pub(crate) fn channel() -> Outcome<()> {
-    println!("\nChannel, Re_tau 180, WALE against direct numerical simulation");
-    let re = 178.12;
-    let (lengths, cells) = ([6.0, 2.0, 3.0], [32, 48, 32]);
-    let axes = [
-        Axis::uniform(cells[0], 0.0, lengths[0])?,
-        Axis::tanh(cells[1], 0.0, lengths[1], 2.0, Cluster::Both)?,
-        Axis::uniform(cells[2], 0.0, lengths[2])?,
-    ];
-    let grid = CartesianGrid::from_axes(axes)?;
-    let sides = [Side::Periodic.both(), Side::WALL.both(), Side::Periodic.both()];
-    let mut flow = Projection::new(grid, sides, Fluid { density: 1.0, viscosity: 1.0 / re })?;
-    flow.set_velocity(|[x, y, z]| {
-        let (ax, az) = (TAU * x / lengths[0], TAU * z / lengths[2]);
-        let envelope = y * (2.0 - y);
-        [
-            18.0 * envelope + 2.0 * envelope * ((2.0 * az).cos() + (3.0 * az + ax).sin()),
-            1.5 * envelope * ((2.0 * az).sin() + (2.0 * ax + az).cos()),
-            2.0 * envelope * ((2.0 * ax + 1.0).sin() + (3.0 * ax - az).cos()),
-        ]
-    });
-    let closure = Wale::new(WaleConstants::default(), flow.grid().n_cells())?;
-    let modelled = Modelled::new(closure, flow.grid(), flow.sides(), TransportParams::default())?;
-    let mut hooks = Hooks::none().with_body_force([1.0, 0.0, 0.0]).with_closure(modelled);
-    let watch = Stopwatch::start();
-    let mut mean = vec![0.0; cells[1]];
-    let (mut weight, mut steps) = (0.0, 0);
-    while flow.time() < 30.0 {
-        let dt = flow.stable_dt(0.5);
-        flow.advance_with(dt, &mut hooks)?;
-        steps += 1;
-        if flow.time() < 12.0 {
-            continue;
-        }
-        weight += dt;
-        let u = flow.velocity().field(0);
-        for (j, mean) in mean.iter_mut().enumerate() {
-            let rows = (0..cells[2]).map(|k| u.row(j + cells[1] * k).iter().sum::<f64>());
-            *mean += dt * rows.sum::<f64>() / (cells[0] * cells[2]) as f64;
-        }
-    }
-    let reference: Vec<[f64; 2]> = include_str!("../../tests/data/turbulence/mkm_180_means.dat")
-        .lines()
-        .filter(|line| !line.starts_with('#'))
-        .filter_map(|line| {
-            let mut numbers = line.split_whitespace().map(str::parse::<f64>);
-            let (y, _, u) = (numbers.next()?.ok()?, numbers.next()?, numbers.next()?.ok()?);
-            Some([y, u])
-        })
-        .collect();
-    let mut worst = 0.0_f64;
-    println!("{:>8} {:>8} {:>8} {:>8}", "y+", "U+", "DNS", "off");
-    for j in 0..cells[1] / 2 {
-        let y = flow.grid().axis(1).centre(j);
-        let u = 0.5 * (mean[j] + mean[cells[1] - 1 - j]) / weight;
-        let Some(pair) = reference.windows(2).find(|pair| pair[1][0] >= y) else { continue };
-        let part = (y - pair[0][0]) / (pair[1][0] - pair[0][0]);
-        let dns = pair[0][1] + part * (pair[1][1] - pair[0][1]);
-        let off = u / dns - 1.0;
-        worst = if off.abs() > worst.abs() { off } else { worst };
-        if j % 3 == 0 {
-            println!("{:>8.1} {u:>8.3} {dns:>8.3} {:>6.1} %", y * re, 100.0 * off);
-        }
-    }
-    println!("largest {:.1} %; {steps} steps, {:.0} CPU s", 100.0 * worst, watch.elapsed().cpu);
     Ok(())
 }

@@ -18,6 +18,5 @@ fn main() -> Outcome<()> {
         ("cost", robust::cost),
         ("robust", robust::bad_starts),
         ("tgv", large_eddies::taylor_green),
-        ("les_channel", large_eddies::channel),
     ])
 }

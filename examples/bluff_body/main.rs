@@ -38,13 +38,19 @@ struct Cli {
     /// Relaxation factor of the velocity
     #[arg(long, default_value_t = 0.8)]
     relaxation: f64,
+    /// Intensity of the turbulence that enters; with next to none the wall functions take the layer for a laminar one
+    #[arg(long, default_value_t = 0.05)]
+    intensity: f64,
+    /// Its ν_t/ν
+    #[arg(long, default_value_t = 100.0)]
+    ratio: f64,
     /// Half of the flow: a plane of symmetry along the stream keeps the wake from swinging
     #[arg(long)]
     half: bool,
 }
 
 /// Where the stream begins and ends along its way, and how far to either side it goes \[m\].
-const ENDS: [f64; 3] = [-20.0, 40.0, 20.0];
+const ENDS: [f64; 3] = [-10.0, 40.0, 20.0];
 
 fn main() -> Outcome<()> {
     let cli = Cli::parse();
@@ -95,7 +101,7 @@ fn run<const D: usize, S: Solid + Copy + 'static>(cli: &Cli, body: S, face: f64)
     flow.set_walls(Some((&cuts, WallStress::LOG_LAW)))?;
     flow.set_velocity(|_| std::array::from_fn(|a| if a == 0 { 1.0 } else { 0.0 }));
     let n = flow.grid().n_cells();
-    let inflow = Inflow::from_viscosity_ratio(1.0, 0.01, 1.0, fluid.viscosity)?;
+    let inflow = Inflow::from_viscosity_ratio(1.0, cli.intensity, cli.ratio, fluid.viscosity)?;
     let closure = KOmegaSst::new(Sst::default(), n, inflow)?;
     let mut model = Modelled::new(closure, flow.grid(), flow.sides(), TransportParams::steady())?;
     let grid = flow.grid().clone();

@@ -2,6 +2,7 @@
 //! measurements; what they cost, and what they bear. On one thread: `cargo bench --bench turbulence`, or with the names of cases after `--`.
 //! Pictures go to `out/turbulence`.
 mod channel;
+mod large_eddies;
 mod plate;
 mod robust;
 mod step;
@@ -16,5 +17,6 @@ fn main() -> Outcome<()> {
         ("step", step::backward_facing_step),
         ("cost", robust::cost),
         ("robust", robust::bad_starts),
+        ("tgv", large_eddies::taylor_green),
     ])
 }

@@ -46,6 +46,9 @@ struct Cli {
     re: f64,
     #[arg(long, default_value_t = 1000)]
     iterations: usize,
+    /// Relaxation factor of the velocity; what is steady does not depend on it
+    #[arg(long, default_value_t = 0.85)]
+    relaxation: f64,
     /// Where pictures and the flow go
     #[arg(long, default_value = "target/bent_channel")]
     out: PathBuf,
@@ -142,7 +145,7 @@ fn run<C: Closure>(cli: &Cli, duct: Duct, grid: CartesianGrid<2>, closure: C, na
     let fluid = Fluid { density: 1.0, viscosity: 1.0 / cli.re };
     let mut flow = Simple::new(grid.clone(), sides(cli, duct), fluid)?
         .with_convection(Convection::LinearUpwind)
-        .with_params(SimpleParams::turbulent())?;
+        .with_params(SimpleParams { velocity_relaxation: cli.relaxation, ..SimpleParams::turbulent() })?;
     let walls = StaticBodies::new().with(duct, Pose::at([0.0; 3]));
     let cuts = cut_cells(flow.velocity(), &walls)?;
     flow.set_walls(Some((&cuts, WallStress::LOG_LAW)))?;

@@ -94,6 +94,9 @@ pub struct CellTransport<const D: usize> {
     pinned: Vec<bool>,
     /// Cells without fluid at their centre, and those from which their values are taken.
     dry: Vec<Dry>,
+    /// Axis and storage index of the faces of those cells, and the velocity without what it is on them.
+    closed: Vec<(usize, usize)>,
+    carrier: Option<Box<Velocity<D>>>,
     bicgstab: BiCgStabScratch,
     gauss_seidel: GaussSeidelScratch,
     /// Γ or a, φ or b, and two terms.
@@ -137,6 +140,8 @@ impl<const D: usize> CellTransport<D> {
             x: vec![0.0; n],
             pinned: vec![false; n],
             dry: Vec::new(),
+            closed: Vec::new(),
+            carrier: None,
             bicgstab: BiCgStabScratch::new(n),
             gauss_seidel: GaussSeidelScratch::new(n),
             fields: std::array::from_fn(|_| Field::zeros(grid)),
@@ -155,7 +160,38 @@ impl<const D: usize> CellTransport<D> {
 
     /// Takes these cells out of the equations: nothing passes between them and others.
     pub(crate) fn set_walls(&mut self, dry: Vec<Dry>) {
+        let (grid, periodic) = (self.ops.grid(), self.ops.metrics().periodic);
+        let (n, s) = (grid.cells(), grid.stride());
+        self.closed.clear();
+        for &(cell, _) in &dry {
+            let (at, place) = (grid.cell(cell), grid.place(grid.cell(cell)));
+            for a in 0..D {
+                self.closed.extend([(a, place), (a, place + s[a])]);
+                // The same face beyond the other end.
+                if periodic[a] && at[a] == 0 {
+                    self.closed.push((a, place + n[a] * s[a]));
+                }
+                if periodic[a] && at[a] + 1 == n[a] {
+                    self.closed.push((a, place + s[a] - n[a] * s[a]));
+                }
+            }
+        }
+        self.carrier = None;
         self.dry = dry;
+    }
+
+    /// Takes the velocity as it is where something passes: not through faces of cells without fluid.
+    fn carry(&mut self, velocity: &Velocity<D>) {
+        if self.dry.is_empty() {
+            return;
+        }
+        let carrier = self.carrier.get_or_insert_with(|| Box::new(velocity.clone()));
+        for (own, u) in carrier.components.iter_mut().zip(&velocity.components) {
+            own.data_mut().copy_from_slice(u.data());
+        }
+        for &(a, o) in &self.closed {
+            carrier.components[a].data_mut()[o] = 0.0;
+        }
     }
     pub(crate) fn has_walls(&self) -> bool {
         !self.dry.is_empty()
@@ -276,7 +312,13 @@ impl<const D: usize> CellTransport<D> {
             fill_dense(grid, &kernel, upper[axis]);
         }
         self.shut();
-        let Self { ops, sides, params, volume, matrix, b, fields, .. } = self;
+        let second_order = self.params.scheme != Convection::Upwind;
+        if second_order {
+            self.carry(velocity);
+        }
+        let Self { ops, sides, params, volume, matrix, b, fields, carrier, .. } = self;
+        // Else a difference could be taken from what the matrix does not bring.
+        let velocity = carrier.as_deref().unwrap_or(velocity);
         let (grid, metrics) = (ops.grid(), ops.metrics());
         let [_, carried, high, low] = fields;
         let (centre, mut lower, mut upper) = matrix.parts_mut();
@@ -293,7 +335,7 @@ impl<const D: usize> CellTransport<D> {
             *centre = sum;
             b[i] += volume[i] * rate * phi[i];
         }
-        if params.scheme != Convection::Upwind {
+        if second_order {
             copy_dense(grid, phi, carried);
             sides.fill(carried, Some(e.inlet), e.wall);
             ops.convection(velocity, carried, params.scheme, high)?;

@@ -68,6 +68,7 @@ pub struct TwoEquation<L> {
     /// What the last solves of s and k did.
     solves: [SolveInfo; 2],
     floored: usize,
+    limited: usize,
     y_plus: YPlus,
 }
 
@@ -85,6 +86,8 @@ struct Work {
 
 /// The least value of k \[m²/s²\] and of ω or ε.
 const FLOOR: f64 = 1e-30;
+/// ν_t over √k and the mixing length: C_μ^¼.
+const MIXING: f64 = 0.547_722_557_505_166_1;
 
 impl<L: Law> TwoEquation<L> {
     /// The model `law` on `cells` cells, all as `inflow`, which is also what enters.
@@ -113,6 +116,7 @@ impl<L: Law> TwoEquation<L> {
             },
             solves: [SolveInfo::default(); 2],
             floored: 0,
+            limited: 0,
             y_plus: YPlus::default(),
             law,
         };
@@ -217,6 +221,11 @@ impl<L: Law> TwoEquation<L> {
     /// Values that had to be set to the least one in the last call.
     pub fn floored(&self) -> usize {
         self.floored
+    }
+    /// Cells whose ν_t was limited in the last call: in steady iterations the mixing length C_μ^¾ k^(3/2)/ε is at most the largest
+    /// distance from a wall.
+    pub fn limited(&self) -> usize {
+        self.limited
     }
     /// What the last solves of ω or ε, and of k, did.
     pub fn solves(&self) -> [SolveInfo; 2] {
@@ -385,8 +394,16 @@ impl<L: Law> Closure for TwoEquation<L> {
         self.prepare(flow, nu, dt)?;
         self.solves[0] = self.solve_scale(flow, nu, dt)?;
         self.solves[1] = self.solve_k(flow, nu, dt)?;
-        for (i, &d) in flow.wall_distance().iter().enumerate() {
-            self.eddy[i] = self.law.eddy_viscosity(&self.local(i, d, nu));
+        let distance = flow.wall_distance();
+        let widest = distance.iter().copied().fold(0.0, f64::max);
+        // Where k and ε are far from each other ν_t would run away before they are not.
+        let length = if dt.is_none() && widest > 0.0 { MIXING * widest } else { f64::INFINITY };
+        self.limited = 0;
+        for (i, &d) in distance.iter().enumerate() {
+            let eddy = self.law.eddy_viscosity(&self.local(i, d, nu));
+            let most = length * self.k[i].sqrt();
+            self.limited += usize::from(eddy > most);
+            self.eddy[i] = if eddy > most { most } else { eddy };
         }
         self.layer.refresh(walls, &self.k, nu);
         self.y_plus = self.layer.y_plus(walls, nu);

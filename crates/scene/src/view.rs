@@ -67,11 +67,9 @@ pub(crate) struct Other<'a> {
 /// What a turbulence model has to show.
 fn of_model<const D: usize>(model: &Option<Model<D>>) -> Vec<Other<'_>> {
     let Some(Model { closure, .. }) = model else { return Vec::new() };
-    let field = |name: &'static str, unit: &'static str, values: &'_ [f64]| Other {
-        name,
-        unit,
-        values: Box::new(values.to_vec().into_iter()),
-    };
+    fn field<'a>(name: &'a str, unit: &'a str, values: &'a [f64]) -> Other<'a> {
+        Other { name, unit, values: Box::new(values.iter().copied()) }
+    }
     let k = closure.kinetic_energy().map(|k| field("k", "m²/s²", k));
     let eddy = closure.eddy_viscosity().map(|e| field("eddy_viscosity", "m²/s", e));
     k.into_iter().chain(eddy).collect()

@@ -109,3 +109,23 @@ fn a_cylinder_that_swings_and_is_killed_goes_on() {
 fn polyhedra_that_are_killed_go_on() {
     killed("sedimenting_polyhedra", &["grid.cells=[32, 32, 64]", "time.end=0.01"]);
 }
+
+/// Who reads the plan or the results may leave: no panic, and what had to be done is done.
+#[test]
+fn nobody_has_to_read() {
+    let out = std::env::temp_dir().join(format!("siltflow-unread-{}", std::process::id()));
+    for (arguments, done) in
+        [(&["--check"][..], None), (&["--json", "--set", "time.end=0.05"], Some("result.json"))]
+    {
+        let mut command = Command::new(program());
+        command.arg(format!("{}/scenes/taylor_green.toml", env!("CARGO_MANIFEST_DIR"))).args(arguments);
+        command.arg("--out").arg(&out).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        drop(child.stdout.take());
+        let ended = child.wait_with_output().unwrap();
+        let told = String::from_utf8_lossy(&ended.stderr);
+        assert!(ended.status.success() && !told.contains("panicked"), "{arguments:?}: {told}");
+        assert!(done.is_none_or(|file| out.join(file).exists()));
+    }
+    std::fs::remove_dir_all(&out).unwrap();
+}

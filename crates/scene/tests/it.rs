@@ -405,3 +405,22 @@ fn a_wall_in_a_steady_channel_has_friction() {
     assert!((2e-3..1.2e-2).contains(&drag), "{drag}");
     assert!(run.result["y_plus"]["mean"].as_f64().unwrap() > 10.0);
 }
+
+/// A disk that is full when the results are written: an error that says so, and a state from which the run goes on as if nothing had been.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_and_costs_nothing() {
+    let [whole, full] = ["disk-whole", "disk-full"].map(folder);
+    let scene = Scene::parse("warm.toml", WARM, &["time.end=0.2".into()]).unwrap();
+    let run = |options: &Options| scene.run(options, &AtomicBool::new(false));
+    let all = run(&quiet(&whole)).unwrap().result;
+    std::fs::create_dir_all(&full).unwrap();
+    let part = full.join("result.json.part");
+    std::os::unix::fs::symlink("/dev/full", &part).unwrap();
+    let error = run(&quiet(&full)).unwrap_err().to_string();
+    assert!(error.contains("is the disk full") && error.contains("result.json"), "{error}");
+    std::fs::remove_file(&part).unwrap();
+    let rest = run(&Options { resume: true, ..quiet(&full) }).unwrap().result;
+    assert_eq!(all, rest);
+    [whole, full].iter().for_each(|out| std::fs::remove_dir_all(out).unwrap());
+}

@@ -268,14 +268,14 @@ impl<L: Law> TwoEquation<L> {
         }
         if L::AUXILIARY {
             // Steady iterations of SST may else go round in circles where F₁ changes abruptly.
-            let part = if dt.is_some() { 1.0 } else { 0.5 };
             let distance = flow.wall_distance();
             for (i, &d) in distance.iter().enumerate() {
                 let local = self.local(i, d, nu);
                 let invariants = self.work.gradient.get(i).map(Invariants::of).unwrap_or_default();
                 let new = self.law.auxiliary(&local, invariants);
                 let old = &mut self.work.auxiliary[i];
-                *old += part * (new - *old);
+                // In time there is no memory of it, to the last bit.
+                *old = if dt.is_some() { new } else { 0.5 * (*old + new) };
             }
             for w in self.layer.cells.iter().filter(|_| L::GRADIENT) {
                 if let Some(shear) = w.shear {

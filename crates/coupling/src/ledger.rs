@@ -1,7 +1,7 @@
 //! The books of momentum and energy.
 use crate::particles::Stake;
 use crate::{CouplingError, FlowSolver, Observer, Particles, Simulation, StepInfo, Strategy};
-use fv_mesh::{Hooked, Projection};
+use fv_mesh::Projection;
 use ibm::Forcing;
 use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Vector};
 
@@ -12,7 +12,8 @@ use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Vector};
 /// way between the two (see [`Particles`]). Impulses: net weight, body force, contacts with walls,
 /// what holds bodies that are not free, and what the box's own walls do to the fluid. Energy: E = ½ρ∫_Ω u² + Σ½(1 − ρ/ρ_s)(mU² + ΩIΩ)
 /// against the work of net weight, body force and contacts less the viscous dissipation ρν∫|∇u|²
-/// (trapezoidal in time) and what the forcing [hides](ibm::Forcing::hidden_dissipation). What bodies bring that are put into the flow, and take along that are taken out, is no residual. (The fluid that a [`MovingWindow`](crate::MovingWindow) leaves behind is.)
+/// (trapezoidal in time) and what the forcing [hides](ibm::Forcing::hidden_dissipation). What bodies bring that are put into the flow, and take along that are taken out, is no residual. (The fluid that a [`MovingWindow`](crate::MovingWindow) leaves behind is, and so is what a [`Hooked`](fv_mesh::Hooked) flow's own hooks do: forces that differ
+/// from place to place, an eddy viscosity.)
 ///
 /// The books open where a run begins. Those of an interrupted run go on, bit for bit, if they are saved beside the simulation and restored
 /// before the next.
@@ -108,7 +109,7 @@ impl Ledger {
         brought
     }
 
-    fn balance<const D: usize, F: Forcing, B: Dynamics, S: Strategy, A: Accounted<D>>(
+    fn balance<const D: usize, F: Forcing, B: Dynamics, S: Strategy, A: FlowSolver<D>>(
         simulation: &mut Simulation<D, Particles<F, B, S>, A>,
     ) -> (Books, LedgerReport) {
         let force = simulation.body_force();
@@ -133,30 +134,12 @@ impl Ledger {
     }
 }
 
-/// A flow that tells what the sides of its box did to it.
-pub trait Accounted<const D: usize>: FlowSolver<D> {
-    /// Impulse of the bounded sides on the fluid during the last step \[N s\].
-    fn wall_impulse(&self) -> Vector;
-}
-
-impl<const D: usize> Accounted<D> for Projection<D> {
-    fn wall_impulse(&self) -> Vector {
-        Projection::wall_impulse(self)
-    }
-}
-
-/// What hooks do to momentum and energy (a force that differs from place to place, an eddy viscosity) is not in the books.
-impl<const D: usize, B, C, S> Accounted<D> for Hooked<D, B, C, S>
+impl<const D: usize, F, B, S, A> Observer<Simulation<D, Particles<F, B, S>, A>> for Ledger
 where
-    Self: FlowSolver<D>,
-{
-    fn wall_impulse(&self) -> Vector {
-        self.flow.wall_impulse()
-    }
-}
-
-impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy, A: Accounted<D>>
-    Observer<Simulation<D, Particles<F, B, S>, A>> for Ledger
+    F: Forcing,
+    B: Dynamics,
+    S: Strategy,
+    A: FlowSolver<D> + AsRef<Projection<D>>,
 {
     fn begin(&mut self, simulation: &mut Simulation<D, Particles<F, B, S>, A>) {
         if std::mem::take(&mut self.resumed) {
@@ -178,7 +161,7 @@ impl<const D: usize, F: Forcing, B: Dynamics, S: Strategy, A: Accounted<D>>
         let dt = info.dt;
         let (flow, particles) = (&simulation.flow, &simulation.particles);
         let body_force = dt * flow.fluid().density * flow.grid().volume() * simulation.body_force();
-        let walls = flow.wall_impulse();
+        let walls = flow.as_ref().wall_impulse();
         let brought = self.turnover(particles);
         let (mut contacts, mut weight, mut held) = (Vector::zeros(), Vector::zeros(), Vector::zeros());
         let (mut contact_work, mut sum) = (0.0, 0.0);

@@ -46,7 +46,7 @@ mod strategy;
 pub use checkpoint::{CheckpointError, load, previous, save};
 pub use error::CouplingError;
 pub use flow_solver::FlowSolver;
-pub use ledger::{Accounted, Ledger, LedgerReport};
+pub use ledger::{Ledger, LedgerReport};
 pub use moving_window::MovingWindow;
 pub use output::FileOutput;
 pub use particles::{BodyReport, Particles};

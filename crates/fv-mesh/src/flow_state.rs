@@ -181,27 +181,17 @@ impl<const D: usize> FlowState<D> {
         }
         self.set_window(window).map_err(|_| RestartError::Differs("window".into()))?;
         for (c, component) in self.velocity.components.iter_mut().enumerate() {
-            restore_list(source, &format!("velocity{c}"), component.data_mut())?;
+            RestartError::fill(source, &format!("velocity{c}"), component.data_mut())?;
         }
-        restore_list(source, "pressure", self.pressure.data_mut())?;
+        RestartError::fill(source, "pressure", self.pressure.data_mut())?;
         let clock = RestartError::take(source, "clock", 3)?;
         (self.time, self.step, self.last_dt) = (clock[0], clock[1] as u64, clock[2]);
-        restore_list(source, "rates", &mut self.rates)?;
+        RestartError::fill(source, "rates", &mut self.rates)?;
         let mut sides = Vec::new();
         self.boundaries.memory(&mut sides);
         self.boundaries.recall(RestartError::take(source, "sides", sides.len())?);
         Ok(())
     }
-}
-
-/// Fills `list` from what was saved as `name`.
-pub(crate) fn restore_list<'a>(
-    source: &dyn Fn(&str) -> Option<&'a [f64]>,
-    name: &str,
-    list: &mut [f64],
-) -> Result<(), RestartError> {
-    list.copy_from_slice(RestartError::take(source, name, list.len())?);
-    Ok(())
 }
 
 /// Calls `f` with the storage index and the place of every node of component `c` (those on bounded sides too).

@@ -133,6 +133,32 @@ where
     }
 }
 
+/// The projection in it.
+impl<const D: usize, B, C, S> AsRef<Projection<D>> for Hooked<D, B, C, S> {
+    fn as_ref(&self) -> &Projection<D> {
+        &self.flow
+    }
+}
+
+impl<const D: usize, B, C, S> AsMut<Projection<D>> for Hooked<D, B, C, S> {
+    fn as_mut(&mut self) -> &mut Projection<D> {
+        &mut self.flow
+    }
+}
+
+/// Itself, as a [`Hooked`] has one.
+impl<const D: usize> AsRef<Self> for Projection<D> {
+    fn as_ref(&self) -> &Self {
+        self
+    }
+}
+
+impl<const D: usize> AsMut<Self> for Projection<D> {
+    fn as_mut(&mut self) -> &mut Self {
+        self
+    }
+}
+
 impl<const D: usize, B, C: ClosureSlot<D> + Checkpoint, S: Checkpoint> Checkpoint for Hooked<D, B, C, S> {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         self.flow.save(&mut |name, values| sink(&format!("flow.{name}"), values));

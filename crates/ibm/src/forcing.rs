@@ -32,9 +32,6 @@ impl Layer {
         let mut angular = self.momentum.fixed_rows_mut::<3>(3);
         angular += sums.momentum_arm.cross(&unit);
     }
-}
-
-impl Layer {
     /// Adds a point at the arm r where a fluid mass w moves along the unit vector n only: `along` is √w n, `momentum` √w n·û.
     pub(crate) fn add_along(&mut self, along: Vector, arm: Vector, momentum: f64) {
         let turn = arm.cross(&along);

@@ -91,6 +91,19 @@ impl RestartError {
             Err(Self::Length { name: name.into(), expected, found: found.len() })
         }
     }
+
+    /// Fills `list` from the array `name` of `source`.
+    ///
+    /// # Errors
+    /// As [`take`](Self::take) has them; `list` is then as it was.
+    pub fn fill<'a>(
+        source: &dyn Fn(&str) -> Option<&'a [f64]>,
+        name: &str,
+        list: &mut [f64],
+    ) -> Result<(), Self> {
+        list.copy_from_slice(Self::take(source, name, list.len())?);
+        Ok(())
+    }
 }
 
 impl std::fmt::Display for RestartError {

@@ -71,7 +71,7 @@ impl<S: Checkpoint, K: Checkpoint> Checkpoint for Whole<'_, S, K> {
         if RestartError::take(source, "scene", 2)? != halves(self.fingerprint) {
             return Err(RestartError::Differs("the scene".into()));
         }
-        self.extremes.0.copy_from_slice(RestartError::take(source, "extremes", 3)?);
+        RestartError::fill(source, "extremes", &mut self.extremes.0)?;
         self.simulation.restore(source)?;
         self.books.restore(&|name| source(&format!("books.{name}")))
     }

@@ -3,9 +3,9 @@ use super::one_solve::{OneSolve, foresee};
 use super::{Strategy, sealed};
 use crate::particles::{State, six};
 use crate::{CouplingError, FlowSolver, Module, Particles, Timings};
-use fv_mesh::{BodyForce, ClosureSlot, Hooked, Prediction, Projection, ScalarTransport};
+use fv_mesh::{Prediction, Projection};
 use ibm::Forcing;
-use interfaces::{BodyId, Checkpoint, Dynamics, Load};
+use interfaces::{BodyId, Dynamics, Load};
 use nalgebra::Vector6;
 
 /// Starts like [`OneSolve`], then corrects the bodies' velocities by what their equations of motion leave,
@@ -55,38 +55,11 @@ impl sealed::Strategy for Iterated {
     }
 }
 
-/// A flow that can go back to u*.
-pub trait Rewind<const D: usize>: FlowSolver<D> {
-    /// Notes the velocity after the predictor.
-    fn note(&self, prediction: &mut Prediction);
-    /// Goes back to it.
-    fn go_back(&mut self, prediction: &Prediction);
-}
-
-impl<const D: usize> Rewind<D> for Projection<D> {
-    fn note(&self, prediction: &mut Prediction) {
-        Projection::note(self, prediction);
-    }
-    fn go_back(&mut self, prediction: &Prediction) {
-        Projection::go_back(self, prediction);
-    }
-}
-
-impl<const D: usize, B, C, S> Rewind<D> for Hooked<D, B, C, S>
+/// The flow has to go back to u*, as a projection can.
+impl<const D: usize, A> sealed::Exchange<D, A> for Iterated
 where
-    B: BodyForce<D, S>,
-    C: ClosureSlot<D> + Checkpoint,
-    S: ScalarTransport<D> + Checkpoint,
+    A: FlowSolver<D> + AsRef<Projection<D>> + AsMut<Projection<D>>,
 {
-    fn note(&self, prediction: &mut Prediction) {
-        self.flow.note(prediction);
-    }
-    fn go_back(&mut self, prediction: &Prediction) {
-        self.flow.go_back(prediction);
-    }
-}
-
-impl<const D: usize, A: Rewind<D>> sealed::Exchange<D, A> for Iterated {
     fn exchange<F: Forcing, B: Dynamics>(
         particles: &mut Particles<F, B, Self>,
         flow: &mut A,
@@ -95,7 +68,7 @@ impl<const D: usize, A: Rewind<D>> sealed::Exchange<D, A> for Iterated {
     ) -> Result<(), CouplingError> {
         timings.measure(Module::Forcing, || foresee(particles, flow, dt, Some(0.0)))?;
         let Self { tolerance, most, .. } = particles.strategy;
-        flow.note(&mut particles.strategy.prediction);
+        flow.as_ref().note(&mut particles.strategy.prediction);
         let n = particles.states.len();
         let mut round = 0;
         loop {
@@ -108,7 +81,7 @@ impl<const D: usize, A: Rewind<D>> sealed::Exchange<D, A> for Iterated {
                 break;
             }
             (0..n).for_each(|b| particles.correct(BodyId(b), dt, round == 1));
-            flow.go_back(&particles.strategy.prediction);
+            flow.as_mut().go_back(&particles.strategy.prediction);
             particles.forcing.place(flow.velocity(), &particles.bodies)?;
         }
         particles.strategy.rounds = round;

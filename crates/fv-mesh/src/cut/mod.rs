@@ -10,7 +10,6 @@ mod tests;
 pub(crate) use check::check;
 
 use crate::boundary::Boundaries;
-use crate::flow_state::restore_list;
 use crate::metrics::Metrics;
 use crate::pressure::Pressure;
 use crate::{CartesianGrid, Field, FlowError};
@@ -130,9 +129,9 @@ impl<const D: usize> Walls<D> {
         source: &dyn Fn(&str) -> Option<&'a [f64]>,
     ) -> Result<(), RestartError> {
         for (c, links) in self.links.iter_mut().enumerate() {
-            restore_list(source, &format!("walls{c}"), &mut links.plain)?;
+            RestartError::fill(source, &format!("walls{c}"), &mut links.plain)?;
         }
-        restore_list(source, "walls", &mut self.pressure.missing)?;
+        RestartError::fill(source, "walls", &mut self.pressure.missing)?;
         self.pressure.recent.as_mut().map_or(Ok(()), |recent| recent.restore(source))
     }
 }

@@ -1,6 +1,5 @@
 //! What the last solutions of a system with a fixed matrix tell of the next one.
 
-use crate::flow_state::restore_list;
 use interfaces::RestartError;
 
 /// Directions and their products with the matrix, the products orthonormal: of a right-hand side they take what lies in the products'
@@ -40,11 +39,11 @@ impl Recent {
         source: &dyn Fn(&str) -> Option<&'a [f64]>,
     ) -> Result<(), RestartError> {
         let mut counts = [0.0; 2];
-        restore_list(source, "walls recent", &mut counts)?;
+        RestartError::fill(source, "walls recent", &mut counts)?;
         [self.count, self.next] = counts.map(|count| (count as usize).min(KEPT));
         self.next %= KEPT;
-        restore_list(source, "walls directions", &mut self.directions)?;
-        restore_list(source, "walls products", &mut self.products)
+        RestartError::fill(source, "walls directions", &mut self.directions)?;
+        RestartError::fill(source, "walls products", &mut self.products)
     }
 
     /// Forgets all.

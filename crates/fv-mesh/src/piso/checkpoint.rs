@@ -1,6 +1,5 @@
 //! What a stopped run needs to go on.
 use super::Piso;
-use crate::flow_state::restore_list;
 use interfaces::{Checkpoint, RestartError};
 
 impl<const D: usize> Checkpoint for Piso<D> {
@@ -14,7 +13,7 @@ impl<const D: usize> Checkpoint for Piso<D> {
         self.state.restore(source)?;
         self.set_grid();
         for (c, old) in self.old.iter_mut().enumerate() {
-            restore_list(source, &format!("old{c}"), old.data_mut())?;
+            RestartError::fill(source, &format!("old{c}"), old.data_mut())?;
         }
         Ok(())
     }

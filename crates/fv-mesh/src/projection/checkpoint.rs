@@ -1,6 +1,5 @@
 //! What a stopped run needs to go on.
 use super::Projection;
-use crate::flow_state::restore_list;
 use interfaces::{Checkpoint, RestartError};
 
 impl<const D: usize> Checkpoint for Projection<D> {
@@ -22,11 +21,11 @@ impl<const D: usize> Checkpoint for Projection<D> {
         self.state.restore(source)?;
         self.set_grid();
         for (c, tendency) in self.tendency.iter_mut().enumerate() {
-            restore_list(source, &format!("tendency{c}"), tendency.data_mut())?;
+            RestartError::fill(source, &format!("tendency{c}"), tendency.data_mut())?;
         }
-        restore_list(source, "friction", self.friction[0].as_mut_slice())?;
+        RestartError::fill(source, "friction", self.friction[0].as_mut_slice())?;
         if self.pressure_solver.remembers() {
-            restore_list(source, "correction", &mut self.phi)?;
+            RestartError::fill(source, "correction", &mut self.phi)?;
         }
         if let Some(walls) = &mut self.walls {
             walls.restore(source)?;

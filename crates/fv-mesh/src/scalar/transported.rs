@@ -248,8 +248,8 @@ impl<const D: usize> Checkpoint for Scalar<D> {
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         let n = self.grid.storage();
-        self.phi.data_mut().copy_from_slice(RestartError::take(source, "scalar", n)?);
-        self.tendency.data_mut().copy_from_slice(RestartError::take(source, "tendency", n)?);
+        RestartError::fill(source, "scalar", self.phi.data_mut())?;
+        RestartError::fill(source, "tendency", self.tendency.data_mut())?;
         let clock = RestartError::take(source, "clock", 2)?;
         (self.step, self.last_dt) = (clock[0] as u64, clock[1]);
         let implicit = RestartError::take(source, "implicit", D)?;

@@ -84,6 +84,17 @@ fn walls_along_the_lines_leave_no_slivers() {
     assert!((area - 6.4).abs() < 1e-12 && cells.walls.len() == 32, "{area} {}", cells.walls.len());
 }
 
+/// Numbers of ten digits put a wall that far from the lines of the grid: no slivers, whose pressure nobody could find.
+#[test]
+fn a_wall_all_but_on_a_line_of_the_grid_leaves_no_slivers() {
+    for off in [-1e-8, -1e-10, 1e-10, 1e-8] {
+        let bodies = Balls::of(Brick([1.0, 0.6, 0.0]), 2.4, vec![Pose::at([2.0, 2.2 + off, 0.0])]);
+        let cells = cut_cells(&Staggered::new([20, 20], 0.2, [0.0; 2]), &bodies).unwrap();
+        let part = |f: &&OpenFace| f.open > 0.0 && f.open < 1.0 - 1e-6;
+        assert_eq!(cells.faces.iter().flatten().filter(part).count(), 0, "{off}");
+    }
+}
+
 #[test]
 fn a_gap_with_one_way_in_is_closed() {
     // Two bricks and one behind them leave a blind alley of one cell's width.

@@ -91,8 +91,7 @@ impl Checkpoint for AveragesWatch {
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         self.seconds = RestartError::take(source, "seconds", 1)?[0];
         for (k, sum) in self.sums.iter_mut().enumerate() {
-            let saved = RestartError::take(source, &format!("sum{k}"), sum.len())?;
-            sum.copy_from_slice(saved);
+            RestartError::fill(source, &format!("sum{k}"), sum)?;
         }
         Ok(())
     }

@@ -91,9 +91,7 @@ impl Checkpoint for Wale {
         sink("eddy", &self.eddy);
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
-        let saved = RestartError::take(source, "eddy", self.eddy.len())?;
-        self.eddy.copy_from_slice(saved);
-        Ok(())
+        RestartError::fill(source, "eddy", &mut self.eddy)
     }
 }
 

@@ -420,8 +420,7 @@ impl<L> Checkpoint for TwoEquation<L> {
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         for (name, list) in [("k", &mut self.k), ("scale", &mut self.scale), ("eddy", &mut self.eddy)] {
-            let saved = RestartError::take(source, name, list.len())?;
-            list.copy_from_slice(saved);
+            RestartError::fill(source, name, list)?;
         }
         self.layer.restore(source("walls").ok_or_else(|| RestartError::Missing("walls".into()))?);
         Ok(())

@@ -37,6 +37,20 @@ fn decay_has_the_exponent_of_the_model() {
     near(decay(Sst::default()), 0.09 / 0.0828);
 }
 
+/// Where k and ε are far from each other: in steady iterations no mixing length is beyond the farthest wall, in time the model is as it is.
+#[test]
+fn eddies_are_no_larger_than_the_flow() {
+    let mut flow = Uniform::new([[0.0; 3]; 3], 1);
+    flow.distance = vec![0.5];
+    let model = || TwoEquation::new(StandardKEpsilon::default(), 1, Inflow { k: 2.0, omega: 1e-6 }).unwrap();
+    let (mut steady, mut unsteady) = (model(), model());
+    steady.correct(&mut flow, &[], 1e-5, None).unwrap();
+    unsteady.correct(&mut flow, &[], 1e-5, Some(1e-3)).unwrap();
+    let most = |model: &KEpsilon| 0.09_f64.powf(0.25) * 0.5 * model.k()[0].sqrt();
+    assert!((steady.nu_t()[0] / most(&steady) - 1.0).abs() < 1e-12 && steady.limited() == 1);
+    assert!(unsteady.nu_t()[0] > 1e3 * most(&unsteady) && unsteady.limited() == 0);
+}
+
 /// Homogeneous shear: k and the scale grow without bound, at the rate that P/ε = (C₂ − 1)/(C₁ − 1) says.
 #[test]
 fn shear_flow_reaches_the_equilibrium_of_the_model() {

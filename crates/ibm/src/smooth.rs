@@ -142,7 +142,10 @@ impl SmoothForcing {
         if made || markers.pose.is_none_or(|old| old.orientation != pose.orientation) {
             markers.arms.clear();
             markers.arms.extend(markers.elements.iter().map(|e| pose.orientation * e.point.coords));
-            markers.slip.turn(markers.elements.iter().map(|e| pose.orientation * e.normal));
+            if self.on_surface {
+                let normals = markers.elements.iter().map(|e| pose.orientation * e.normal);
+                markers.slip.get_or_insert_default().turn(normals);
+            }
         }
         self.places.clear();
         self.places.extend(markers.arms.iter().map(|arm| pose.position + arm));
@@ -240,9 +243,10 @@ impl Forcing for SmoothForcing {
                 self.bodies[b].pose = Some(pose);
             }
             self.bodies[b].reaction = Wrench::default();
-            let (kernel, markers) = (self.kernel(velocity.dim()), &mut self.bodies[b]);
-            let step = self.step.filter(|_| self.on_surface);
-            markers.slip.begin(step, kernel, markers.cell.powf(1.0 / velocity.dim() as f64));
+            let (kernel, step, markers) = (self.kernel(velocity.dim()), self.step, &mut self.bodies[b]);
+            if let Some(slip) = &mut markers.slip {
+                slip.begin(step, kernel, markers.cell.powf(1.0 / velocity.dim() as f64));
+            }
         }
         if std::mem::take(&mut self.moved) {
             self.find_alone(velocity, bodies);
@@ -283,20 +287,23 @@ impl Forcing for SmoothForcing {
             self.bodies[b.0].read(c, lattice, velocity.component(c), (bodies, b), &mut found[c]);
         }
         let Markers { slip, arms, .. } = &self.bodies[b.0];
-        // √w (1 − y P_t) √w of each marker, y = β/(1 + β): its part along the normal, and what is the same all round.
-        for (m, arm) in arms.iter().enumerate() {
-            let (yields, n) = slip.yields(m);
-            let (mut along, mut momentum) = (Vector::zeros(), 0.0);
-            for c in 0..dim {
-                along[c] = (yields * outside[c][m]).sqrt() * n[c];
-                momentum += along[c] * found[c][m];
+        if let Some(slip) = slip {
+            // √w (1 − y P_t) √w of each marker, y = β/(1 + β): its part along the normal, and what is the same all round.
+            for (m, arm) in arms.iter().enumerate() {
+                let (yields, n) = slip.yields(m);
+                let (mut along, mut momentum) = (Vector::zeros(), 0.0);
+                for c in 0..dim {
+                    along[c] = (yields * outside[c][m]).sqrt() * n[c];
+                    momentum += along[c] * found[c][m];
+                    outside[c][m] *= 1.0 - yields;
+                }
+                layer.add_along(along, *arm, momentum);
             }
-            layer.add_along(along, *arm, momentum);
         }
         for c in 0..dim {
             let mut sums = LayerSums::default();
-            for (m, arm) in arms.iter().enumerate() {
-                sums.add(*arm, (1.0 - slip.yields(m).0) * outside[c][m], found[c][m]);
+            for ((arm, mass), found) in arms.iter().zip(&outside[c]).zip(&found[c]) {
+                sums.add(*arm, *mass, *found);
             }
             layer.add(c, &sums);
         }
@@ -312,24 +319,23 @@ impl Forcing for SmoothForcing {
     }
 
     fn force(&mut self, velocity: &mut dyn VelocityField, bodies: &dyn Kinematics) {
-        let Self { density, passes, bodies: all, values, .. } = self;
-        let lattices = [0, 1, 2].map(|c| velocity.lattice(c.min(velocity.dim() - 1)).clone());
-        let mut pass = |b: usize, markers: &mut Markers| {
-            markers.pass((velocity, &lattices), (bodies, BodyId(b)), *density, values);
-        };
-        // While its numbers are at hand; those that share fluid in turn.
-        for (b, markers) in all.iter_mut().enumerate().filter(|(_, markers)| markers.alone) {
-            (0..*passes).for_each(|_| pass(b, markers));
+        let Self { density, passes, bodies: all, values, on_surface, .. } = self;
+        let dim = velocity.dim();
+        if *on_surface {
+            let lattices = [0, 1, 2].map(|c| velocity.lattice(c.min(dim - 1)).clone());
+            return in_turn(all, *passes, |b, markers| {
+                markers.pass_with_slip((velocity, &lattices), (bodies, b), *density, values);
+            });
         }
-        for _ in 0..*passes {
-            for (b, markers) in all.iter_mut().enumerate().filter(|(_, markers)| !markers.alone) {
-                pass(b, markers);
-            }
+        for (c, values) in values.iter_mut().enumerate().take(dim) {
+            let lattice = velocity.lattice(c).clone();
+            let u = velocity.component_mut(c);
+            in_turn(all, *passes, |b, markers| markers.pass(c, (&lattice, u), (bodies, b), *density, values));
         }
     }
 
     fn hidden_dissipation(&self) -> f64 {
-        self.bodies.iter().map(|markers| markers.slip.hidden(&markers.masses)).sum()
+        self.bodies.iter().filter_map(|m| Some(m.slip.as_ref()?.hidden(&m.masses))).sum()
     }
 
     fn reaction(&self, b: BodyId) -> Wrench {
@@ -349,6 +355,18 @@ impl Forcing for SmoothForcing {
             n += markers.arms.len() as f64;
         }
         if n > 0.0 { (sum / n).sqrt() } else { 0.0 }
+    }
+}
+
+/// So many passes of each body: of one whose markers share no fluid while its numbers are at hand, of the others in turn.
+fn in_turn(all: &mut [Markers], passes: usize, mut pass: impl FnMut(BodyId, &mut Markers)) {
+    for (b, markers) in all.iter_mut().enumerate().filter(|(_, markers)| markers.alone) {
+        (0..passes).for_each(|_| pass(BodyId(b), markers));
+    }
+    for _ in 0..passes {
+        for (b, markers) in all.iter_mut().enumerate().filter(|(_, markers)| !markers.alone) {
+            pass(BodyId(b), markers);
+        }
     }
 }
 

@@ -19,8 +19,8 @@ pub(super) struct Markers {
     pub(super) masses: Vec<f64>,
     pub(super) stencils: Stencils,
     pub(super) reaction: Wrench,
-    /// What they read past the surface.
-    pub(super) slip: Slip,
+    /// What they read past the surface, if they lie on it.
+    pub(super) slip: Option<Slip>,
 }
 
 impl Markers {
@@ -44,14 +44,42 @@ impl Markers {
     /// U + Ω×r + s − E u of marker `m`, of which the markers read `found`.
     #[inline]
     pub(super) fn missing(&self, m: usize, twist: &Twist, found: &[Vec<f64>], dim: usize) -> Vector {
-        let mut missing = twist.at(self.arms[m]) + self.slip.of(m);
+        let mut missing = twist.at(self.arms[m]);
+        missing += self.slip.as_ref().map_or(Vector::zeros(), |slip| slip.of(m));
         (0..dim).for_each(|c| missing[c] -= found[c][m]);
         (dim..3).for_each(|c| missing[c] = 0.0);
         missing
     }
 
-    /// Brings the velocity nearer to the body's motion.
+    /// Brings component `c` nearer to the body's motion: without slip they do not see one another.
     pub(super) fn pass(
+        &mut self,
+        c: usize,
+        (lattice, u): (&Lattice, &mut [f64]),
+        (bodies, b): (&dyn Kinematics, BodyId),
+        density: f64,
+        values: &mut Vec<f64>,
+    ) {
+        // All markers read before any of them spreads: their order must not matter.
+        self.read(c, lattice, u, (bodies, b), values);
+        let (twist, per_mass) = (bodies.twist(b), 1.0 / (density * self.cell));
+        let (mut impulse, mut moment) = (0.0, Vector::zeros());
+        let weights = self.masses.iter().zip(&self.stencils.relax[c]);
+        for ((value, arm), (mass, relax)) in values.iter_mut().zip(&self.arms).zip(weights) {
+            let given = mass * relax * (twist.at(*arm)[c] - *value);
+            impulse += given;
+            moment += given * arm;
+            *value = given * per_mass;
+        }
+        self.stencils.spread(c, lattice, values, u);
+        let mut unit = Vector::zeros();
+        unit[c] = 1.0;
+        self.reaction.force[c] -= impulse;
+        self.reaction.torque -= moment.cross(&unit);
+    }
+
+    /// Brings the velocity nearer to the body's motion and the slip along its surface.
+    pub(super) fn pass_with_slip(
         &mut self,
         (velocity, lattices): (&mut dyn VelocityField, &[Lattice; 3]),
         (bodies, b): (&dyn Kinematics, BodyId),
@@ -59,15 +87,17 @@ impl Markers {
         values: &mut [Vec<f64>; 3],
     ) {
         let dim = velocity.dim();
-        // All markers read before any of them spreads: their order must not matter.
         for (c, values) in values.iter_mut().enumerate().take(dim) {
             self.read(c, &lattices[c], velocity.component(c), (bodies, b), values);
         }
         let (twist, per_mass) = (bodies.twist(b), 1.0 / (density * self.cell));
         for m in 0..self.arms.len() {
-            let mut change = self.slip.answer(m, self.missing(m, &twist, values, dim));
-            (0..dim).for_each(|c| change[c] *= self.stencils.relax[c][m]);
-            self.slip.given[m] += change;
+            let mut change = self.missing(m, &twist, values, dim);
+            if let Some(slip) = &mut self.slip {
+                change = slip.answer(m, change);
+                (0..dim).for_each(|c| change[c] *= self.stencils.relax[c][m]);
+                slip.given[m] += change;
+            }
             let impulse = self.masses[m] * change;
             self.reaction.force -= impulse;
             self.reaction.torque -= self.arms[m].cross(&impulse);

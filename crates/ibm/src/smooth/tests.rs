@@ -126,7 +126,9 @@ fn the_layer_foresees_what_the_markers_outside_take() {
         for (m, &arm) in markers.arms.iter().enumerate() {
             let root = Vector::new(weights[0][m], weights[1][m], 0.0).map(|w| (w * markers.masses[m]).sqrt());
             let off = Vector::new(found[0][m], found[1][m], 0.0) - twist.at(arm);
-            sum += Wrench::at(root.component_mul(&markers.slip.answer(m, root.component_mul(&off))), arm);
+            let off = root.component_mul(&off);
+            let taken = markers.slip.as_ref().map_or(off, |slip| slip.answer(m, off));
+            sum += Wrench::at(root.component_mul(&taken), arm);
         }
         let known = [sum.force.x, sum.force.y, 0.0, 0.0, 0.0, sum.torque.z];
         for (i, known) in known.into_iter().enumerate() {

@@ -85,6 +85,19 @@ fn brick(x: Vector) -> f64 {
     let q = x.abs() - Vector::new(0.8, 0.6, 0.5);
     q.map(|q| q.max(0.0)).norm() + q.max().min(0.0)
 }
+fn block(x: Vector, half: [f64; 3]) -> f64 {
+    let q = x.abs() - Vector::from(half);
+    q.map(|q| q.max(0.0)).norm() + q.max().min(0.0)
+}
+/// Two bars of square section at a right angle.
+fn angle(x: Vector) -> f64 {
+    let lying = block(x - Vector::new(0.0, -0.5, 0.0), [0.8, 0.3, 0.3]);
+    lying.min(block(x - Vector::new(-0.5, 0.0, 0.0), [0.3, 0.8, 0.3]))
+}
+/// A cube with a groove along its top.
+fn grooved(x: Vector) -> f64 {
+    block(x, [0.6, 0.6, 0.6]).max(-block(x - Vector::new(0.0, 0.0, 0.6), [0.7, 0.2, 0.3]))
+}
 /// |x|⁴ + |y|⁴ + |z|⁴ = 1, stretched and twisted about z; to first order the distance.
 fn superellipsoid(x: Vector) -> f64 {
     let (sin, cos) = (0.8 * x.z).sin_cos();
@@ -152,7 +165,9 @@ fn main() {
     let union = body("union", union, [0.95, 0.9, 0.95]);
     let superellipsoid = body("superellipsoid", superellipsoid, [1.05, 1.05, 0.72]);
     let brick = body("brick", brick, [0.8, 0.6, 0.5]);
-    let pairs: [[&dyn Shape; 2]; 7] = [
+    let angle = body("angle", angle, [0.8, 0.8, 0.3]);
+    let grooved = body("grooved", grooved, [0.6; 3]);
+    let pairs: [[&dyn Shape; 2]; 10] = [
         [&*ball, &*ball],
         [&*torus, &*torus],
         [&*union, &*union],
@@ -160,6 +175,9 @@ fn main() {
         [&*superellipsoid, &*superellipsoid],
         [&*superellipsoid, &*torus],
         [&*ball, &*brick],
+        [&*angle, &*angle],
+        [&*grooved, &*grooved],
+        [&*angle, &*torus],
     ];
     let n_poses: usize = std::env::var("POSES").ok().and_then(|n| n.parse().ok()).unwrap_or(20);
     let mut csv = String::from(

@@ -22,6 +22,7 @@ pub(crate) mod grow;
 mod lens;
 mod patches;
 pub(crate) mod quadric;
+mod rays;
 mod roots;
 mod scan;
 pub(crate) mod seen;
@@ -47,6 +48,7 @@ use interfaces::{Point, Pose, Rotation, Vector};
 use lens::Lenses;
 use nalgebra::{Matrix3, SymmetricEigen};
 use patches::Patches;
+use rays::Rays;
 use roots::{Region, Root, merge};
 use scan::Scan;
 use seen::{Seen, shared};
@@ -110,6 +112,7 @@ pub(crate) struct AdaptiveTree {
     starts: Vec<Vector>,
     lenses: Lenses,
     convex: Circumscribed,
+    rays: Rays,
     roots: Vec<Root>,
     /// Of the last pair, one tree per root.
     trees: Vec<Tree>,
@@ -263,10 +266,14 @@ impl AdaptiveTree {
                     let other = other.and_then(|o| self.convex.measure(search, &o, tolerance, Which::All));
                     found = other.map(Region::Convex);
                 }
-                found
+                found.or_else(|| self.rays.measure(search, deepest, tolerance).map(Region::Bundle))
             }
             Normal::PlaneFit => None,
         };
+        if let Some(Region::Bundle(bundle)) = &region {
+            // All that is in its box is counted.
+            self.roots.retain(|root| !root.is_in(bundle));
+        }
         self.roots.push(region.map_or_else(|| Root::boxed(search.around(deepest), deepest.at), Root::of));
     }
 

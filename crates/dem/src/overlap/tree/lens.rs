@@ -71,7 +71,7 @@ impl Lens {
         clear(self, o) && clear(o, self)
     }
     /// Its middle, its poles and places of the rim, and between.
-    fn places(&self) -> impl Iterator<Item = Vector> + '_ {
+    pub(crate) fn places(&self) -> impl Iterator<Item = Vector> + '_ {
         let Outline { wide, rim, poles, .. } = &self.shape;
         let around = rim.iter().enumerate().map(move |(k, [r, z])| {
             let (sin, cos) = (std::f64::consts::TAU * k as f64 / FIRST as f64).sin_cos();

@@ -4,6 +4,7 @@ use super::convex::{Convex, Plane};
 use super::deepest::Search;
 use super::grow::Tree;
 use super::lens::Lens;
+use super::rays::Bundle;
 use crate::Overlap;
 use interfaces::{Point, Vector};
 use nalgebra::Matrix3;
@@ -25,6 +26,7 @@ pub(crate) struct Root {
 pub(crate) enum Region {
     Lens(Lens),
     Convex(Convex),
+    Bundle(Bundle),
 }
 
 impl Region {
@@ -32,12 +34,14 @@ impl Region {
         match self {
             Self::Lens(lens) => lens.turn(axes),
             Self::Convex(convex) => convex.turn(axes),
+            Self::Bundle(bundle) => bundle.turn(axes),
         }
     }
     pub(crate) fn overlap(&self, origin: Point, between: Vector) -> Overlap {
         match self {
             Self::Lens(lens) => lens.overlap(origin, between),
             Self::Convex(convex) => convex.overlap(origin, between),
+            Self::Bundle(bundle) => bundle.overlap(origin, between),
         }
     }
     /// How far a place is from it, about; negative within.
@@ -45,6 +49,7 @@ impl Region {
         match self {
             Self::Lens(lens) => lens.outside(x),
             Self::Convex(convex) => convex.outside(x, planes),
+            Self::Bundle(bundle) => bundle.outside(x),
         }
     }
 }
@@ -57,6 +62,7 @@ impl Root {
         let (bounds, at) = match &region {
             Region::Lens(lens) => (lens.root, lens.centre),
             Region::Convex(convex) => (convex.root, convex.centre),
+            Region::Bundle(bundle) => (bundle.root, bundle.centre),
         };
         Self { bounds, at, region: Some(region), done: true }
     }
@@ -82,21 +88,41 @@ impl Root {
             None => self.bounds.holds_ball(x, reach),
         }
     }
+    /// Is its region in the box of a bundle, or a part of it?
+    pub(crate) fn is_in(&self, bundle: &Bundle) -> bool {
+        match &self.region {
+            Some(Region::Lens(lens)) => lens.places().any(|x| bundle.outside(x) < 0.0),
+            Some(Region::Bundle(other)) => {
+                bundle.outside(self.at) < 0.0 || other.outside(bundle.centre) < 0.0
+            }
+            Some(Region::Convex(_)) => bundle.outside(self.at) < 0.0,
+            None => self.bounds.may_meet(&bundle.root),
+        }
+    }
     /// May what is said of both count something twice? What is convex holds nothing else, and lenses end at their rims.
     fn must_be_one_with(&self, o: &Self) -> bool {
         let apart = match (&self.region, &o.region) {
             (Some(Region::Lens(a)), Some(Region::Lens(b))) => a.is_apart_from(b),
+            (Some(Region::Bundle(bundle)), _) => !o.is_in(bundle),
+            (_, Some(Region::Bundle(bundle))) => !self.is_in(bundle),
             (Some(_), Some(_)) => true,
             _ => false,
         };
         !apart && self.bounds.may_meet(&o.bounds)
     }
-    /// Is the straight way to `x` within both bodies?
+    /// Is the straight way to `x` within both bodies? Steps as long as the distances prove it, but for a 32nd of the way.
     pub(crate) fn sees(&self, search: &Search<'_>, x: Vector) -> bool {
-        [0.0, 0.25, 0.5, 0.75].into_iter().all(|share| {
-            let [a, b] = search.distances(x.lerp(&self.at, share));
-            a.max(b) < 0.0
-        })
+        let way = (x - self.at).norm();
+        let mut gone = 0.0;
+        while gone < way {
+            let [a, b] = search.distances(x.lerp(&self.at, gone / way));
+            let level = a.max(b);
+            if level >= 0.0 {
+                return false;
+            }
+            gone += (-level).max(way / 32.0);
+        }
+        true
     }
 }
 

@@ -5,14 +5,14 @@
 //! per step by the coupling's own choices. Speeds at t√(g/d) = 10 and 30 are held against those of the finest run (`--finest` cells per diameter).
 //!
 //! Sample run: `cargo run --release --example stability_map -- --ratios 0.001,1.1 --shapes sphere --cells 8 --finest 12`, a minute or so. All of it
-//! (no flags) takes hours; every run that is done is in `map.csv`, and `--resume` does the others. Files are in `out/stability_map`: `map.csv`,
+//! (no flags) takes an hour. Every run that is done is written to `map.csv` at once, and is not made again. Files are in `out/stability_map`: `map.csv`,
 //! `stability_map.png`, `rock.stl`.
 mod map;
 mod report;
 
 use clap::Parser;
 use example_support::Outcome;
-use map::{Kind, Map};
+use map::{Kind, Map, Viscous};
 use std::path::PathBuf;
 
 #[derive(Debug, Parser)]
@@ -21,7 +21,7 @@ pub(crate) struct Options {
     /// ρ_s/ρ.
     #[arg(long, value_delimiter = ',', default_value = "0.001,0.01,0.1,0.5,0.9,1.1,2.5,10,1000")]
     ratios: Vec<f64>,
-    /// Courant numbers that the step may reach; it also stays within the limit of explicit diffusion.
+    /// Courant numbers that the step may reach; with explicit diffusion it also stays within that limit.
     #[arg(long, value_delimiter = ',', default_value = "0.1,0.5,0.9")]
     courants: Vec<f64>,
     /// Shapes.
@@ -36,6 +36,12 @@ pub(crate) struct Options {
     /// Cells per diameter of the finest run, at Courant number 0.25; 0: none.
     #[arg(long, default_value_t = 16)]
     finest: usize,
+    /// Viscous terms: explicit, implicit, or implicit where the step asks for it.
+    #[arg(long, value_enum, default_value = "auto")]
+    diffusion: Viscous,
+    /// Put the markers on the surface itself.
+    #[arg(long)]
+    surface_markers: bool,
     /// Galileo number.
     #[arg(long, default_value_t = 50.0)]
     galileo: f64,
@@ -45,9 +51,9 @@ pub(crate) struct Options {
     /// Folder for all files.
     #[arg(long, default_value = "out/stability_map")]
     out: PathBuf,
-    /// Keep the runs that are in map.csv.
+    /// Make the runs that are in map.csv anew.
     #[arg(long)]
-    resume: bool,
+    anew: bool,
 }
 
 fn main() -> Outcome<()> {

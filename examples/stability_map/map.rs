@@ -4,8 +4,10 @@ use example_support::Outcome;
 use example_support::cpu::Stopwatch;
 use example_support::free_body::{FreeBody, Speeds};
 use example_support::rock::{Rock, stl};
+use clap::ValueEnum;
 use siltflow::coupling::{OneSolve, Schedule, run};
 use siltflow::dem::{Shape, TriangleMesh};
+use siltflow::flow::Diffusion;
 use std::fs;
 use std::io::Write;
 use std::path::Path;
@@ -30,13 +32,48 @@ impl Kind {
     }
 }
 
-/// One run and what came of it.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Run {
+/// How viscous terms are computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Viscous {
+    Auto,
+    Explicit,
+    Implicit,
+}
+
+impl Viscous {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Explicit => "explicit",
+            Self::Implicit => "implicit",
+        }
+    }
+    fn diffusion(self) -> Diffusion {
+        match self {
+            Self::Auto => Diffusion::Auto,
+            Self::Explicit => Diffusion::Explicit,
+            Self::Implicit => Diffusion::Implicit,
+        }
+    }
+}
+
+/// What is run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Case {
     pub(crate) kind: Kind,
     pub(crate) ratio: f64,
     pub(crate) courant: f64,
     pub(crate) cells: usize,
+    viscous: Viscous,
+    surface_markers: bool,
+    galileo: f64,
+    end: f64,
+}
+
+/// One run and what came of it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Run {
+    pub(crate) case: Case,
     /// Upward speeds at a third of the end time, and at the end; not finite if the run failed.
     pub(crate) speeds: [f64; 2],
     pub(crate) steps: u64,
@@ -45,30 +82,38 @@ pub(crate) struct Run {
     pub(crate) cpu: f64,
 }
 
-const HEADER: &str =
-    "shape,density_ratio,courant,cells_per_diameter,speed_at_10,speed_at_30,steps,largest_courant,cpu_s";
+const HEADER: &str = "shape,density_ratio,courant,cells_per_diameter,diffusion,surface_markers,galileo,end,speed_at_10,speed_at_30,steps,largest_courant,cpu_s";
 
 impl Run {
     fn line(&self) -> String {
-        let Self { kind, ratio, courant, cells, speeds: [first, last], steps, reached, cpu } = self;
+        let Self { case, speeds: [first, last], steps, reached, cpu } = self;
+        let Case { kind, ratio, courant, cells, viscous, surface_markers, galileo, end } = case;
+        let (kind, viscous) = (kind.name(), viscous.name());
         format!(
-            "{},{ratio},{courant},{cells},{first:.6},{last:.6},{steps},{reached:.4},{cpu:.2}",
-            kind.name()
+            "{kind},{ratio},{courant},{cells},{viscous},{surface_markers},{galileo},{end},{first:.6},{last:.6},{steps},{reached:.4},{cpu:.2}"
         )
     }
 
     fn parse(line: &str) -> Option<Self> {
-        let mut parts = line.split(',');
-        let name = parts.next()?;
-        let kind = [Kind::Sphere, Kind::Ellipsoid, Kind::Rock].into_iter().find(|k| k.name() == name)?;
-        let values: Vec<f64> = parts.map(str::parse).collect::<Result<_, _>>().ok()?;
-        let [ratio, courant, cells, first, last, steps, reached, cpu] = values[..] else { return None };
-        let (cells, steps) = (cells as usize, steps as u64);
-        Some(Self { kind, ratio, courant, cells, speeds: [first, last], steps, reached, cpu })
-    }
-
-    fn is_same(&self, kind: Kind, ratio: f64, courant: f64, cells: usize) -> bool {
-        (self.kind, self.ratio, self.courant, self.cells) == (kind, ratio, courant, cells)
+        let parts: Vec<&str> = line.split(',').collect();
+        let [kind, ratio, courant, cells, viscous, surface_markers, galileo, end, first, last, steps, reached, cpu] =
+            parts[..]
+        else {
+            return None;
+        };
+        let number = |text: &str| text.parse::<f64>().ok();
+        let case = Case {
+            kind: Kind::from_str(kind, false).ok()?,
+            ratio: number(ratio)?,
+            courant: number(courant)?,
+            cells: cells.parse().ok()?,
+            viscous: Viscous::from_str(viscous, false).ok()?,
+            surface_markers: surface_markers.parse().ok()?,
+            galileo: number(galileo)?,
+            end: number(end)?,
+        };
+        let (speeds, steps) = ([number(first)?, number(last)?], steps.parse().ok()?);
+        Some(Self { case, speeds, steps, reached: number(reached)?, cpu: number(cpu)? })
     }
 }
 
@@ -81,31 +126,30 @@ pub(crate) struct Map {
 pub(crate) const FINEST: f64 = 0.25;
 
 impl Map {
-    /// Makes those that are not there yet.
+    /// Makes those that are not in `map.csv` yet.
     pub(crate) fn run(options: &Options) -> Outcome<Self> {
         let Options { ratios, courants, shapes, cells, finest, out, .. } = options;
         fs::create_dir_all(out)?;
         let path = out.join("map.csv");
-        let mut runs = Vec::new();
-        if options.resume && path.exists() {
-            runs.extend(fs::read_to_string(&path)?.lines().filter_map(Run::parse));
+        let made = if options.anew { String::new() } else { fs::read_to_string(&path).unwrap_or_default() };
+        let mut runs: Vec<Run> = made.lines().filter_map(Run::parse).collect();
+        if runs.is_empty() {
+            fs::write(&path, format!("{HEADER}\n"))?;
         }
-        let mut file = fs::File::create(&path)?;
-        writeln!(file, "{HEADER}")?;
-        for run in &runs {
-            writeln!(file, "{}", run.line())?;
-        }
+        let mut file = fs::OpenOptions::new().append(true).open(&path)?;
         for &kind in shapes {
             let shape = shape(kind, options)?;
             for &ratio in ratios {
                 let coarse = courants.iter().map(|&courant| (courant, *cells));
                 for (courant, cells) in coarse.chain((*finest > 0).then_some((FINEST, *finest))) {
-                    if runs.iter().any(|r| r.is_same(kind, ratio, courant, cells)) {
+                    let case = Case::new(options, kind, ratio, courant, cells);
+                    if runs.iter().any(|r| r.case == case) {
                         continue;
                     }
-                    let made = one(options, shape.clone(), (kind, ratio, courant, cells))?;
+                    let made = one(case, shape.clone())?;
                     eprintln!("{}", made.line());
-                    writeln!(file, "{}", made.line())?;
+                    // In one piece, so that a run that is killed leaves whole lines.
+                    file.write_all(format!("{}\n", made.line()).as_bytes())?;
                     runs.push(made);
                 }
             }
@@ -113,8 +157,15 @@ impl Map {
         Ok(Self { runs })
     }
 
-    pub(crate) fn find(&self, kind: Kind, ratio: f64, courant: f64, cells: usize) -> Option<&Run> {
-        self.runs.iter().find(|r| r.is_same(kind, ratio, courant, cells))
+    pub(crate) fn find(&self, case: Case) -> Option<&Run> {
+        self.runs.iter().find(|r| r.case == case)
+    }
+}
+
+impl Case {
+    pub(crate) fn new(options: &Options, kind: Kind, ratio: f64, courant: f64, cells: usize) -> Self {
+        let Options { diffusion, surface_markers, galileo, end, .. } = *options;
+        Self { kind, ratio, courant, cells, viscous: diffusion, surface_markers, galileo, end }
     }
 }
 
@@ -136,13 +187,13 @@ fn own_rock(out: &Path) -> Outcome<TriangleMesh> {
     Ok(TriangleMesh::from_stl(&path, 1.0)?)
 }
 
-fn one(
-    options: &Options,
-    shape: Arc<dyn Shape>,
-    (kind, ratio, courant, cells): (Kind, f64, f64, usize),
-) -> Outcome<Run> {
-    let Options { galileo, end, .. } = *options;
-    let scene = FreeBody { shape, per_diameter: cells, galileo, ..FreeBody::new(ratio)? };
+fn one(case: Case, shape: Arc<dyn Shape>) -> Outcome<Run> {
+    let Case { kind, ratio, courant, cells, viscous, surface_markers, galileo, end } = case;
+    let mut scene = FreeBody { shape, per_diameter: cells, galileo, ..FreeBody::new(ratio)? };
+    scene.diffusion = viscous.diffusion();
+    if surface_markers {
+        scene.forcing = scene.forcing.with_surface_markers();
+    }
     let mut simulation = scene.build(OneSolve::default())?;
     let (mut speeds, watch) = (Speeds::default(), Stopwatch::start());
     let schedule = Schedule { end, intervals: 60, courant, ..Schedule::default() };
@@ -153,5 +204,5 @@ fn one(
     let summary = ended.unwrap_or_default();
     let at = |time: f64| speeds.at(time).filter(|_| summary.steps > 0).map_or(f64::NAN, |v| v.z);
     let (steps, reached, cpu) = (summary.steps, summary.courant, watch.elapsed().cpu);
-    Ok(Run { kind, ratio, courant, cells, speeds: [at(end / 3.0), at(end)], steps, reached, cpu })
+    Ok(Run { case, speeds: [at(end / 3.0), at(end)], steps, reached, cpu })
 }

@@ -1,6 +1,6 @@
 //! Table and picture.
 use crate::Options;
-use crate::map::{FINEST, Kind, Map, Run};
+use crate::map::{Case, FINEST, Kind, Map, Run};
 use example_support::Outcome;
 use example_support::picture::sketch::{self, Drawing, Paint};
 use example_support::table::{Table, number};
@@ -18,7 +18,7 @@ pub(crate) fn write(options: &Options, map: &Map) -> Outcome<()> {
 
 /// How far the speeds are from the finest run's, as parts of those.
 fn off(options: &Options, map: &Map, run: &Run) -> Option<[f64; 2]> {
-    let finest = map.find(run.kind, run.ratio, FINEST, options.finest)?;
+    let finest = map.find(Case::new(options, run.case.kind, run.case.ratio, FINEST, options.finest))?;
     Some([0, 1].map(|i| run.speeds[i] / finest.speeds[i] - 1.0))
 }
 
@@ -41,11 +41,11 @@ fn table(options: &Options, map: &Map, kind: Kind) -> Table {
         "largest Courant",
         "CPU s",
     ];
-    let mut rows = Vec::new();
+    let (mut rows, mut runs) = (Vec::new(), Vec::new());
     for &ratio in &options.ratios {
         let coarse = options.courants.iter().map(|&c| (c, options.cells));
         for (courant, cells) in coarse.chain([(FINEST, options.finest)]) {
-            let Some(run) = map.find(kind, ratio, courant, cells) else { continue };
+            let Some(run) = map.find(Case::new(options, kind, ratio, courant, cells)) else { continue };
             let off = off(options, map, run).unwrap_or([f64::NAN; 2]);
             let percent = |x: f64| if x.is_finite() { format!("{:+.2}", 100.0 * x) } else { String::new() };
             let mut row = vec![number(ratio), courant.to_string(), cells.to_string()];
@@ -53,10 +53,11 @@ fn table(options: &Options, map: &Map, kind: Kind) -> Table {
             row.extend(off.map(percent));
             row.extend([run.steps.to_string(), format!("{:.2}", run.reached), format!("{:.0}", run.cpu)]);
             rows.push(row);
+            runs.push(run);
         }
     }
-    let stable = map.runs.iter().filter(|r| r.kind == kind && is_stable(r)).count();
-    let all = map.runs.iter().filter(|r| r.kind == kind).count();
+    let stable = runs.iter().filter(|r| is_stable(r)).count();
+    let all = runs.len();
     table.matrix(&header, rows);
     table.row("stable runs", format!("{stable} of {all}"), "");
     table
@@ -75,7 +76,7 @@ fn drawing(options: &Options, map: &Map, kind: Kind) -> Drawing {
         let paint = Paint::Kind(i, 0.0);
         let mut line = Vec::new();
         for &ratio in &options.ratios {
-            let Some(run) = map.find(kind, ratio, courant, options.cells) else { continue };
+            let Some(run) = map.find(Case::new(options, kind, ratio, courant, options.cells)) else { continue };
             match off(options, map, run) {
                 _ if !is_stable(run) => drawing.points.push(([place(ratio), 0.0], paint, "unstable".into())),
                 Some(off) => line.push([place(ratio), 100.0 * off[0].abs().max(off[1].abs())]),

@@ -26,6 +26,8 @@ pub struct FreeBody {
     pub bodies: usize,
     /// How viscous terms are computed.
     pub diffusion: Diffusion,
+    /// By which the fluid follows the bodies; in fluid of density 1.
+    pub forcing: SmoothForcing,
 }
 
 /// Volume of every body.
@@ -39,7 +41,8 @@ impl FreeBody {
     pub fn new(density_ratio: f64) -> Outcome<Self> {
         let (shape, diffusion) = (Self::sphere()?, Diffusion::Explicit);
         let (galileo, per_diameter, box_, bodies) = (50.0, 10, [4, 4, 8], 1);
-        Ok(Self { shape, density_ratio, galileo, per_diameter, box_, bodies, diffusion })
+        let forcing = SmoothForcing::new(1.0);
+        Ok(Self { shape, density_ratio, galileo, per_diameter, box_, bodies, diffusion, forcing })
     }
     /// The sphere.
     ///
@@ -110,7 +113,7 @@ impl FreeBody {
             bodies.add(self.shape.clone(), material, pose, Twist::default(), Freedom::FREE)?;
         }
         bodies.check_overlaps()?;
-        let particles = Particles::new(bodies, SmoothForcing::new(1.0), 1.0, -Vector::z());
+        let particles = Particles::new(bodies, self.forcing.clone(), 1.0, -Vector::z());
         Ok(Simulation::new(flow, particles.with_strategy(strategy), WeightBalance::NetWeight)?)
     }
 }

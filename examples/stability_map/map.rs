@@ -1,10 +1,10 @@
 //! The runs.
 use crate::Options;
+use clap::ValueEnum;
 use example_support::Outcome;
 use example_support::cpu::Stopwatch;
 use example_support::free_body::{FreeBody, Speeds};
 use example_support::rock::{Rock, stl};
-use clap::ValueEnum;
 use siltflow::coupling::{OneSolve, Schedule, run};
 use siltflow::dem::{Shape, TriangleMesh};
 use siltflow::flow::Diffusion;
@@ -96,8 +96,21 @@ impl Run {
 
     fn parse(line: &str) -> Option<Self> {
         let parts: Vec<&str> = line.split(',').collect();
-        let [kind, ratio, courant, cells, viscous, surface_markers, galileo, end, first, last, steps, reached, cpu] =
-            parts[..]
+        let [
+            kind,
+            ratio,
+            courant,
+            cells,
+            viscous,
+            surface_markers,
+            galileo,
+            end,
+            first,
+            last,
+            steps,
+            reached,
+            cpu,
+        ] = parts[..]
         else {
             return None;
         };

@@ -76,7 +76,9 @@ fn drawing(options: &Options, map: &Map, kind: Kind) -> Drawing {
         let paint = Paint::Kind(i, 0.0);
         let mut line = Vec::new();
         for &ratio in &options.ratios {
-            let Some(run) = map.find(Case::new(options, kind, ratio, courant, options.cells)) else { continue };
+            let Some(run) = map.find(Case::new(options, kind, ratio, courant, options.cells)) else {
+                continue;
+            };
             match off(options, map, run) {
                 _ if !is_stable(run) => drawing.points.push(([place(ratio), 0.0], paint, "unstable".into())),
                 Some(off) => line.push([place(ratio), 100.0 * off[0].abs().max(off[1].abs())]),

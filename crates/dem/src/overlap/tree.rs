@@ -1,9 +1,9 @@
 //! Everything with a signed distance or facets: polyhedra around convex regions with edges, lenses where contacts are smooth,
-//! adaptive trees of boxes where they are neither.
+//! rays across the contact where they are neither, adaptive trees of boxes where rays do not see it as one.
 //!
 //! `scan.rs` looks for places where both bodies are, `deepest.rs` goes down from them. Convex regions with edges are enclosed by
 //! planes that touch the bodies (`convex.rs`); what is like a lens, between two pieces of surface that meet at one rim, is summed
-//! along lines (`lens.rs`); all else is left to the trees.
+//! along lines (`lens.rs`); what rays across the contact enter once is summed over them (`rays.rs`); all else is left to the trees.
 //!
 //! A box outside either body is dropped, one inside both is added, one that a surface cuts is divided into eight or, in
 //! the end, closed: the distance of each body is taken to second order, c + g·ξ + ½ ξᵀHξ from fifteen points of the box,
@@ -61,7 +61,7 @@ pub enum Refinement {
     Levels(u8),
     /// To a relative error of the volume of about this, from 1e-8 to 1. A region between two pieces of surface that meet at one rim
     /// is summed along lines, a convex one with edges is enclosed by planes that touch the bodies, exactly if their faces are flat;
-    /// neither has boxes. Any other one is divided into boxes along the contact, those with the largest errors first.
+    /// neither has boxes, nor has one that rays across the contact enter once. Any other one is divided into boxes along the contact, those with the largest errors first.
     ///
     /// Regions are looked for in boxes, down to a 32nd of what the bodies' own boxes share along each axis. A box is left out where a
     /// distance is larger than it reaches, which is a proof as distances change by no more than the way gone, or where

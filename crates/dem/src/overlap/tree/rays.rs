@@ -248,9 +248,8 @@ impl Rays {
         let corners = [[0, 0], [size, 0], [size, size], [0, size]]
             .map(|d: [u16; 2]| self.number[Ray::key_of([at[0] + d[0], at[1] + d[1]])]);
         let middle = [at[0] + size / 2, at[1] + size / 2];
-        // Nothing is here if no corner's ray comes near.
-        let middle =
-            if level == 0 { self.cast(caster, middle, &[])? } else { self.cast(caster, middle, &corners)? };
+        let near: &[u32] = if level == 0 { &[] } else { &corners };
+        let middle = self.cast(caster, middle, near)?;
         let rays = [corners[0], corners[1], corners[2], corners[3], middle];
         let square = Square::new(caster, at, level, rays, |n| &self.rays[n as usize]);
         self.squares.push(square);

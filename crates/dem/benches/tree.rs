@@ -82,8 +82,7 @@ fn union(x: Vector) -> f64 {
     centres.iter().map(|c| (x - Vector::from(*c)).norm() - 0.45).fold(f64::INFINITY, f64::min)
 }
 fn brick(x: Vector) -> f64 {
-    let q = x.abs() - Vector::new(0.8, 0.6, 0.5);
-    q.map(|q| q.max(0.0)).norm() + q.max().min(0.0)
+    block(x, [0.8, 0.6, 0.5])
 }
 fn block(x: Vector, half: [f64; 3]) -> f64 {
     let q = x.abs() - Vector::from(half);

@@ -17,6 +17,11 @@ pub(crate) struct Oriented {
 }
 
 impl Oriented {
+    /// As a frame sees it in which this one's axes are the columns of `axes`.
+    pub(crate) fn turn(&mut self, axes: &Matrix3<f64>) {
+        self.centre = axes * self.centre;
+        self.axes = axes * self.axes;
+    }
     pub(crate) fn local(&self, x: Vector) -> Vector {
         self.axes.transpose() * (x - self.centre)
     }

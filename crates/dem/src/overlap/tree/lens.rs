@@ -84,8 +84,7 @@ impl Lens {
     /// As a frame sees it in which this one's axes are the columns of `axes`.
     pub(crate) fn turn(&mut self, axes: &Matrix3<f64>) {
         self.centre = axes * self.centre;
-        self.root.centre = axes * self.root.centre;
-        self.root.axes = axes * self.root.axes;
+        self.root.turn(axes);
     }
     /// As the world sees it, whose place `origin` is that of the search's frame.
     pub(crate) fn overlap(&self, origin: Point, between: Vector) -> Overlap {

@@ -10,6 +10,7 @@ mod ray;
 mod square;
 
 use super::around::Oriented;
+use super::columns::Sums;
 use super::deepest::{Deepest, Search};
 use crate::Overlap;
 use interfaces::{Point, Vector};
@@ -44,9 +45,9 @@ const OPEN: [f64; 2] = [0.05, 0.1];
 pub(crate) struct Bundle {
     /// A box around it.
     pub(crate) root: Oriented,
-    /// Of the frame that `totals` are given from.
+    /// Of the frame along the box's axes in which the sums are.
     pub(crate) centre: Vector,
-    totals: Integrals,
+    sums: Sums,
 }
 
 impl Bundle {
@@ -57,24 +58,11 @@ impl Bundle {
     /// As a frame sees it in which this one's axes are the columns of `axes`.
     pub(crate) fn turn(&mut self, axes: &Matrix3<f64>) {
         self.centre = axes * self.centre;
-        self.root.centre = axes * self.root.centre;
-        self.root.axes = axes * self.root.axes;
+        self.root.turn(axes);
     }
     /// As the world sees it, whose place `origin` is that of the search's frame.
     pub(crate) fn overlap(&self, origin: Point, between: Vector) -> Overlap {
-        let sums = &self.totals;
-        let centroid = sums.first() / sums.volume();
-        // The surfaces of both enclose the region, so either gives the same but for the error.
-        let gradient = 0.5 * (sums.flux(0) - sums.flux(1));
-        let moment = 0.5 * (sums.turn(0) - sums.turn(1)) - centroid.cross(&gradient);
-        let gradient = self.root.axes * gradient;
-        Overlap {
-            volume: sums.volume(),
-            centroid: origin + (self.centre + self.root.axes * centroid),
-            normal: (-gradient).try_normalize(0.0).unwrap_or(between),
-            gradient,
-            moment: self.root.axes * moment,
-        }
+        Oriented { centre: self.centre, ..self.root }.overlap(&self.sums, origin, between)
     }
 }
 
@@ -87,6 +75,8 @@ pub(crate) struct Rays {
     squares: Vec<Square>,
     /// Numbers of those that are not divided.
     open: Vec<u32>,
+    /// Of those that are divided next.
+    due: Vec<u32>,
     /// By ray, another one that meets the same.
     group: Vec<u32>,
 }
@@ -121,10 +111,10 @@ impl Rays {
             let result = self.sum(&caster, tolerance);
             self.forget();
             match result {
-                Ok((totals, [least, largest])) => {
+                Ok((sums, [least, largest])) => {
                     let centre = deepest.at + axes * (0.5 * (least + largest));
                     let root = Oriented { centre, axes, half: 0.5 * (largest - least) };
-                    return Some(Bundle { root, centre: deepest.at, totals });
+                    return Some(Bundle { root, centre: deepest.at, sums });
                 }
                 Err(Failure::Small(touched)) => {
                     let size = high - low;
@@ -156,7 +146,7 @@ impl Rays {
     }
 
     /// Integrals, and the lower and upper corner of the region.
-    fn sum(&mut self, caster: &Caster<'_>, tolerance: f64) -> Result<(Integrals, [Vector; 2]), Failure> {
+    fn sum(&mut self, caster: &Caster<'_>, tolerance: f64) -> Result<(Sums, [Vector; 2]), Failure> {
         let width = usize::from(LATTICE) + 1;
         self.number.resize(width * width, NONE);
         let step = 1 << (LEVELS + 1);
@@ -176,7 +166,7 @@ impl Rays {
         for square in &mut self.squares {
             // Nothing is known of what divisions would change.
             square.error = 0.3 * square.bend;
-            total.add(&square.sums);
+            total.add_share(&square.integrals, 1.0);
         }
         loop {
             let (mut left, mut most, mut doubtful) = (0.0, 0.0_f64, false);
@@ -188,7 +178,7 @@ impl Rays {
                 }
             }
             let is_near = |tolerance: f64| {
-                left <= tolerance * total.volume()
+                left <= tolerance * total.sums.volume
                     && total.is_closed(OPEN[0].min(10.0 * tolerance), OPEN[1].min(20.0 * tolerance))
             };
             if !doubtful && is_near(tolerance) {
@@ -198,20 +188,26 @@ impl Rays {
             if n > MOST || (n > MOST / 2 && !is_near(NEAR * tolerance)) {
                 return Err(Failure::Other);
             }
-            let large = |s: &Square| s.is_doubtful || (s.level < LEVELS && s.error > 0.4 * most);
-            let due = (0..self.open.len()).filter(|i| large(&self.squares[self.open[*i] as usize]));
-            let due: Vec<u32> = due.map(|i| self.open[i]).collect();
-            if due.is_empty() {
+            self.due.clear();
+            let (squares, due) = (&self.squares, &mut self.due);
+            self.open.retain(|n| {
+                let square = &squares[*n as usize];
+                let is_due = square.is_doubtful || (square.level < LEVELS && square.error > 0.4 * most);
+                if is_due {
+                    due.push(*n);
+                }
+                !is_due
+            });
+            if self.due.is_empty() {
                 return Err(Failure::Other);
             }
-            self.open.retain(|n| !due.contains(n));
-            for n in due {
-                self.divide(caster, n, &mut total)?;
+            for i in 0..self.due.len() {
+                self.divide(caster, self.due[i], &mut total)?;
             }
         }
         self.is_within()?;
         self.is_one(caster)?;
-        Ok((total, self.bounds(caster)))
+        Ok((total.sums, self.bounds(caster)))
     }
 
     /// Does no ray on the plane's ends meet the region?
@@ -277,12 +273,12 @@ impl Rays {
         for (child, [di, dj]) in children.iter_mut().zip([[0, 0], [half, 0], [half, half], [0, half]]) {
             *child = self.open(caster, [i + di, j + dj], parent.level + 1)?;
             let square = &self.squares[*child as usize];
-            sum.add(&square.sums);
+            sum.add_share(&square.integrals, 1.0);
             bend += square.bend;
         }
-        let changed = (sum.volume() - parent.sums.volume()).abs();
-        total.sub(&parent.sums);
-        total.add(&sum);
+        let changed = (sum.sums.volume - parent.integrals.sums.volume).abs();
+        total.add_share(&parent.integrals, -1.0);
+        total.add_share(&sum, 1.0);
         for child in children {
             let square = &mut self.squares[child as usize];
             let share = if bend > 0.0 { square.bend / bend } else { 0.25 };

@@ -68,8 +68,7 @@ impl Root {
     }
     /// As a frame sees it in which this one's axes are the columns of `axes`.
     pub(crate) fn turn(&mut self, axes: &Matrix3<f64>) {
-        self.bounds.centre = axes * self.bounds.centre;
-        self.bounds.axes = axes * self.bounds.axes;
+        self.bounds.turn(axes);
         if let Some(region) = &mut self.region {
             region.turn(axes);
         }

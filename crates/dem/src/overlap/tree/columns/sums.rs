@@ -27,12 +27,15 @@ impl Sums {
         }
     }
     pub(crate) fn add(&mut self, o: &Self) {
-        self.volume += o.volume;
-        self.first += o.first;
+        self.add_share(o, 1.0);
+    }
+    pub(crate) fn add_share(&mut self, o: &Self, share: f64) {
+        self.volume += share * o.volume;
+        self.first += share * o.first;
         for i in 0..2 {
-            self.flux[i] += o.flux[i];
-            self.turn[i] += o.turn[i];
-            self.area[i] += o.area[i];
+            self.flux[i] += share * o.flux[i];
+            self.turn[i] += share * o.turn[i];
+            self.area[i] += share * o.area[i];
         }
     }
 }

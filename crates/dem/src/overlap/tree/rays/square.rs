@@ -1,72 +1,46 @@
 //! Sums over a square.
+use super::super::columns::Sums;
 use super::ray::{Caster, Ray};
 use interfaces::Vector;
 
-/// Volume, its first moment, of each body ∫n dA and ∫x × n dA about the frame's origin, and of both ∫x n_x dA and ∫y n_y dA.
+/// Sums over a part of the plane, and of both bodies' surfaces ∫x n_x dA and ∫y n_y dA.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Integrals([f64; 18]);
+pub(super) struct Integrals {
+    pub(super) sums: Sums,
+    across: [f64; 2],
+}
 
 impl Integrals {
-    pub(super) fn volume(&self) -> f64 {
-        self.0[0]
-    }
-    fn three(&self, from: usize) -> Vector {
-        Vector::new(self.0[from], self.0[from + 1], self.0[from + 2])
-    }
-    pub(super) fn first(&self) -> Vector {
-        self.three(1)
-    }
-    pub(super) fn flux(&self, body: usize) -> Vector {
-        self.three(4 + 3 * body)
-    }
-    pub(super) fn turn(&self, body: usize) -> Vector {
-        self.three(10 + 3 * body)
-    }
     /// Do the surfaces of both bodies enclose the region? ∫n dA is zero to a `share` of either's, and ∮(x − c) n_x dA and
     /// ∮(y − c) n_y dA are the volume to `apart` of it.
     pub(super) fn is_closed(&self, share: f64, apart: f64) -> bool {
-        let (a, b, c) = (self.flux(0), self.flux(1), self.first() / self.volume());
-        let across = |axis: usize| self.0[16 + axis] - c[axis] * (a + b)[axis] - self.volume();
-        self.volume() > 0.0
+        let Sums { volume, first, flux: [a, b], .. } = self.sums;
+        let c = first / volume;
+        let across = |axis: usize| self.across[axis] - c[axis] * (a + b)[axis] - volume;
+        volume > 0.0
             && (a + b).norm() <= share * a.norm().max(b.norm())
-            && (0..2).all(|axis| across(axis).abs() <= apart * self.volume())
+            && (0..2).all(|axis| across(axis).abs() <= apart * volume)
     }
-    pub(super) fn add(&mut self, o: &Self) {
-        self.add_share(o, 1.0);
-    }
-    pub(super) fn sub(&mut self, o: &Self) {
-        self.add_share(o, -1.0);
-    }
-    fn add_share(&mut self, o: &Self, share: f64) {
-        for (sum, o) in self.0.iter_mut().zip(&o.0) {
-            *sum += share * o;
+    pub(super) fn add_share(&mut self, o: &Self, share: f64) {
+        self.sums.add_share(&o.sums, share);
+        for axis in 0..2 {
+            self.across[axis] += share * o.across[axis];
         }
     }
     /// Per area of the plane at `x`, for a span of `length` around `middle`, with the surfaces of a ray.
     fn at(x: [f64; 2], length: f64, middle: f64, ray: &Ray) -> Self {
-        let mut out = [0.0; 18];
-        out[0] = length;
-        out[1] = length * x[0];
-        out[2] = length * x[1];
-        out[3] = length * middle;
-        for a in 0..2 {
-            out[16 + a] = x[a] * (ray.flux[0][a] + ray.flux[1][a]);
-        }
-        for body in 0..2 {
-            out[4 + 3 * body..7 + 3 * body].copy_from_slice(ray.flux[body].as_slice());
-            out[10 + 3 * body..13 + 3 * body].copy_from_slice(ray.turn[body].as_slice());
-        }
-        Self(out)
+        let first = length * Vector::new(x[0], x[1], middle);
+        let (flux, turn, area) = (ray.flux, ray.turn, ray.flux.map(|n| n.norm()));
+        let across = [0, 1].map(|axis| x[axis] * (flux[0] + flux[1])[axis]);
+        Self { sums: Sums { volume: length, first, flux, turn, area }, across }
     }
     /// A piece of the region's side along the rays, of outward normal and area `n`, around `x`.
     fn add_side(&mut self, body: usize, x: Vector, n: Vector) {
-        let turn = x.cross(&n);
-        for a in 0..2 {
-            self.0[16 + a] += x[a] * n[a];
-        }
-        for a in 0..3 {
-            self.0[4 + 3 * body + a] += n[a];
-            self.0[10 + 3 * body + a] += turn[a];
+        self.sums.flux[body] += n;
+        self.sums.turn[body] += x.cross(&n);
+        self.sums.area[body] += n.norm();
+        for axis in 0..2 {
+            self.across[axis] += x[axis] * n[axis];
         }
     }
 }
@@ -81,7 +55,7 @@ pub(super) struct Square {
     pub(super) level: u16,
     /// Those of the corners, counter-clockwise from the lowest, and of the middle.
     pub(super) rays: [u32; 5],
-    pub(super) sums: Integrals,
+    pub(super) integrals: Integrals,
     /// Do some rays miss the region?
     pub(super) is_rim: bool,
     /// May something be between rays that miss the region?
@@ -108,7 +82,7 @@ impl Square {
             at,
             level,
             rays,
-            sums: Integrals::default(),
+            integrals: Integrals::default(),
             is_rim: true,
             is_doubtful: false,
             bend: 0.0,
@@ -128,13 +102,13 @@ impl Square {
             for i in 0..5 {
                 let value = Integrals::at(places[i], r[i].length(), r[i].middle, r[i]);
                 let weight = if i == 4 { 2.0 / 3.0 } else { 1.0 / 12.0 };
-                this.sums.add_share(&value, weight * area);
+                this.integrals.add_share(&value, weight * area);
             }
         } else {
             this.bend = this.bend.max(0.1 * area * r.iter().map(|r| r.length()).fold(0.0, f64::max));
             for i in 0..4 {
                 let j = (i + 1) % 4;
-                triangle([r[i], r[j], r[4]], [places[i], places[j], places[4]], &mut this.sums);
+                triangle([r[i], r[j], r[4]], [places[i], places[j], places[4]], &mut this.integrals);
             }
         }
         this

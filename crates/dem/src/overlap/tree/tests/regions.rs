@@ -214,6 +214,10 @@ fn rays_and_boxes_agree() {
         }
         by_rays += 1;
         let rays = found[0];
+        found.clear();
+        let again =
+            allocation_counter::measure(|| tree.overlap(&HEAP, &here, &HEAP, &pose, &mut found).unwrap());
+        assert_eq!(again.count_total, 0, "{i}");
         let mut boxes = tolerance(1e-4).with_normal(Normal::PlaneFit);
         let patches = boxes.solve(&HEAP, &here, &HEAP, &pose).unwrap();
         let [other] = patches else { panic!("{i} {patches:?}") };

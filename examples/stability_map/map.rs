@@ -144,8 +144,7 @@ impl Map {
         let Options { ratios, courants, shapes, cells, finest, out, .. } = options;
         fs::create_dir_all(out)?;
         let path = out.join("map.csv");
-        let made = if options.anew { String::new() } else { fs::read_to_string(&path).unwrap_or_default() };
-        let mut runs: Vec<Run> = made.lines().filter_map(Run::parse).collect();
+        let mut runs = if options.anew || !path.exists() { Vec::new() } else { read(&path)? };
         if runs.is_empty() {
             fs::write(&path, format!("{HEADER}\n"))?;
         }
@@ -172,6 +171,20 @@ impl Map {
 
     pub(crate) fn find(&self, case: Case) -> Option<&Run> {
         self.runs.iter().find(|r| r.case == case)
+    }
+}
+
+/// The runs of a `map.csv`, nothing of which is to be lost.
+fn read(path: &Path) -> Outcome<Vec<Run>> {
+    let text = fs::read_to_string(path)?;
+    let (header, rows) = text.split_once('\n').unwrap_or_default();
+    let runs: Option<Vec<Run>> = rows.lines().map(Run::parse).collect();
+    match runs.filter(|_| header == HEADER) {
+        Some(runs) => Ok(runs),
+        None => {
+            Err(format!("{} has other columns than these runs: another --out, or --anew", path.display())
+                .into())
+        }
     }
 }
 

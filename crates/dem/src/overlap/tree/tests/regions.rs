@@ -221,11 +221,12 @@ fn rays_and_boxes_agree() {
         let mut boxes = tolerance(1e-4).with_normal(Normal::PlaneFit);
         let patches = boxes.solve(&HEAP, &here, &HEAP, &pose).unwrap();
         let [other] = patches else { panic!("{i} {patches:?}") };
-        assert!((rays.volume / other.volume - 1.0).abs() < 1.5e-3, "{i} {rays:?} {other:?}");
+        assert!((rays.volume / other.volume - 1.0).abs() < 1.1e-3, "{i} {rays:?} {other:?}");
         let area = other.area();
-        assert!((rays.centroid - other.centroid).norm() < 2e-3 * area.sqrt(), "{i} {rays:?} {other:?}");
-        assert!((rays.gradient - other.gradient).norm() < 2e-2 * area, "{i} {rays:?} {other:?}");
-        assert!((rays.moment - other.moment).norm() < 2e-2 * area.powf(1.5), "{i} {rays:?} {other:?}");
+        assert!((rays.centroid - other.centroid).norm() < 3e-4 * area.sqrt(), "{i} {rays:?} {other:?}");
+        assert!((rays.gradient - other.gradient).norm() < 1.5e-2 * area, "{i} {rays:?} {other:?}");
+        assert!((rays.moment - other.moment).norm() < 4e-3 * area.powf(1.5), "{i} {rays:?} {other:?}");
     }
-    assert!(by_rays >= 3, "{by_rays}");
+    // Seven without the sides along the rays, whose surfaces then do not close.
+    assert!(by_rays >= 9, "{by_rays}");
 }

@@ -151,7 +151,7 @@ impl AdaptiveTree {
         out: &mut Vec<Overlap>,
     ) -> Result<(), Exhausted> {
         self.roots.clear();
-        self.convex.planes.clear();
+        self.convex.clear();
         // Around the first body, so that places far from the world's origin lose no digits.
         let apart = at_b.position - at_a.position;
         match self.refinement {

@@ -6,6 +6,8 @@ use nalgebra::{Matrix2, Matrix3, SymmetricEigen};
 
 /// Directions along the contact in which its width is measured.
 const RING: usize = 8;
+/// How often the middle of a region is looked for.
+const CHORDS: usize = 4;
 
 /// A box in the frame in which it was looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -127,6 +129,17 @@ impl Search<'_> {
         }
         let half = (0.53 * (high - low)).zip_map(&Vector::repeat(1e-12 * self.size()), f64::max);
         Oriented { centre: deepest.at + axes * (0.5 * (low + high)), axes, half }
+    }
+
+    /// Deeper places in a convex region, whose distances have ridges along which steps down come to a halt: middles of chords.
+    pub(crate) fn central(&self, mut deepest: Deepest) -> Deepest {
+        for _ in 0..CHORDS {
+            match self.stay(self.around(&deepest).centre) {
+                Some(other) if other.level < 1.1 * deepest.level => deepest = other,
+                _ => break,
+            }
+        }
+        deepest
     }
 
     /// How far the region reaches from its deepest place along each of some directions.

@@ -1,4 +1,4 @@
-//! Convex regions, with edges and corners or without: polyhedra around them.
+//! Convex regions, with edges and corners or without, and those that a few planes part into such: polyhedra around them.
 //!
 //! From a box, planes that touch one of the bodies are cut off, one after the other: rays from the deepest place to the corner
 //! that is farthest out tell where. Flat faces are found at once and for good, so regions between bodies with flat faces come out
@@ -8,7 +8,10 @@
 //! 113495).
 //!
 //! That the region is convex is held against every corner that is cut off: the distance of a convex body there is no less than
-//! that of the plane, d(x) ≥ d(p) + ∇d(p)·(x − p).
+//! that of the plane, d(x) ≥ d(p) + ∇d(p)·(x − p). Where a flat face at an inward edge breaks this, the region is parted along
+//! it (`parted.rs`).
+mod flaw;
+mod parted;
 mod polytope;
 mod rim;
 mod seek;
@@ -17,8 +20,10 @@ mod view;
 use super::around::Oriented;
 use super::deepest::{Deepest, Search};
 use crate::Overlap;
+use flaw::Flaw;
 use interfaces::{Point, Vector};
 use nalgebra::Matrix3;
+use parted::{Face, Piece};
 use polytope::{Polytope, Side};
 use rim::Rims;
 use view::View;
@@ -32,18 +37,19 @@ const SLIVER: f64 = 1e-3;
 /// Corners that stand out by less than this share of the tolerance are left.
 const LEFT: f64 = 0.03;
 
-/// What was found of a region, in a frame around its deepest place.
+/// What was found of a region that is convex or parted into convex pieces, in the frame that it was looked for in.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Convex {
     /// A box around it.
     pub(crate) root: Oriented,
+    /// A place in it.
     pub(crate) centre: Vector,
     totals: Totals,
-    /// Its sides, among all that are kept.
+    /// The sides of its pieces, among all that are kept.
     planes: [usize; 2],
 }
 
-/// Volume, its centroid, gradient and moment about the centroid, along the frame's axes.
+/// Volume, its centroid, gradient and moment about the centroid.
 #[derive(Clone, Copy, Debug, Default)]
 struct Totals {
     volume: f64,
@@ -57,38 +63,59 @@ impl Totals {
     fn is_known(&self) -> bool {
         self.gradient.x.is_finite()
     }
+    /// As a frame sees it in which the axes of this one are the columns of `axes`, its origin is at `centre`.
+    fn turn(&mut self, axes: &Matrix3<f64>, centre: Vector) {
+        self.centroid = axes * self.centroid + centre;
+        self.gradient = axes * self.gradient;
+        self.moment = axes * self.moment;
+    }
+    fn add(&mut self, o: &Self) {
+        let volume = self.volume + o.volume;
+        let centroid = (self.volume * self.centroid + o.volume * o.centroid) / volume;
+        let about = |t: &Self| t.moment + (t.centroid - centroid).cross(&t.gradient);
+        let moment = about(self) + about(o);
+        *self = Self { volume, centroid, gradient: self.gradient + o.gradient, moment };
+    }
 }
 
-/// A side of a region, in the search's frame: n·(x − c) ≤ h.
+/// A side of a piece: n·x ≤ h.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plane {
     normal: Vector,
     height: f64,
+    /// Is it the piece's last one?
+    last: bool,
+}
+
+/// How far a place is from all pieces of these sides, no more than that; negative within.
+fn outside(x: Vector, planes: &[Plane]) -> f64 {
+    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+    for plane in planes {
+        most = most.max(plane.normal.dot(&x) - plane.height);
+        if plane.last {
+            least = least.min(most);
+            most = f64::NEG_INFINITY;
+        }
+    }
+    least
 }
 
 impl Convex {
     /// How far a place is from it, no more than that; negative within.
     pub(crate) fn outside(&self, x: Vector, planes: &[Plane]) -> f64 {
-        let x = x - self.centre;
-        let over = |p: &Plane| p.normal.dot(&x) - p.height;
-        planes[self.planes[0]..self.planes[1]].iter().map(over).fold(f64::NEG_INFINITY, f64::max)
+        outside(x, &planes[self.planes[0]..self.planes[1]])
     }
     /// As a frame sees it in which this one's axes are the columns of `axes`.
     pub(crate) fn turn(&mut self, axes: &Matrix3<f64>) {
         self.centre = axes * self.centre;
         self.root.turn(axes);
+        self.totals.turn(axes, Vector::zeros());
     }
     /// As the world sees it, whose place `origin` is that of the search's frame.
     pub(crate) fn overlap(&self, origin: Point, between: Vector) -> Overlap {
         let Totals { volume, centroid, gradient, moment } = self.totals;
-        let gradient = self.root.axes * gradient;
-        Overlap {
-            volume,
-            centroid: origin + (self.centre + self.root.axes * centroid),
-            normal: (-gradient).try_normalize(0.0).unwrap_or(between),
-            gradient,
-            moment: self.root.axes * moment,
-        }
+        let normal = (-gradient).try_normalize(0.0).unwrap_or(between);
+        Overlap { volume, centroid: origin + centroid, normal, gradient, moment }
     }
 }
 
@@ -104,10 +131,18 @@ pub(crate) enum Which {
 enum Failure {
     /// The box at the beginning is too small.
     Small,
+    /// This flat face of a body has a part of the body in front of it.
+    Inward(Face),
     /// It is not convex, or too much for so few sides.
     Other,
 }
 const OTHER: Failure = Failure::Other;
+
+/// A side that is no side of a convex region.
+fn inward(view: &View<'_>, side: &Side) -> Failure {
+    let face = side.body.map(|body| Face { body, normal: side.normal, foot: side.foot });
+    face.filter(|face| view.is_flat(face)).map_or(OTHER, Failure::Inward)
+}
 
 /// Measures convex regions and keeps the memory of it.
 #[derive(Clone, Debug, Default)]
@@ -116,6 +151,9 @@ pub(crate) struct Circumscribed {
     rims: Rims,
     /// Of all regions of a pair.
     pub(crate) planes: Vec<Plane>,
+    pieces: Vec<Piece>,
+    /// Along which regions are parted.
+    faces: Vec<Face>,
 }
 
 impl Circumscribed {
@@ -124,15 +162,14 @@ impl Circumscribed {
         seek::seek(&mut self.polytope, search)
     }
 
-    /// The region around a deepest place, if it is convex, to a relative error of its volume of about `tolerance`; its gradient's
-    /// error is held to a few times this.
-    pub(crate) fn measure(
+    /// The region around a deepest place, if it is convex.
+    fn piece(
         &mut self,
         search: &Search<'_>,
         deepest: &Deepest,
         tolerance: f64,
         which: Which,
-    ) -> Option<Convex> {
+    ) -> Result<Piece, Failure> {
         let around = search.around(deepest);
         let whole = Oriented { centre: Vector::zeros(), axes: Matrix3::identity(), half: 1.1 * search.half };
         let offset = around.axes.transpose() * (around.centre - deepest.at);
@@ -142,12 +179,15 @@ impl Circumscribed {
             let half = widened * around.half;
             let ends = [offset + most[0].sup(&-half), offset + most[1].inf(&half)];
             match self.cut(&view, ends, tolerance, which) {
-                Ok(totals) => return Some(self.region(deepest.at, around.axes, totals)),
+                Ok(totals) => return Ok(self.keep(deepest.at, around.axes, totals)),
                 Err(Failure::Small) => {}
-                Err(Failure::Other) => return None,
+                Err(Failure::Inward(face)) => {
+                    return Err(Failure::Inward(face.seen(&around.axes, deepest.at)));
+                }
+                Err(Failure::Other) => return Err(OTHER),
             }
         }
-        None
+        Err(OTHER)
     }
 
     fn cut(
@@ -185,7 +225,10 @@ impl Circumscribed {
                 }
                 let totals = self.totals(view, exact)?;
                 if exact && totals.is_known() {
-                    return Ok(totals);
+                    return match self.polytope.flaw(view) {
+                        None => Ok(totals),
+                        Some(flaw) => Err(self.inward(view, flaw)),
+                    };
                 }
                 if let Some(last) = last
                     && totals.is_known()
@@ -214,41 +257,58 @@ impl Circumscribed {
                 }
             }
             fresh = match self.touch(view, worst, target.x, target.distances) {
-                Some(corners) => corners,
+                Ok(corners) => corners,
                 // Beside an edge that is found already.
-                None if gap < SLIVER => {
+                Err(Failure::Other) if gap < SLIVER => {
                     self.polytope.corners[worst].gap = 0.0;
                     self.polytope.corners.len()
                 }
-                None => return Err(OTHER),
+                Err(failure) => return Err(failure),
             };
         }
     }
 
     /// Cuts off a corner; answers how many corners there were before.
-    fn touch(&mut self, view: &View<'_>, corner: usize, mut to: Vector, mut d: [f64; 2]) -> Option<usize> {
+    fn touch(
+        &mut self,
+        view: &View<'_>,
+        corner: usize,
+        mut to: Vector,
+        mut d: [f64; 2],
+    ) -> Result<usize, Failure> {
+        // Still outside.
+        let step = (0.3 * self.polytope.corners[corner].gap).min(0.04);
         for attempt in 1..5 {
             if let Some(side) = view.exit(to, d).and_then(|(body, x, d)| view.tangent(body, x, d)) {
                 let slack = view.slack;
                 let heights = self.polytope.look(&side);
                 if heights[corner] > slack {
-                    let body = side.body?;
+                    let body = side.body.ok_or(OTHER)?;
                     for (c, height) in self.polytope.corners.iter().zip(self.polytope.heights()) {
                         let least = side.slope * (0.98 * height - 1e-4 * (c.x - side.foot).norm());
                         if c.kept && *height > slack && c.distances[body] < least {
-                            return None;
+                            return Err(inward(view, &side));
                         }
                     }
-                    return self.polytope.cut(side, slack);
+                    return self.polytope.cut(side, slack).ok_or(OTHER);
                 }
             }
             // Beside an edge of a body, or at the height of rounding: somewhat beside it.
             let corners = self.polytope.corners.iter().filter(|c| c.kept);
-            let beside = corners.clone().nth(attempt * 7 % corners.clone().count())?;
-            to = to.lerp(&beside.x, 0.04);
+            let beside = corners.clone().nth(attempt * 7 % corners.clone().count()).ok_or(OTHER)?;
+            to = to.lerp(&beside.x, step);
             d = view.distances(to);
         }
-        None
+        Err(OTHER)
+    }
+
+    /// What becomes of a flaw.
+    fn inward(&self, view: &View<'_>, flaw: Flaw) -> Failure {
+        let side = match flaw {
+            Flaw::Notch(x, d) => view.exit(x, d).and_then(|(body, x, d)| view.tangent(body, x, d)),
+            Flaw::Beyond(number) => Some(self.polytope.sides[number]),
+        };
+        side.map_or(OTHER, |side| inward(view, &side))
     }
 
     /// The corner on a side of the box at the beginning that is farthest out.
@@ -320,14 +380,21 @@ impl Circumscribed {
         Ok(totals)
     }
 
-    fn region(&mut self, centre: Vector, axes: Matrix3<f64>, totals: Totals) -> Convex {
-        let first = self.planes.len();
-        let plane = |s: &Side| Plane { normal: axes * s.normal, height: s.height };
+    /// What was cut out around `centre`, along `axes`, as the search's frame sees it; its sides are kept.
+    fn keep(&mut self, centre: Vector, axes: Matrix3<f64>, mut totals: Totals) -> Piece {
+        let plane = |s: &Side| {
+            let normal = axes * s.normal;
+            Plane { normal, height: s.height + normal.dot(&centre), last: false }
+        };
         self.planes.extend(self.polytope.alive().map(plane));
+        if let Some(plane) = self.planes.last_mut() {
+            plane.last = true;
+        }
         let kept = || self.polytope.corners.iter().filter(|c| c.kept).map(|c| c.x);
         let low = kept().fold(Vector::repeat(f64::INFINITY), |l, x| l.inf(&x));
         let high = kept().fold(Vector::repeat(f64::NEG_INFINITY), |h, x| h.sup(&x));
         let root = Oriented { centre: centre + axes * (0.5 * (low + high)), axes, half: 0.5 * (high - low) };
-        Convex { root, centre, totals, planes: [first, self.planes.len()] }
+        totals.turn(&axes, centre);
+        Piece { root, totals }
     }
 }

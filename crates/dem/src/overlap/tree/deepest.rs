@@ -54,7 +54,15 @@ impl Search<'_> {
 
     /// Down from `x` in steps of about `t` at first to where both bodies are deep, if there is such a place.
     pub(crate) fn descend(&self, x: Vector, t: f64) -> Option<Deepest> {
-        let Least { at, distances: d, slopes } = self.least(x, t, ENOUGH);
+        let Least { at, distances, slopes } = self.least(x, t, ENOUGH);
+        Self::deep(at, distances, slopes)
+    }
+    /// A place in both bodies as it is.
+    pub(crate) fn stay(&self, x: Vector) -> Option<Deepest> {
+        let d = self.distances(x);
+        Self::deep(x, d, self.slopes(x, d, STEPS[1] * d[0].max(d[1]).abs()))
+    }
+    fn deep(at: Vector, d: [f64; 2], slopes: [Vector; 2]) -> Option<Deepest> {
         let level = d[0].max(d[1]);
         if level >= 0.0 {
             return None;

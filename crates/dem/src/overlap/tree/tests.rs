@@ -36,6 +36,7 @@ impl Shape for Given {
 mod convex;
 #[cfg(feature = "mesh")]
 mod facets;
+mod parted;
 mod regions;
 
 const BALL: Given = Given { distance: |x| x.norm() - 1.0, half: [1.0; 3] };

@@ -64,9 +64,5 @@ pub(super) fn seek(polytope: &mut Polytope, search: &Search<'_>) -> Option<Deepe
             break;
         }
     }
-    let (at, distances) = best?;
-    let step = 1e-3 * level(distances).abs();
-    let [a, b] = [0, 1].map(|i| search.slope(i, at, distances[i], step));
-    let across = (a - b).try_normalize(1e-6).unwrap_or(Vector::z());
-    Some(Deepest { at, distances, level: level(distances), across })
+    search.stay(best?.0)
 }

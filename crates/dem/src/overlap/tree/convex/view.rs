@@ -2,11 +2,14 @@
 use super::super::around::Oriented;
 use super::super::deepest::{Deepest, Search};
 use super::super::seen::Seen;
+use super::parted::Face;
 use super::polytope::{Corner, Side};
 use interfaces::Vector;
 
 /// Differences over this share of the region's width are slopes.
 const STEP: f64 = 1e-5;
+/// Faces are flat that are it this far to one side, as a share of the region's width.
+const BESIDE: f64 = 0.02;
 /// How far out towards a side's outline the surface below is looked for: there the mean of a square and of a cube along the way
 /// are known both.
 const OUT: f64 = 0.8;
@@ -19,7 +22,7 @@ pub(super) struct View<'a> {
     depth: [f64; 2],
     step: f64,
     /// Distances that are all but nothing \[m\].
-    small: f64,
+    pub(super) small: f64,
     /// Heights that are nothing \[m\].
     pub(super) slack: f64,
     /// Of the region's size \[m²\].
@@ -117,11 +120,16 @@ impl<'a> View<'a> {
         None
     }
 
+    /// Of a body's distance, which is `d` at `x`.
+    pub(super) fn slope(&self, body: usize, x: Vector, d: f64) -> Vector {
+        let places = [Vector::x(), Vector::y(), Vector::z()].map(|e| x + self.step * e);
+        Vector::from(self.bodies[body].distances(&places, self.band).map(|f| (f - d) / self.step))
+    }
+
     /// The plane that touches a body's surface at `x`, which is `d` from it; none at edges.
     pub(super) fn tangent(&self, body: usize, x: Vector, d: f64) -> Option<Side> {
         let s = self.step;
-        let places = [Vector::x(), Vector::y(), Vector::z()].map(|e| x + s * e);
-        let slope = Vector::from(self.bodies[body].distances(&places, self.band).map(|f| (f - d) / s));
+        let slope = self.slope(body, x, d);
         let steep = slope.norm();
         let normal = slope.try_normalize(1e-9)?;
         let [up, down] = self.bodies[body].distances(&[x + s * normal, x - s * normal], self.band);
@@ -131,6 +139,16 @@ impl<'a> View<'a> {
         }
         let side = Side::new(normal, x - (d / steep) * normal, steep, Some(body));
         (side.height > 0.0).then_some(side)
+    }
+
+    /// Is the body's surface flat beside a place on it, to either side of an edge that may be there?
+    pub(super) fn is_flat(&self, face: &Face) -> bool {
+        let u = face.normal.cross(&Vector::ith(face.normal.iamin(), 1.0)).normalize();
+        let way = BESIDE / STEP * self.step;
+        [u, face.normal.cross(&u)].iter().all(|e| {
+            let on = |s: f64| self.distance(face.body, face.foot + s * e).abs() <= self.small;
+            on(way) || on(-way)
+        })
     }
 
     /// The integral of 1 − t³ over a side, and of ¾(1 − t⁴)·x, with the body's surface at the share t of the way to it.

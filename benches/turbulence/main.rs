@@ -2,6 +2,7 @@
 //! measurements; what they cost, and what they bear. On one thread: `cargo bench --bench turbulence`, or with the names of cases after `--`.
 //! Pictures go to `out/turbulence`.
 mod channel;
+mod eddies_in_channel;
 mod large_eddies;
 mod plate;
 mod robust;
@@ -18,5 +19,6 @@ fn main() -> Outcome<()> {
         ("cost", robust::cost),
         ("robust", robust::bad_starts),
         ("tgv", large_eddies::taylor_green),
+        ("les", eddies_in_channel::channel),
     ])
 }

@@ -1,6 +1,6 @@
 //! Which axes diffuse implicitly.
 use crate::FlowError;
-use crate::metrics::NodeMetrics;
+use crate::metrics::{AxisMetrics, NodeMetrics};
 
 /// How viscous terms are advanced in time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,11 +55,11 @@ impl<const D: usize> SplitDiffusion<D> {
         }
     }
 
-    /// The longest step \[s\] for which Adams–Bashforth is stable if the axes of `implicit` are taken out of it;
-    /// `extra` \[m²/s\] is explicit along all axes.
+    /// The longest step \[s\] for which Adams–Bashforth is stable if the axes of `implicit` are taken out of it; `extra` \[1/s\],
+    /// the largest Σ ν/h² of what else diffuses, is explicit along all axes.
     pub(crate) fn limit(&self, extra: f64, implicit: &[bool; D]) -> f64 {
-        let diffusivity = |a: usize| extra + if implicit[a] { 0.0 } else { self.diffusivity };
-        0.25 / (0..D).map(|a| diffusivity(a) * self.stiffness[a]).sum::<f64>()
+        let explicit = (0..D).filter(|&a| !implicit[a]);
+        0.25 / (extra + explicit.map(|a| self.diffusivity * self.stiffness[a]).sum::<f64>())
     }
 
     /// The axes that have to be implicit in a step of `dt`.
@@ -107,6 +107,16 @@ impl<const D: usize> SplitDiffusion<D> {
             _ => (IMPLICIT_GAIN * explicit).min(MARGIN * self.limit(extra, &[true; D])),
         }
     }
+}
+
+/// The largest coefficient of a second difference that a change of each of the first `n` cells' diffusivity enters, 1/h² on uniform
+/// axes.
+pub(crate) fn stiffness_of_cells(axis: &AxisMetrics, n: usize) -> Vec<f64> {
+    let g = crate::grid::GHOSTS;
+    let around = |nodes: &NodeMetrics, i: usize| {
+        (i - 1..=i + 1).map(|i| nodes.up[i].max(nodes.down[i])).fold(0.0, f64::max)
+    };
+    (g..g + n).map(|i| around(&axis.centres, i).max(around(&axis.faces, i))).collect()
 }
 
 /// Half the largest sum of coefficients of the second difference of the first `n` nodes inside the box, 1/h² on uniform

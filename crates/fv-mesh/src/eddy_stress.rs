@@ -10,8 +10,8 @@ pub struct EddyStress<const D: usize> {
     pub(crate) eddy: Field<D>,
     /// Of each component.
     pub(crate) friction: [Vec<Friction>; D],
-    /// The largest ν_t \[m²/s\], of the cells or on walls.
-    pub(crate) most: f64,
+    /// The largest Σ ν_t/h² \[1/s\], of the cells or on walls.
+    pub(crate) rate: f64,
 }
 
 /// −`rate` (u − `wall`) at a node \[m/s²\].
@@ -28,10 +28,9 @@ pub(crate) struct Friction {
 }
 
 impl<const D: usize> EddyStress<D> {
-    /// That of ν_t with its ghosts, without friction.
+    /// That of ν_t with its ghosts, without friction, for steps of any length.
     pub(crate) fn of(eddy: Field<D>) -> Self {
-        let most = eddy.data().iter().copied().fold(0.0, f64::max);
-        Self { eddy, friction: std::array::from_fn(|_| Vec::new()), most }
+        Self { eddy, friction: std::array::from_fn(|_| Vec::new()), rate: 0.0 }
     }
 
     /// Adds the acceleration of component `c` to `source`.

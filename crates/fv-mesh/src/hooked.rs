@@ -169,7 +169,7 @@ impl<const D: usize, B, C: ClosureSlot<D> + Checkpoint, S: Checkpoint> Checkpoin
         self.flow.restore(&|name| source(&format!("flow.{name}")))?;
         self.hooks.closure.restore(&|name| source(&format!("closure.{name}")))?;
         self.hooks.scalars.restore(&|name| source(&format!("scalars.{name}")))?;
-        self.flow.expect_eddy_viscosity(self.hooks.closure.largest());
+        self.flow.expect_eddy_viscosity(self.hooks.closure.fastest());
         Ok(())
     }
 }

@@ -240,7 +240,7 @@ impl<const D: usize> Projection<D> {
     /// What hooks do at the end of a step: the closure follows the flow, and the next step's limit the closure.
     pub(crate) fn correct<C: ClosureSlot<D>>(&mut self, dt: f64, closure: &mut C) -> Result<(), FlowError> {
         closure.correct(self, dt)?;
-        self.expect_eddy_viscosity(closure.largest());
+        self.expect_eddy_viscosity(closure.fastest());
         Ok(())
     }
 }

@@ -1,8 +1,26 @@
 //! Turbulence models in a flow.
+use crate::diffusion::stiffness_of_cells;
 use crate::metrics::Metrics;
 use crate::transport::{CellTransport, WallFaces};
 use crate::{CartesianGrid, EddyStress, Field, FlowError, Projection, Sides, TransportParams, Velocity};
 use interfaces::{Checkpoint, Closure, RestartError, SolveError, WallRow};
+
+/// The largest Σ ν_t/h² over the axes, of cells (x fastest) or on walls \[1/s\].
+fn rate<const D: usize>(stiffness: &[Vec<f64>; D], eddy: &[f64], on_walls: &[f64]) -> f64 {
+    let [along, across @ ..] = &stiffness[..] else { return 0.0 };
+    let mut most = 0.0_f64;
+    for (number, row) in eddy.chunks(along.len()).enumerate() {
+        let mut rest = number;
+        let mut others = 0.0;
+        for axis in across {
+            others += axis[rest % axis.len()];
+            rest /= axis.len();
+        }
+        most = row.iter().zip(along).map(|(nu, s)| nu * (s + others)).fold(most, f64::max);
+    }
+    let stiffest: f64 = stiffness.iter().map(|axis| axis.iter().copied().fold(0.0, f64::max)).sum();
+    on_walls.iter().map(|nu| nu * stiffest).fold(most, f64::max)
+}
 
 /// What a turbulence model does to a flow; `()` does nothing.
 pub trait ClosureSlot<const D: usize> {
@@ -16,8 +34,8 @@ pub trait ClosureSlot<const D: usize> {
     /// # Errors
     /// [`FlowError::Closure`].
     fn correct(&mut self, flow: &Projection<D>, dt: f64) -> Result<(), FlowError>;
-    /// The largest ν_t of any cell or wall \[m²/s\].
-    fn largest(&self) -> f64;
+    /// How fast it diffuses momentum at most: the largest Σ ν_t/h² of any cell or wall, over the axes \[1/s\].
+    fn fastest(&self) -> f64;
 }
 
 impl<const D: usize> ClosureSlot<D> for () {
@@ -30,7 +48,7 @@ impl<const D: usize> ClosureSlot<D> for () {
         Ok(())
     }
     #[inline(always)]
-    fn largest(&self) -> f64 {
+    fn fastest(&self) -> f64 {
         0.0
     }
 }
@@ -43,8 +61,8 @@ impl<const D: usize, C: ClosureSlot<D>> ClosureSlot<D> for Option<C> {
     fn correct(&mut self, flow: &Projection<D>, dt: f64) -> Result<(), FlowError> {
         self.as_mut().map_or(Ok(()), |model| model.correct(flow, dt))
     }
-    fn largest(&self) -> f64 {
-        self.as_ref().map_or(0.0, C::largest)
+    fn fastest(&self) -> f64 {
+        self.as_ref().map_or(0.0, C::fastest)
     }
 }
 
@@ -57,6 +75,8 @@ pub struct Modelled<const D: usize, C> {
     pub closure: C,
     transport: CellTransport<D>,
     walls: WallFaces<D>,
+    /// Of the cells along each axis \[1/m²\].
+    stiffness: [Vec<f64>; D],
     pub(crate) stress: Option<EddyStress<D>>,
     /// The rows of the box's walls, then those of immersed ones.
     rows: Vec<WallRow>,
@@ -78,6 +98,7 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
             closure,
             transport: CellTransport::new(grid, sides, params)?,
             walls: WallFaces::new(grid, &metrics, sides),
+            stiffness: std::array::from_fn(|a| stiffness_of_cells(&metrics.axes[a], grid.cells()[a])),
             stress: None,
             rows: Vec::new(),
         })
@@ -112,7 +133,7 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
             return failed("the eddy viscosity on walls", rows, on_walls.len());
         }
         let stress = self.stress.get_or_insert_with(|| EddyStress::of(Field::zeros(grid)));
-        stress.most = eddy.iter().chain(on_walls).copied().fold(0.0, f64::max);
+        stress.rate = rate(&self.stiffness, eddy, on_walls);
         self.transport.spread(eddy, &mut stress.eddy);
         if on_walls.is_empty() {
             stress.friction.iter_mut().for_each(Vec::clear);
@@ -149,9 +170,9 @@ impl<const D: usize, C: Closure> ClosureSlot<D> for Modelled<D, C> {
     fn correct(&mut self, flow: &Projection<D>, dt: f64) -> Result<(), FlowError> {
         self.update(flow.velocity(), &[], flow.fluid().viscosity, flow.time(), Some(dt))
     }
-    fn largest(&self) -> f64 {
-        let walls = self.closure.wall_viscosity().iter();
-        self.closure.eddy_viscosity().unwrap_or_default().iter().chain(walls).copied().fold(0.0, f64::max)
+    fn fastest(&self) -> f64 {
+        let eddy = self.closure.eddy_viscosity().unwrap_or_default();
+        rate(&self.stiffness, eddy, self.closure.wall_viscosity())
     }
 }
 

@@ -232,7 +232,7 @@ impl<const D: usize> Projection<D> {
     /// The axes whose diffusion has to be implicit in a step of `dt`; an eddy viscosity is explicit in any case.
     pub(crate) fn choose_implicit(&self, dt: f64) -> Result<[bool; D], FlowError> {
         self.state.check_step(dt)?;
-        self.diffusion.choose(dt, self.sources.eddy_most())
+        self.diffusion.choose(dt, self.sources.eddy_rate())
     }
 
     /// Makes the velocity free of divergence and adds what that took to the pressure. May be
@@ -323,7 +323,7 @@ impl<const D: usize> Projection<D> {
     /// The longest step \[s\] for which Adams–Bashforth diffusion is stable along all axes: 1/(4ν Σ 1/h²) on a uniform periodic
     /// grid, 13 % less between walls (a quarter less if fewer than ten cells are).
     pub fn viscous_limit(&self) -> f64 {
-        self.diffusion.limit(self.sources.eddy_most(), &[false; D])
+        self.diffusion.limit(self.sources.eddy_rate(), &[false; D])
     }
 
     /// The axes along which viscous terms were implicit (Crank–Nicolson) in the last predictor.
@@ -334,7 +334,7 @@ impl<const D: usize> Projection<D> {
     /// The longest step \[s\] with Courant number ≤ `courant`; a tenth inside the viscous limit where diffusion is
     /// explicit, at most ten times that limit where it may be implicit.
     pub fn stable_dt(&self, courant: f64) -> f64 {
-        (courant / self.courant(1.0)).min(self.diffusion.longest_step(self.sources.eddy_most()))
+        (courant / self.courant(1.0)).min(self.diffusion.longest_step(self.sources.eddy_rate()))
     }
 
     show_state!();

@@ -8,26 +8,26 @@ pub(super) struct Sources<const D: usize> {
     fields: Option<Box<[Field<D>; D]>>,
     /// Is there anything in `fields`?
     given: bool,
-    /// The largest ν_t of the last step with a closure \[m²/s\].
-    eddy_most: f64,
+    /// The largest Σ ν_t/h² of the last step with a closure \[1/s\].
+    eddy_rate: f64,
 }
 
 impl<const D: usize> Sources<D> {
-    /// The largest eddy viscosity that is given, or was in the last step \[m²/s\].
-    pub(super) fn eddy_most(&self) -> f64 {
-        self.eddy_most
+    /// The largest Σ ν_t/h² that is given, or was in the last step \[1/s\].
+    pub(super) fn eddy_rate(&self) -> f64 {
+        self.eddy_rate
     }
 
     /// Forgets the eddy viscosity of an earlier step.
     pub(super) fn start(&mut self) {
         if !self.given {
-            self.eddy_most = 0.0;
+            self.eddy_rate = 0.0;
         }
     }
 
     /// Takes back accelerations that no predictor step used.
     pub(super) fn forget(&mut self) {
-        (self.given, self.eddy_most) = (false, 0.0);
+        (self.given, self.eddy_rate) = (false, 0.0);
     }
 
     /// Puts them on another grid of the same size.
@@ -59,15 +59,15 @@ impl<const D: usize> Projection<D> {
         self.sources.forget();
     }
 
-    /// Tells [`stable_dt`](Self::stable_dt) of the largest ν_t in the next step \[m²/s\].
-    pub(crate) fn expect_eddy_viscosity(&mut self, most: f64) {
-        self.sources.eddy_most = most;
+    /// Tells [`stable_dt`](Self::stable_dt) of the largest Σ ν_t/h² in the next step \[1/s\].
+    pub(crate) fn expect_eddy_viscosity(&mut self, rate: f64) {
+        self.sources.eddy_rate = rate;
     }
 
     /// Adds ∇·[ν_t(∇u + ∇uᵀ)] and the friction of walls to the next predictor step of `dt`.
     pub(crate) fn add_eddy_stress(&mut self, stress: &EddyStress<D>, dt: f64) -> Result<(), FlowError> {
         stress.eddy.check(&self.state.grid)?;
-        self.sources.eddy_most = stress.most;
+        self.sources.eddy_rate = stress.rate;
         self.choose_implicit(dt)?;
         self.with_sources(|flow, sources| {
             sources.iter_mut().enumerate().for_each(|(c, source)| stress.add(c, &flow.state, source));

@@ -1,8 +1,8 @@
 //! Body forces, buoyancy, closures, scalars.
 use crate::norms;
 use fv_mesh::{
-    Boussinesq, CartesianGrid, Fluid, ForceField, Hooks, Modelled, Projection, Scalar, ScalarSide, Side,
-    TransportParams,
+    Axis, Boussinesq, CartesianGrid, Cluster, Fluid, ForceField, Hooks, Modelled, Projection, Scalar,
+    ScalarSide, Side, TransportParams,
 };
 use interfaces::{Closure, SolveError, Transport, Vector, VelocityField, WallRow};
 use std::f64::consts::TAU;
@@ -152,4 +152,45 @@ fn stratified_fluid_stays_at_rest() {
         flow.advance_with(0.01, &mut hooks).unwrap();
     }
     assert!(norms::velocity(&flow, |_| [0.0; 2]).linf < 1e-14);
+}
+
+/// An eddy viscosity that is large where cells are wide: the limit of a step is that of the cells, not that of the largest ν_t in the
+/// thinnest of them; at the limit noise dies, however rough the viscosity is.
+#[test]
+fn eddies_limit_the_step_where_they_are() {
+    let y = Axis::tanh(32, 0.0, 1.0, 2.0, Cluster::Both).unwrap();
+    let grid = CartesianGrid::from_axes([Axis::uniform(24, 0.0, 1.0).unwrap(), y]).unwrap();
+    let sides = [Side::Periodic.both(), Side::WALL.both()];
+    let mut flow = Projection::new(grid, sides, Fluid { density: 1.0, viscosity: 1e-9 }).unwrap();
+    let mut state = 3_u64;
+    let mut noise = move || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
+    let eddy: Vec<f64> = (0..flow.grid().n_cells())
+        .map(|i| {
+            let y = flow.grid().centre(flow.grid().cell(i))[1];
+            (y * (1.0 - y)).powi(2) * (1.0 + noise()) + 1e-6
+        })
+        .collect();
+    let most = eddy.iter().copied().fold(0.0, f64::max);
+    // So shaky a function of the place that it is noise.
+    let rough = |s: f64| 1e-6 * (1e5 * s).sin();
+    flow.set_velocity(|[x, y]| [rough(x + 3.1 * y), rough(1.7 * x - y)]);
+    let closure =
+        Modelled::new(Uniform(eddy), flow.grid(), flow.sides(), TransportParams::default()).unwrap();
+    let mut hooks = Hooks::none().with_closure(closure);
+    flow.advance_with(1e-6, &mut hooks).unwrap();
+    let thinnest = flow.grid().axis(1).faces()[1];
+    let of_all = 0.25 / (most * (24.0_f64.powi(2) + thinnest.powi(-2)));
+    assert!(flow.viscous_limit() > 4.0 * of_all, "{} {of_all}", flow.viscous_limit());
+    let mut energy = flow.statistics().kinetic_energy;
+    let first = energy;
+    for _ in 0..300 {
+        flow.advance_with(flow.viscous_limit(), &mut hooks).unwrap();
+        let now = flow.statistics().kinetic_energy;
+        assert!(now <= energy, "{now} {energy}");
+        energy = now;
+    }
+    assert!(energy < 0.1 * first, "{energy} {first}");
 }

@@ -17,7 +17,7 @@ const LESS: f64 = 0.25;
 const STEPS: usize = 12;
 
 impl Polytope {
-    /// A side of one of the bodies by which it is not convex: that of a notch, or one that the region goes on behind.
+    /// How it is not the region, if places on its sides and beside them tell.
     pub(super) fn flaw(&self, view: &View<'_>) -> Option<Flaw> {
         self.sides.iter().enumerate().filter(|(_, side)| !side.ring().is_empty()).find_map(
             |(number, side)| {
@@ -35,9 +35,12 @@ impl Polytope {
         )
     }
 
-    /// How far a place is from the surface, from within.
-    fn depth(&self, x: Vector) -> f64 {
-        self.alive().map(|side| side.height - side.normal.dot(&x)).fold(f64::INFINITY, f64::min)
+    /// How far a place within is from the surface, and how deep it is by distances that grow as they do across the sides.
+    fn depth(&self, x: Vector) -> [f64; 2] {
+        self.alive().fold([f64::INFINITY; 2], |[way, depth], side| {
+            let height = side.height - side.normal.dot(&x);
+            [way.min(height), depth.min(side.slope * height)]
+        })
     }
 
     /// A place that is outside the region below a triangle of a side, and both distances there.
@@ -46,10 +49,10 @@ impl Polytope {
             return Some(found);
         }
         let y = (1.0 - BESIDE) * middle(triangle);
-        let reach = self.depth(y);
+        let [reach, depth] = self.depth(y);
         let here = view.distances(y);
         let level = here[0].max(here[1]);
-        if -level < (1.0 - LESS) * reach
+        if -level < (1.0 - LESS) * depth
             && let Some(found) = self.out(view, y, here)
         {
             return Some(found);
@@ -62,13 +65,13 @@ impl Polytope {
     fn out(&self, view: &View<'_>, mut x: Vector, mut d: [f64; 2]) -> Option<(Vector, [f64; 2])> {
         let body = usize::from(d[1] > d[0]);
         let way = view.slope(body, x, d[body]).try_normalize(1e-9)?;
-        let reach = self.depth(x);
+        let [reach, _] = self.depth(x);
         for _ in 0..STEPS {
             if d[body] > view.slack {
                 return Some((x, d));
             }
             x += (1.05 * d[body].abs()).max(0.02 * reach) * way;
-            if self.depth(x) < 0.05 * reach {
+            if self.depth(x)[0] < 0.05 * reach {
                 return None;
             }
             d = view.distances(x);
@@ -77,7 +80,7 @@ impl Polytope {
     }
 }
 
-/// How a polyhedron is not the region.
+/// Where a polyhedron is not the region.
 pub(super) enum Flaw {
     /// A place that is outside the region, and the distances there.
     Notch(Vector, [f64; 2]),

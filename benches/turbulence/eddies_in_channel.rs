@@ -50,11 +50,16 @@ pub(crate) fn channel() -> Outcome<()> {
         Ok(Modelled::new(Wale::new(WaleConstants::default(), n)?, flow.grid(), flow.sides(), params())?)
     };
     run("WALE", of_model("WALE", &grid, [end, from], &dns, wale)?, &mut curves);
-    let smagorinsky = |flow: &Projection<3>| {
-        let closure = Smagorinsky::new(SmagorinskyConstants::default(), n)?;
-        Ok(Modelled::new(closure, flow.grid(), flow.sides(), params())?)
+    let smagorinsky = |c_s: f64| {
+        let constants = SmagorinskyConstants { c_s, ..SmagorinskyConstants::default() };
+        move |flow: &Projection<3>| {
+            let closure = Smagorinsky::new(constants, n)?;
+            Ok(Modelled::new(closure, flow.grid(), flow.sides(), params())?)
+        }
     };
-    run("Smagorinsky", of_model("Smagorinsky", &grid, [end, from], &dns, smagorinsky)?, &mut curves);
+    for (name, c_s) in [("C_s 0.1", 0.1), ("C_s 0.17", 0.17)] {
+        run(name, of_model(name, &grid, [end, from], &dns, smagorinsky(c_s))?, &mut curves);
+    }
     let points = dns.iter().step_by(2).map(|p| (p[0], p[1])).filter(|p| p.0 > 0.3).collect();
     curves.push(Curve { label: "DNS".into(), points, line: false });
     let title = format!("large eddies, Re_τ {RE:.0}, {nx} × {ny} × {nz} cells");

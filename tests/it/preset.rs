@@ -115,7 +115,7 @@ fn the_papers_algorithm_keeps_books() {
     assert!((-0.05..0.0).contains(&lost(&found)), "{found:?}");
     let found = books(false, 1e-4);
     assert!(found.momentum_step < 1e-4 && found.momentum_total < 1e-5, "{found:?}");
-    // Between floor and ceiling also what two corrections leave, most of it in the first step.
+    // Between floor and ceiling also what two corrections leave.
     let found = books(true, 1e-4);
     assert!(found.momentum_total < 1e-3, "{found:?}");
     assert!((-0.05..0.0).contains(&lost(&found)), "{found:?}");

@@ -40,7 +40,8 @@ fn speeds_of<A: FlowSolver<2>, F: Forcing, S: Exchange<2, A>>(
     Ok((speeds, simulation.flow.steps(), watch.elapsed().cpu))
 }
 
-fn theory(time: f64) -> Outcome<[f64; 2]> {
+/// Speeds of both discs by unsteady Stokes theory.
+pub(crate) fn theory(time: f64) -> Outcome<[f64; 2]> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/startup_two_discs.csv");
     let text = std::fs::read_to_string(path)?;
     let rows =
@@ -49,13 +50,18 @@ fn theory(time: f64) -> Outcome<[f64; 2]> {
     Ok([row[1], row[2]])
 }
 
-fn percent(value: f64, reference: f64) -> f64 {
+/// How far `value` is from `reference` \[%\].
+pub(crate) fn percent(value: f64, reference: f64) -> f64 {
     100.0 * (value / reference - 1.0)
+}
+
+/// The scene with so many cells across a disc.
+pub(crate) fn at(cells_per_diameter: usize) -> Scene {
+    Scene { cells_per_diameter, ..Scene::default() }
 }
 
 /// Prints the tables.
 pub(crate) fn run() -> Outcome<()> {
-    let at = |cells| Scene { cells_per_diameter: cells, ..Scene::default() };
     let smooth = || SmoothForcing::new(FLUID.density);
     println!("\nstart-up: error of the speeds against unsteady Stokes theory in %");
     println!(

@@ -1,13 +1,15 @@
 //! Error against run time, on one thread: `cargo bench --bench work_precision` (about six minutes; `-- flows`, `-- cylinder`
-//! and `-- discs` run one part; `-- settling`, only when named, takes half an hour).
+//! and `-- discs` run one part; only when named: `-- settling`, half an hour, and `-- algorithms`).
 //!
 //! 1. flows: fluid alone. Taylor–Green vortices and a shear layer in periodic boxes, the lid-driven cavity ([`flows`]).
 //! 2. cylinder: an immersed cylinder in a channel, steady ([`cylinder`]).
 //! 3. discs: the falling discs ([`discs`]).
 //! 4. settling: one sphere, and 64 ([`settling`]).
+//! 5. algorithms: the falling discs by the paper's algorithm and by ours, with their books ([`algorithms`]).
 //!
 //! Reference points of other codes stand in the same tables. With `-- plot` (or without any part named) 1 and 2 are drawn to
 //! docs/images/work_precision.png.
+mod algorithms;
 mod cylinder;
 mod discs;
 mod flows;
@@ -98,6 +100,9 @@ fn main() -> Outcome<()> {
         }
         if wanted.iter().any(|w| w == "settling") {
             settling::run()?;
+        }
+        if wanted.iter().any(|w| w == "algorithms") {
+            algorithms::run()?;
         }
         if runs("discs") {
             discs::run()?;

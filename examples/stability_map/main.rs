@@ -5,7 +5,7 @@
 //! per step by the coupling's own choices. Speeds at t√(g/d) = 10 and 30 are held against those of the finest run (`--finest` cells per diameter).
 //!
 //! Sample run: `cargo run --release --example stability_map -- --ratios 0.001,1.1 --shapes sphere --cells 8 --finest 12`, a minute or so. All of it
-//! (no flags) takes an hour. Every run that is done is written to `map.csv` at once, and is not made again. Files are in `out/stability_map`: `map.csv`,
+//! (no flags) takes an hour. Every run that is done is written to `map.csv` at once, and is not made again. `--no-runs` draws what is there. Files are in `out/stability_map`: `map.csv`,
 //! `stability_map.png`, `rock.stl`.
 mod map;
 mod report;
@@ -54,6 +54,9 @@ pub(crate) struct Options {
     /// Make the runs that are in map.csv anew.
     #[arg(long)]
     anew: bool,
+    /// Make no runs: table and picture of those that are in map.csv.
+    #[arg(long, conflicts_with = "anew")]
+    no_runs: bool,
 }
 
 fn main() -> Outcome<()> {

@@ -148,6 +148,9 @@ impl Map {
         if runs.is_empty() {
             fs::write(&path, format!("{HEADER}\n"))?;
         }
+        if options.no_runs {
+            return Ok(Self { runs });
+        }
         let mut file = fs::OpenOptions::new().append(true).open(&path)?;
         for &kind in shapes {
             let shape = shape(kind, options)?;

@@ -82,7 +82,8 @@ fn drawing(options: &Options, map: &Map, kind: Kind) -> Drawing {
             match off(options, map, run) {
                 _ if !is_stable(run) => drawing.points.push(([place(ratio), 0.0], paint, "unstable".into())),
                 Some(off) => line.push([place(ratio), 100.0 * off[0].abs().max(off[1].abs())]),
-                None => line.push([place(ratio), 0.0]),
+                // Without a finest run nothing is known.
+                None => {}
             }
         }
         line.sort_by(|p, q| p[0].total_cmp(&q[0]));

@@ -1,7 +1,7 @@
 //! The paper's algorithm, as one call.
 use crate::with_threads;
 use example_support::scene::{FLUID, Scene};
-use siltflow::coupling::{self, HfdibDem, Particles, Schedule, Simulation};
+use siltflow::coupling::{self, HfdibDem, Ledger, LedgerReport, Particles, Schedule, Simulation};
 use siltflow::flow::{PisoParams, TimeScheme};
 use siltflow::ibm::SmoothForcing;
 use siltflow::interfaces::{BodyId, Checkpoint, Kinematics, Twist};
@@ -88,4 +88,35 @@ fn one_solution_works_on_piso() {
             }
         });
     }
+}
+
+/// Momentum is kept to the tolerances of the linear solvers; of the energy a part is lost.
+#[test]
+fn the_papers_algorithm_keeps_books() {
+    let books = |floor: bool, tolerance: f64| -> LedgerReport {
+        with_threads(1, || {
+            let scene = Scene { cells_per_diameter: 10, floor, ..Scene::default() };
+            let mut simulation = scene.hfdib_dem().unwrap();
+            let params = PisoParams {
+                momentum_tolerance: tolerance,
+                pressure_tolerance: tolerance,
+                ..*simulation.flow.params()
+            };
+            simulation.flow = simulation.flow.with_params(params).unwrap();
+            let schedule = Schedule { end: 0.03, intervals: 30, dt: Some(2.5e-4), ..Schedule::default() };
+            let mut ledger = Ledger::new();
+            coupling::run(&mut simulation, &schedule, &mut ledger, &AtomicBool::new(false)).unwrap();
+            *ledger.report()
+        })
+    };
+    let lost = |books: &LedgerReport| books.energy_residual / books.work;
+    let found = books(false, 1e-11);
+    assert!(found.momentum_step < 1e-10, "{found:?}");
+    assert!((-0.05..0.0).contains(&lost(&found)), "{found:?}");
+    let found = books(false, 1e-4);
+    assert!(found.momentum_step < 1e-4 && found.momentum_total < 1e-5, "{found:?}");
+    // Between floor and ceiling also what two corrections leave.
+    let found = books(true, 1e-4);
+    assert!(found.momentum_total < 1e-3, "{found:?}");
+    assert!((-0.05..0.0).contains(&lost(&found)), "{found:?}");
 }

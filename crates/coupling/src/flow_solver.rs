@@ -54,6 +54,8 @@ pub trait FlowSolver<const D: usize>: Checkpoint {
     fn centred_velocity(&self, c: usize) -> impl Iterator<Item = f64> + '_;
     /// Sums and extremes.
     fn statistics(&mut self) -> FlowStatistics;
+    /// Impulse of the bounded sides on the fluid during the last step \[N s\].
+    fn wall_impulse(&self) -> Vector;
     /// Time \[s\].
     fn time(&self) -> f64;
     /// Sets the clock exactly.
@@ -119,6 +121,9 @@ macro_rules! forward {
         }
         fn statistics(&mut self) -> FlowStatistics {
             $flow::statistics(self)
+        }
+        fn wall_impulse(&self) -> Vector {
+            $flow::wall_impulse(self)
         }
         fn time(&self) -> f64 {
             $flow::time(self)

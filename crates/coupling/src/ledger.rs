@@ -1,7 +1,6 @@
 //! The books of momentum and energy.
 use crate::particles::Stake;
 use crate::{CouplingError, FlowSolver, Observer, Particles, Simulation, StepInfo, Strategy};
-use fv_mesh::Projection;
 use ibm::Forcing;
 use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Vector};
 
@@ -13,7 +12,8 @@ use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Vector};
 /// what holds bodies that are not free, and what the box's own walls do to the fluid. Energy: E = ½ρ∫_Ω u² + Σ½(1 − ρ/ρ_s)(mU² + ΩIΩ)
 /// against the work of net weight, body force and contacts less the viscous dissipation ρν∫|∇u|²
 /// (trapezoidal in time) and what the forcing [hides](ibm::Forcing::hidden_dissipation). What bodies bring that are put into the flow, and take along that are taken out, is no residual. (The fluid that a [`MovingWindow`](crate::MovingWindow) leaves behind is, and so is what a [`Hooked`](fv_mesh::Hooked) flow's own hooks do: forces that differ
-/// from place to place, an eddy viscosity.)
+/// from place to place, an eddy viscosity. Momentum of a [`Piso`](fv_mesh::Piso) is kept to its tolerances by Euler's scheme,
+/// between walls to what its last correction leaves; by BDF2 it is not a difference of two times, and the books do not close.)
 ///
 /// The books open where a run begins. Those of an interrupted run go on, bit for bit, if they are saved beside the simulation and restored
 /// before the next.
@@ -139,7 +139,7 @@ where
     F: Forcing,
     B: Dynamics,
     S: Strategy,
-    A: FlowSolver<D> + AsRef<Projection<D>>,
+    A: FlowSolver<D>,
 {
     fn begin(&mut self, simulation: &mut Simulation<D, Particles<F, B, S>, A>) {
         if std::mem::take(&mut self.resumed) {
@@ -161,7 +161,7 @@ where
         let dt = info.dt;
         let (flow, particles) = (&simulation.flow, &simulation.particles);
         let body_force = dt * flow.fluid().density * flow.grid().volume() * simulation.body_force();
-        let walls = flow.as_ref().wall_impulse();
+        let walls = flow.wall_impulse();
         let brought = self.turnover(particles);
         let (mut contacts, mut weight, mut held) = (Vector::zeros(), Vector::zeros(), Vector::zeros());
         let (mut contact_work, mut sum) = (0.0, 0.0);

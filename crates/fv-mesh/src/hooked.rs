@@ -3,7 +3,7 @@ use crate::{
     BodyForce, CartesianGrid, ClosureSlot, Field, FlowError, FlowStatistics, Fluid, Hooks, Projection,
     ScalarTransport, Sides, Velocity,
 };
-use interfaces::{Checkpoint, RestartError};
+use interfaces::{Checkpoint, RestartError, Vector};
 
 /// A [`Projection`] and its [`Hooks`] as one, whose step has the parts of the flow's own, so that something else can act in between, as
 /// bodies do: [`Projection::advance_with`] is `predict`, forcing, `project`, `finish` of this.
@@ -110,6 +110,10 @@ where
     /// Sums and extremes.
     pub fn statistics(&mut self) -> FlowStatistics {
         self.flow.statistics()
+    }
+    /// Impulse of the bounded sides on the fluid during the last step \[N s\].
+    pub fn wall_impulse(&self) -> Vector {
+        self.flow.wall_impulse()
     }
     /// Time \[s\].
     pub fn time(&self) -> f64 {

@@ -8,12 +8,12 @@ use interfaces::Vector;
 /// Momentum that convection and viscosity carry through the bounded sides into the unknowns, per
 /// density and time \[m⁴/s²\]: for a component along a side the flux through it (friction, at a wall); for the
 /// component normal to it, whose first unknown is one face off the side, the flux through the first cell. First
-/// convection with the viscous flux along axes of `explicit` viscosity, then the viscous flux along those of `implicit`.
+/// convection (by the first of the velocities, of the second) with the viscous flux along axes of `explicit` viscosity, then the viscous flux along those of `implicit`.
 pub(crate) fn friction<const D: usize>(
     momentum: &Momentum<D>,
     metrics: &Metrics<D>,
     grid: &CartesianGrid<D>,
-    velocity: &[Field<D>; D],
+    velocities: [&[Field<D>; D]; 2],
     explicit: [f64; D],
     implicit: [f64; D],
 ) -> [Vector; 2] {
@@ -25,7 +25,7 @@ pub(crate) fn friction<const D: usize>(
                 let first = usize::from(a == c);
                 let place = [GHOSTS + at[c], GHOSTS];
                 let [low, high] = [first, n[a]]
-                    .map(|i| flux(momentum, velocity, [c, a], o + i * s[a], [place[0], place[1] + i]));
+                    .map(|i| flux(momentum, velocities, [c, a], o + i * s[a], [place[0], place[1] + i]));
                 sums[0][c] += area * ((low[0] - high[0]) - explicit[a] * (low[1] - high[1]));
                 sums[1][c] -= area * implicit[a] * (low[1] - high[1]);
             });

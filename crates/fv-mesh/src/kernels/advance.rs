@@ -250,18 +250,18 @@ pub(crate) fn upwinded<const KIND: u8>(a: f64, b: f64, g: f64, [far, u, d]: [f64
 }
 
 /// Momentum flux per area that convection and viscosity carry along axis `b` between the nodes o − s_b and o of component
-/// `c` (entry `j` of the metrics along b, `i` along c), as the predictor computes it: carried, diffused.
+/// `c` (entry `j` of the metrics along b, `i` along c), as the predictor computes it: carried by `carrier`, diffused.
 pub(crate) fn flux<const D: usize>(
     momentum: &Momentum<D>,
-    velocity: &[Field<D>; D],
+    [carrier, velocity]: [&[Field<D>; D]; 2],
     [c, b]: [usize; 2],
     o: usize,
     [i, j]: [usize; 2],
 ) -> [f64; 2] {
     let s = momentum.grid.stride();
-    let (u, v) = (velocity[c].data(), velocity[b].data());
+    let (u, v) = (velocity[c].data(), carrier[b].data());
     let carry = if b == c {
-        0.5 * (u[o] + u[o - s[b]])
+        0.5 * (v[o] + v[o - s[b]])
     } else {
         let share = &momentum.metrics.axes[c].share;
         share[0][i] * v[o - s[c]] + share[1][i] * v[o]

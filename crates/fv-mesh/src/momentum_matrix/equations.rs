@@ -4,7 +4,8 @@ use crate::boundary::Boundaries;
 use crate::kernels::{Advance, Momentum, add_eddy_stress, flux};
 use crate::linear::StencilMatrix;
 use crate::metrics::Metrics;
-use crate::{CartesianGrid, Convection, Field, Fluid};
+use crate::{CartesianGrid, Convection, Field, Fluid, walls};
+use interfaces::Vector;
 
 /// Makes and solves the equations of the velocity components in shared memory.
 pub(crate) struct MomentumEquations<const D: usize> {
@@ -77,7 +78,15 @@ impl<const D: usize> MomentumEquations<D> {
         o: usize,
         [i, j]: [usize; 2],
     ) -> [f64; 2] {
-        flux(&self.convection, velocity, [c, b], o, [i, j])
+        flux(&self.convection, [velocity; 2], [c, b], o, [i, j])
+    }
+
+    /// Momentum of `velocity` per density and time that convection by `carrier` and viscosity (that of the fluid itself) carry through
+    /// the bounded sides into the unknowns \[m⁴/s²\].
+    pub(crate) fn side_flux(&self, carrier: &[Field<D>; D], velocity: &[Field<D>; D]) -> Vector {
+        let (velocities, viscosity) = ([carrier, velocity], [self.fluid.viscosity; D]);
+        let none = [0.0; D];
+        walls::friction(&self.convection, &self.metrics, &self.grid, velocities, viscosity, none)[0]
     }
 
     /// H of the equation made last at the node with this storage index.

@@ -14,7 +14,8 @@ use crate::momentum_matrix::{self as momentum, Equation, Implicit, MomentumEquat
 use crate::per_dimension::per_dimension;
 use crate::poisson::PoissonError;
 use crate::simple::PressureCorrection;
-use crate::{CartesianGrid, Convection, Field, FlowError, Fluid, ImmersedForcing, Side};
+use crate::{CartesianGrid, Convection, Field, FlowError, Fluid, ImmersedForcing, Side, walls};
+use interfaces::Vector;
 
 /// A step may be at most so many times longer than the last for BDF2 to look back: it is stable up to 1 + √2.
 const LONGEST_RATIO: f64 = 2.4;
@@ -59,8 +60,9 @@ pub struct Piso<const D: usize> {
     /// Of the last step and of the one before it; at the start of a step `old` is uⁿ⁻¹.
     old: [Field<D>; D],
     older: [Field<D>; D],
-    /// Before the last correction.
+    /// Before the correction under way.
     last: [Field<D>; D],
+    /// What the predictor, then each correction did to the velocity.
     delta: [Vec<f64>; D],
     zeros: Vec<f64>,
     eddy: Option<Field<D>>,
@@ -70,6 +72,11 @@ pub struct Piso<const D: usize> {
     corrections: usize,
     /// w dt of this step.
     weights: [f64; 3],
+    /// û, which carries momentum in this step.
+    carrier: [Field<D>; D],
+    /// Momentum per density and time that convection and viscosity carried through the sides in this step, so far \[m⁴/s²\].
+    side_flux: Vector,
+    wall_impulse: Vector,
 }
 
 impl<const D: usize> Piso<D> {
@@ -103,6 +110,9 @@ impl<const D: usize> Piso<D> {
             imposed: std::array::from_fn(|_| Vec::new()),
             corrections: 0,
             weights: [1.0, -1.0, 0.0],
+            carrier: fields(),
+            side_flux: Vector::zeros(),
+            wall_impulse: Vector::zeros(),
             params,
             state,
         })
@@ -197,6 +207,9 @@ impl<const D: usize> Piso<D> {
         }
         self.state.boundaries.advance(&self.state.metrics, self.state.time + dt)?;
         self.state.fill_velocity();
+        for (carrier, u) in self.carrier.iter_mut().zip(&self.state.velocity.components) {
+            carrier.data_mut().copy_from_slice(u.data());
+        }
         for c in 0..D {
             let FlowState { boundaries, velocity, pressure, .. } = &self.state;
             let equation = Equation {
@@ -229,6 +242,7 @@ impl<const D: usize> Piso<D> {
         boundaries.reset_outlets(&velocity.components);
         self.correction.update(boundaries, fluid.viscosity)?;
         self.state.fill_velocity();
+        self.side_flux = self.equations.side_flux(&self.carrier, &self.state.velocity.components);
         self.corrections = 0;
         self.state.last_dt = dt;
         Ok(())
@@ -245,13 +259,12 @@ impl<const D: usize> Piso<D> {
     }
 
     fn correct_here(&mut self, dt: f64) -> Result<(), FlowError> {
+        // What was done to the velocity in between is no change by the flow: its neighbours do not follow it, nor does friction.
+        self.state.fill_velocity();
+        let before = self.equations.side_flux(&self.carrier, &self.state.velocity.components);
         let FlowState { grid, boundaries, velocity, .. } = &mut self.state;
         for (c, u) in velocity.components.iter_mut().enumerate() {
-            let last = &mut self.last[c];
-            if self.corrections > 0 {
-                momentum::difference(u, last, &mut self.delta[c]);
-            }
-            last.data_mut().copy_from_slice(u.data());
+            self.last[c].data_mut().copy_from_slice(u.data());
             if self.corrections > 0 {
                 let (matrix, h) = (&self.matrices[c], &mut self.equations.rhs);
                 matrix.h(&self.zeros, &self.delta[c], h)?;
@@ -273,6 +286,11 @@ impl<const D: usize> Piso<D> {
         kernels::add_dense(grid, &self.correction.phi, pressure);
         self.state.fill_pressure();
         self.state.fill_velocity();
+        let velocity = &self.state.velocity.components;
+        for ((u, last), delta) in velocity.iter().zip(&self.last).zip(&mut self.delta) {
+            momentum::difference(u, last, delta);
+        }
+        self.side_flux += self.equations.side_flux(&self.carrier, velocity) - before;
         self.corrections += 1;
         Ok(())
     }
@@ -290,6 +308,9 @@ impl<const D: usize> Piso<D> {
         if self.state.rates.iter().any(|u| !u.is_finite()) {
             return Err(self.state.diverged(dt));
         }
+        let FlowState { grid, metrics, pressure, fluid, .. } = &self.state;
+        let thrust = walls::thrust(grid, metrics, pressure);
+        self.wall_impulse = dt * (fluid.density * self.side_flux + thrust);
         self.state.tick(dt);
         Ok(())
     }
@@ -318,6 +339,13 @@ impl<const D: usize> Piso<D> {
     pub fn stable_dt(&self, courant: f64) -> f64 {
         let growth = if self.steps() > 0 { GROWTH * self.last_dt() } else { f64::INFINITY };
         (courant / self.courant(1.0)).min(growth)
+    }
+
+    /// Impulse of the bounded sides on the fluid during the last step \[N s\]: pressure, friction of the fluid's own viscosity, and what flows through.
+    /// By it and by forces w₀Pⁿ⁺¹ + w₁Pⁿ + w₂Pⁿ⁻¹ differs from zero ([`weights`](Self::weights)), up to the tolerances and, between walls, what the last correction's neighbours do
+    /// not answer any more. What [`impose`](Self::impose) takes is not in it.
+    pub fn wall_impulse(&self) -> Vector {
+        self.wall_impulse
     }
 
     show_state!();

@@ -212,6 +212,73 @@ fn eddy_viscosity_slows_the_vortices() {
     assert!((decay / exact - 1.0).abs() < 5e-3, "{decay} {exact}");
 }
 
+/// Largest part of a step's impulses by which sides, force and a push between the parts of the step miss the momentum that the fluid gains.
+fn unaccounted<const D: usize>(cells: [usize; D], sides: [[Side; 2]; D], correctors: usize) -> f64 {
+    let grid = CartesianGrid::new(cells, [1.0; D]).unwrap();
+    let params = PisoParams {
+        correctors,
+        time_scheme: TimeScheme::Euler,
+        momentum_tolerance: 1e-12,
+        pressure_tolerance: 1e-12,
+    };
+    let density = 2.0;
+    let fluid = Fluid { density, viscosity: 0.01 };
+    let mut flow = Piso::new(grid, sides.clone(), fluid).unwrap().with_params(params).unwrap();
+    let force: [f64; D] = std::array::from_fn(|c| 0.1 * (c as f64 + 1.0));
+    let cell = flow.grid().volume() / cells.iter().product::<usize>() as f64;
+    let (dt, mut worst) = (0.02, 0.0_f64);
+    for _ in 0..30 {
+        let before = flow.statistics().volume_flow;
+        let mut pushed = 0.0;
+        flow.predict(dt, force).unwrap();
+        for _ in 0..correctors {
+            // A body that holds some cells in the middle.
+            let lattice = flow.velocity().lattice(0);
+            let middle: [isize; 3] = std::array::from_fn(|a| if a < D { cells[a] as isize / 2 } else { 0 });
+            let middle = lattice.index(middle).unwrap();
+            for u in &mut flow.velocity_mut().component_mut(0)[middle..middle + 2] {
+                pushed += density * cell * (0.4 - *u);
+                *u = 0.4;
+            }
+            flow.correct(dt).unwrap();
+        }
+        flow.finish(dt).unwrap();
+        let gained = density * (flow.statistics().volume_flow - before);
+        let mut sum = pushed.abs();
+        let mut given = flow.wall_impulse();
+        sum += given.norm();
+        given.x += pushed;
+        for c in 0..D {
+            // Faces on a wall carry no momentum and feel no force.
+            let unknown =
+                if matches!(sides[c][0], Side::Periodic) { 1.0 } else { 1.0 - 1.0 / cells[c] as f64 };
+            given[c] += dt * density * force[c] * unknown;
+            sum += dt * density * force[c];
+        }
+        worst = worst.max((gained - given).norm() / sum);
+    }
+    worst
+}
+
+#[test]
+fn sides_force_and_bodies_account_for_all_momentum() {
+    // Nothing is lost between periodic sides.
+    let periodic = unaccounted([12, 10], PERIODIC, 2);
+    assert!(periodic < 1e-10, "{periodic:e}");
+    // Between walls the neighbours of the last correction do not answer: less with each one.
+    let lid = Side::Wall([1.0, 0.0, 0.0]);
+    let walls = [Side::WALL.both(), [Side::WALL, lid.clone()]];
+    let slippery = [Side::Periodic.both(), [Side::FreeSlip, lid.clone()]];
+    let space = [Side::WALL.both(), [Side::FreeSlip, lid], Side::Periodic.both()];
+    for found in [
+        [2, 8].map(|n| unaccounted([12, 10], walls.clone(), n)),
+        [2, 8].map(|n| unaccounted([12, 10], slippery.clone(), n)),
+        [2, 8].map(|n| unaccounted([8, 8, 7], space.clone(), n)),
+    ] {
+        assert!(found[0] < 0.02 && found[1] < 0.02 * found[0], "{found:?}");
+    }
+}
+
 #[test]
 fn a_stopped_run_goes_on_the_same() {
     let sides = [[Side::Inlet(Profile::Parabolic { peak: 1.0 }), Side::ConvectiveOutlet], Side::WALL.both()];

@@ -25,7 +25,13 @@ impl<const D: usize> Piso<D> {
     /// Puts all fields on the box's grid.
     pub(super) fn set_grid(&mut self) {
         let grid = &self.state.grid;
-        let fields = self.old.iter_mut().chain(&mut self.older).chain(&mut self.last).chain(&mut self.eddy);
+        let fields = self
+            .old
+            .iter_mut()
+            .chain(&mut self.older)
+            .chain(&mut self.last)
+            .chain(&mut self.carrier)
+            .chain(&mut self.eddy);
         fields.for_each(|field| field.set_grid(grid));
     }
 }

@@ -226,7 +226,7 @@ impl<const D: usize> Projection<D> {
 
     fn side_fluxes(&self, [explicit, implicit]: [[f64; D]; 2]) -> [Vector; 2] {
         let FlowState { grid, metrics, velocity, .. } = &self.state;
-        walls::friction(&self.momentum, metrics, grid, &velocity.components, explicit, implicit)
+        walls::friction(&self.momentum, metrics, grid, [&velocity.components; 2], explicit, implicit)
     }
 
     /// The axes whose diffusion has to be implicit in a step of `dt`; an eddy viscosity is explicit in any case.

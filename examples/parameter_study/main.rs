@@ -4,7 +4,7 @@
 //! decomposition (PODIANN). Each run in turn is left out whole, modes and all, and predicted from the other 24.
 //!
 //! ```text
-//! cargo run --release --example parameter_study        # some ten CPU seconds; out/parameter_study
+//! cargo run --release --example parameter_study        # some two CPU minutes; out/parameter_study
 //! ```
 #[path = "../reduced_discs/fall.rs"]
 mod fall;
@@ -29,7 +29,7 @@ use study::{Errors, Models, Run, Sizes};
 #[command(version)]
 struct Cli {
     /// Cells across a disc.
-    #[arg(long, default_value_t = 8)]
+    #[arg(long, default_value_t = 15)]
     cells_per_diameter: usize,
     /// End time [s].
     #[arg(long, default_value_t = 0.2)]
@@ -150,6 +150,12 @@ fn run(cli: &Cli, stop: &AtomicBool) -> Outcome<Ending> {
     {
         table.row(name, format!("{} ({:.0} times as quick as a run)", number(1e6 * cost), full / cost), "µs");
     }
+    let whole = (cli.intervals + 1) as f64 * (costs[1] + costs[2]);
+    table.row(
+        "λ and velocity at all times of a run",
+        format!("{} ({:.0} times as quick as a run)", number(1e3 * whole), full / whole),
+        "ms",
+    );
     println!("{table}");
     let result = json!({
         "cells": cells, "full_cpu": full, "fit_cpu": fit_cpu, "left_out_cpu": left_out_cpu, "costs": costs,

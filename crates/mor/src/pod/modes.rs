@@ -27,6 +27,9 @@ pub struct Pod {
 /// What is less than so many units in the last place of the snapshots' norm is round-off.
 pub(super) const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 
+/// Rows of a field that are put together at a time.
+const BLOCK: usize = 1024;
+
 impl Pod {
     /// Of snapshots (n × m).
     ///
@@ -127,8 +130,12 @@ impl Pod {
             Some(mean) => out.copy_from_slice(mean),
             None => out.fill(0.0),
         }
-        for (k, c) in coefficients.iter().enumerate() {
-            out.iter_mut().zip(self.modes.col_as_slice(k)).for_each(|(x, mode)| *x += c * mode);
+        // A block stays in the cache while all modes are added to it.
+        for (number, block) in out.chunks_mut(BLOCK).enumerate() {
+            for (k, c) in coefficients.iter().enumerate() {
+                let mode = &self.modes.col_as_slice(k)[number * BLOCK..];
+                block.iter_mut().zip(mode).for_each(|(x, mode)| *x += c * mode);
+            }
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! The usual way to decompose snapshots.
 use super::rank_search::{Fit, Found, RankSearch};
 use super::residual::{Observer, Problem};
-use super::thinning::{MANY, Thinned, thinned};
+use super::thinning::{MANY, SOME, Thinned, thinned};
 use super::translated::Translated;
 use super::waves::Waves;
 use super::{
@@ -177,7 +177,7 @@ impl ShiftedPod {
         let frames = match start {
             Some(frames) => frames,
             None if n > MANY => {
-                let (some, few) = thinned(snapshots);
+                let (some, few) = thinned(snapshots, SOME);
                 let shifts = Thinned { shifts, snapshots: &some };
                 let operators = GridFrames::new(self.grid, self.interpolation, &shifts, m)?;
                 let fit = self.descent(&operators, few.as_ref(), &[]);

@@ -5,12 +5,13 @@ use monomorphic::{Mat, MatRef};
 
 /// More snapshots than this are thinned out to find the ranks.
 pub(super) const MANY: usize = 150;
-const SOME: usize = 75;
+/// To so many.
+pub(super) const SOME: usize = 75;
 
-/// Some of the snapshots, the first and the last among them.
-pub(super) fn thinned(snapshots: MatRef<'_, f64>) -> (Vec<usize>, Mat<f64>) {
-    let some: Vec<usize> = (0..SOME).map(|i| i * (snapshots.ncols() - 1) / (SOME - 1)).collect();
-    let few = Mat::from_fn(snapshots.nrows(), SOME, |i, j| snapshots[(i, some[j])]);
+/// So many of the snapshots, two at least, the first and the last among them.
+pub(super) fn thinned(snapshots: MatRef<'_, f64>, count: usize) -> (Vec<usize>, Mat<f64>) {
+    let some: Vec<usize> = (0..count).map(|i| i * (snapshots.ncols() - 1) / (count - 1)).collect();
+    let few = Mat::from_fn(snapshots.nrows(), count, |i, j| snapshots[(i, some[j])]);
     (some, few)
 }
 

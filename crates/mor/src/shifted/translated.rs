@@ -3,7 +3,7 @@ use super::fourier::{Als, LONG, Spectrum, offsets};
 use super::rank_search::{Found, RankSearch, deviation};
 use super::residual::{Observer, Problem};
 use super::shifted_pod::{Ranks, Watch};
-use super::thinning::{MANY, Thinned, thinned};
+use super::thinning::{MANY, SOME, Thinned, thinned};
 use super::waves::Waves;
 use super::{
     Decomposition, Frame, FrameOperators, Motions, Noise, Progress, ShiftedError, ShiftedPod, Shifts,
@@ -21,8 +21,8 @@ pub(super) struct Translated<'a> {
 
 /// Modes and wrong entries by turns, at most so often.
 const ROUNDS: usize = 40;
-/// In a round the modes are fitted until two steps lower the error by less than this part.
-const BRIEF: (usize, f64) = (2, 0.3);
+/// In a round the modes are fitted until so many steps lower the error by less than this part.
+const BRIEF: (usize, f64) = (3, 0.05);
 /// A round that lowers deviation and error to no less than this part of what they were is one of the last.
 const SETTLED: f64 = 0.7;
 /// Entries that are so many deviations off are wrong.
@@ -31,10 +31,11 @@ const WRONG: f64 = 6.0;
 const WRONG_OF_ONE: f64 = 4.0;
 /// When there are other modes to be found, only what is off by more than this part of the largest value counts as wrong at first.
 const CLEARLY: f64 = 0.1;
-/// With wrong entries, ranks are found for so many times the tolerance: some small ones are not known until the end.
-const UNCERTAIN: f64 = 10.0;
-/// A level is at least this part of the one before.
-const SHRINK: f64 = 0.4;
+/// Beside wrong entries ranks are looked for on so many snapshots, if there are more: fewer do not tell small modes from entries that are a little off.
+const TOLD: usize = 200;
+/// A level is at least this part of the one before. The modes must follow: what they do not show yet, such as the edges of bodies, would count as wrong and
+/// not be fitted any more (0.4 left 1e-4 of two discs).
+const SHRINK: f64 = 0.6;
 /// Fewer entries do not tell a deviation.
 const FEW: usize = 10;
 /// Entries that tell the deviation, about.
@@ -79,7 +80,7 @@ impl Translated<'_> {
             Ranks::Given(ranks) => (ranks.clone(), start),
             Ranks::Found => {
                 let (some, few) = match &start {
-                    None if n > MANY => thinned(self.snapshots),
+                    None if n > MANY => thinned(self.snapshots, SOME),
                     _ => ((0..n).collect(), self.snapshots.to_owned()),
                 };
                 let moved = Motions::beside(self.shifts, &offsets);
@@ -159,9 +160,9 @@ impl Translated<'_> {
         let (m, n) = self.snapshots.shape();
         let robust = match &self.pod.ranks {
             Ranks::Given(ranks) => self.with_ranks(ranks, start, watch)?,
-            Ranks::Found if start.is_some() || n <= MANY => self.with_ranks_found(start, watch)?,
+            Ranks::Found if start.is_some() || n <= TOLD => self.with_ranks_found(start, watch)?,
             Ranks::Found => {
-                let (some, few) = thinned(self.snapshots);
+                let (some, few) = thinned(self.snapshots, TOLD);
                 let thinned = Thinned { shifts: self.shifts, snapshots: &some };
                 let part = Translated { pod: self.pod, shifts: &thinned, snapshots: few.as_ref() };
                 let found = part.with_ranks_found(None, watch)?;
@@ -209,6 +210,8 @@ impl Translated<'_> {
             None => vec![1; self.shifts.n_frames()],
         };
         let mut robust = self.with_ranks(&first, start, watch)?;
+        // Each fit begins there: entries that fewer modes took for wrong would stay as those had them.
+        let begun = robust.clone();
         for _ in 0..2 * self.pod.max_rank {
             if robust.stopped == StopReason::Asked {
                 break;
@@ -221,13 +224,17 @@ impl Translated<'_> {
             let moved = Motions::beside(self.shifts, &robust.offsets);
             let part = Translated { pod: self.pod, shifts: &moved, snapshots: known.as_ref() };
             let most: Vec<_> = before.iter().map(|r| (r + 1).min(self.pod.max_rank)).collect();
-            (robust.frames, robust.stopped) =
-                part.search(Some(robust.frames), &most, UNCERTAIN * self.pod.rank_tolerance, watch)?;
-            let ranks: Vec<_> = robust.frames.iter().map(Frame::rank).collect();
-            if robust.stopped == StopReason::Asked || ranks == before {
+            let start = Some(robust.frames.clone());
+            let (frames, stopped) = part.search(start, &most, self.pod.rank_tolerance, watch)?;
+            if stopped == StopReason::Asked {
+                robust = Robust { frames, stopped, ..robust };
                 break;
             }
-            robust = self.rounds(robust, &ranks, watch)?;
+            let ranks: Vec<_> = frames.iter().map(Frame::rank).collect();
+            if ranks == before {
+                break;
+            }
+            robust = self.rounds(begun.clone(), &ranks, watch)?;
         }
         Ok(robust)
     }
@@ -365,6 +372,7 @@ fn release(noise: &mut Mat<f64>) {
 const BATCH: usize = 32;
 
 /// Modes besides wrong entries.
+#[derive(Clone)]
 struct Robust {
     frames: Vec<Frame>,
     noise: Option<Mat<f64>>,

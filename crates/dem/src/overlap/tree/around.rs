@@ -9,6 +9,12 @@ const RING: usize = 8;
 /// How often the middle of a region is looked for.
 const CHORDS: usize = 4;
 
+/// Two directions along a plane of unit normal `n`, at right angles, as (u, v, n) turn like the axes.
+pub(crate) fn tangents(n: Vector) -> [Vector; 2] {
+    let u = n.cross(&Vector::ith(n.iamin(), 1.0)).normalize();
+    [u, n.cross(&u)]
+}
+
 /// A box in the frame in which it was looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Oriented {
@@ -90,8 +96,7 @@ impl Search<'_> {
         let n = deepest.across;
         // The same whichever way it points.
         let n = if n[n.iamax()] < 0.0 { -n } else { n };
-        let u = n.cross(&Vector::ith(n.iamin(), 1.0)).normalize();
-        let v = n.cross(&u);
+        let [u, v] = tangents(n);
         let ring: [Vector; RING] = std::array::from_fn(|i| {
             let (sin, cos) = (std::f64::consts::TAU * i as f64 / RING as f64).sin_cos();
             cos * u + sin * v

@@ -1,4 +1,5 @@
 //! Where two bodies that are apart come closest.
+use super::around::tangents;
 use super::deepest::{Least, Search};
 use super::gjk::{Convex, closest_places};
 use super::seen::{Seen, shared};
@@ -109,8 +110,7 @@ pub(crate) fn closest(
     }
     let (at, distances) = search.towards_the_middle(at, gap, normal);
     let size = a.bounding_radius().min(b.bounding_radius());
-    let u = normal.cross(&Vector::ith(normal.iamin(), 1.0)).normalize();
-    let v = normal.cross(&u);
+    let [u, v] = tangents(normal);
     let step = 0.5 * (gap * size).sqrt();
     let curvatures = [0, 1].map(|i| {
         let places = [u, -u, v, -v, u + v, -u - v].map(|e| at + step * e);

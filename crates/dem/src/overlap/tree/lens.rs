@@ -8,7 +8,7 @@ mod azimuth;
 mod meridian;
 mod rim;
 
-use super::around::Oriented;
+use super::around::{Oriented, tangents};
 use super::deepest::{Deepest, Search};
 use crate::Overlap;
 use azimuth::eighths;
@@ -387,8 +387,8 @@ impl Lenses {
 
 /// A frame whose third axis is `n`.
 fn across(n: Vector) -> Matrix3<f64> {
-    let u = n.cross(&Vector::ith(n.iamin(), 1.0)).normalize();
-    Matrix3::from_columns(&[u, n.cross(&u), n])
+    let [u, v] = tangents(n);
+    Matrix3::from_columns(&[u, v, n])
 }
 
 /// A guess of the rim in the first half-plane: where both distances vanish if they grow with the square of the distance from

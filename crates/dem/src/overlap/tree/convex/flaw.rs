@@ -24,10 +24,11 @@ impl Polytope {
                 let place = |c: usize| self.corners[c].x;
                 let sum: Vector = side.edges().map(|[from, ..]| place(from)).sum();
                 let middle = sum / side.ring().len() as f64;
-                side.edges().find_map(|[from, to, _]| {
+                side.edges().find_map(|[from, to, over]| {
                     let triangle = [middle, place(from), place(to)];
-                    let on_edge = || on(view, place(from).lerp(&place(to), 0.5));
-                    let notch = on_edge().or_else(|| self.below(view, triangle, LEVELS));
+                    // Once for both sides.
+                    let on_edge = (number < over).then(|| on(view, place(from).lerp(&place(to), 0.5)));
+                    let notch = on_edge.flatten().or_else(|| self.below(view, triangle, LEVELS));
                     let notch = notch.map(|(x, d)| Flaw::Notch(x, d));
                     notch.or_else(|| above(view, side, triangle, LEVELS).then_some(Flaw::Beyond(number)))
                 })

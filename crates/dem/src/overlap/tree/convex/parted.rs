@@ -5,7 +5,7 @@
 //! not convex, and added: where only parts of a body touch, ∫n dA and ∫x × n dA over its surface cancel. Planes part all that is
 //! measured after them, so pieces share nothing. All pieces that hang together meet on the planes and are found there: squares are
 //! divided until distances prove them empty.
-use super::super::around::Oriented;
+use super::super::around::{Oriented, tangents};
 use super::super::deepest::{Deepest, Search};
 use super::super::seen::Behind;
 use super::{Circumscribed, Convex, Failure, Totals, Which, outside};
@@ -48,7 +48,6 @@ pub(super) struct Piece {
 #[derive(Clone, Copy)]
 struct Asked {
     tolerance: f64,
-    which: Which,
     /// No piece is deeper than this, unless it is nothing \[m\].
     least: f64,
 }
@@ -71,8 +70,8 @@ impl Circumscribed {
         which: Which,
     ) -> Option<Convex> {
         let [planes, pieces, faces] = [self.planes.len(), self.pieces.len(), self.faces.len()];
-        let asked = Asked { tolerance, which, least: THIN * tolerance * deepest.level };
-        if self.collect(search, deepest, asked).is_none() {
+        let asked = Asked { tolerance, least: THIN * tolerance * deepest.level };
+        if self.collect(search, deepest, which, asked).is_none() {
             self.planes.truncate(planes);
             self.pieces.truncate(pieces);
             self.faces.truncate(faces);
@@ -89,10 +88,10 @@ impl Circumscribed {
     }
 
     /// Adds the pieces that hang together with a deepest place.
-    fn collect(&mut self, search: &Search<'_>, deepest: &Deepest, asked: Asked) -> Option<()> {
+    fn collect(&mut self, search: &Search<'_>, deepest: &Deepest, which: Which, asked: Asked) -> Option<()> {
         let first = self.planes.len();
         if self.faces.is_empty() {
-            match self.piece(search, deepest, asked.tolerance, asked.which) {
+            match self.piece(search, deepest, asked.tolerance, which) {
                 Ok(piece) => {
                     self.pieces.push(piece);
                     return Some(());
@@ -176,8 +175,7 @@ struct Section {
 
 impl Section {
     fn new(search: &Search<'_>, &Face { normal, foot, .. }: &Face) -> Self {
-        let u = normal.cross(&Vector::ith(normal.iamin(), 1.0)).normalize();
-        let across = [u, normal.cross(&u)].map(|e| e.abs().dot(&search.half) * e);
+        let across = tangents(normal).map(|e| e.abs().dot(&search.half) * e);
         let squares = [([0.0; 2], 0); 3 * LEVELS as usize + 1];
         Self { middle: normal.dot(&foot) * normal, across, squares, n: 1 }
     }

@@ -1,5 +1,5 @@
 //! Both bodies as the centre of a convex region sees them.
-use super::super::around::Oriented;
+use super::super::around::{Oriented, tangents};
 use super::super::deepest::{Deepest, Search};
 use super::super::seen::Seen;
 use super::parted::Face;
@@ -143,9 +143,8 @@ impl<'a> View<'a> {
 
     /// Is the body's surface flat beside a place on it, to either side of an edge that may be there?
     pub(super) fn is_flat(&self, face: &Face) -> bool {
-        let u = face.normal.cross(&Vector::ith(face.normal.iamin(), 1.0)).normalize();
         let way = BESIDE / STEP * self.step;
-        [u, face.normal.cross(&u)].iter().all(|e| {
+        tangents(face.normal).iter().all(|e| {
             let on = |s: f64| self.distance(face.body, face.foot + s * e).abs() <= self.small;
             on(way) || on(-way)
         })

@@ -4,7 +4,7 @@
 //! A step reads as the equations do ([`Simulation::step`]): u* is predicted, the bodies move,
 //! f_ib makes the fluid follow them, the pressure makes it free of divergence. [`Particles`] holds
 //! the strategy that gives the bodies their new velocities with one pressure solution per step;
-//! `()` in its place is the plain flow loop; any [`FlowSolver`] may be the flow. [`hfdib_dem`] is the paper's algorithm. [`run`] makes the steps and calls [`Observer`]s;
+//! `()` in its place is the plain flow loop; any [`FlowSolver`] may be the flow. [`hfdib_dem`] is the paper's algorithm. [`run`] makes the steps and calls [`Observer`]s, also of [`Grains`] without a fluid;
 //! [`Ledger`] keeps the books of momentum and energy; [`SnapshotFeed`] and [`BodyPaths`] feed models made of snapshots; [`save`] and [`load`] keep a run's state.
 //!
 //! ```
@@ -33,12 +33,14 @@
 mod checkpoint;
 mod error;
 mod flow_solver;
+mod grains;
 mod ledger;
 mod moving_window;
 mod output;
 mod particles;
 mod preset;
 mod run;
+mod serials;
 mod simulation;
 mod snapshots;
 mod strategy;
@@ -46,12 +48,13 @@ mod strategy;
 pub use checkpoint::{CheckpointError, load, previous, save};
 pub use error::CouplingError;
 pub use flow_solver::FlowSolver;
+pub use grains::Grains;
 pub use ledger::{Ledger, LedgerReport};
 pub use moving_window::MovingWindow;
 pub use output::FileOutput;
 pub use particles::{BodyReport, Particles};
 pub use preset::{HfdibDem, hfdib_dem};
-pub use run::{Observer, RunSummary, Schedule, StepInfo, run};
+pub use run::{Evolving, Observer, RunSummary, Schedule, StepInfo, run};
 pub use simulation::{Immersed, Module, Simulation, Timings, WeightBalance};
 pub use snapshots::{BodyPaths, Quantity, SnapshotFeed};
 pub use strategy::{Exchange, Explicit, Iterated, OneSolve, Strategy};

@@ -1,4 +1,5 @@
 //! Bodies in a flow.
+use crate::serials::Serials;
 use crate::strategy::{Exchange, OneSolve, Strategy};
 use crate::{CouplingError, FlowSolver, Immersed, Module, Timings};
 use ibm::{Forcing, Layer};
@@ -30,9 +31,8 @@ pub struct Particles<F, B, S = OneSolve> {
     density: f64,
     pub(crate) states: Vec<State>,
     last_dt: f64,
-    /// The [serial](Self::serial) numbers of those that were put into the flow, ascending; and the next one.
-    serials: Vec<u64>,
-    next_serial: u64,
+    /// Of those that were put into the flow.
+    serials: Serials,
 }
 
 /// What is kept of one body from step to step, as (linear, angular).
@@ -111,8 +111,7 @@ impl<F: Forcing, B: Dynamics> Particles<F, B> {
             density,
             states,
             last_dt: 0.0,
-            serials: vec![],
-            next_serial: 0,
+            serials: Serials::default(),
         }
     }
     /// The same with a [virtual mass](OneSolve::virtual_mass).
@@ -127,8 +126,8 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
     /// The same by another strategy.
     #[must_use]
     pub fn with_strategy<T: Strategy>(self, strategy: T) -> Particles<F, B, T> {
-        let Self { bodies, forcing, gravity, density, states, last_dt, serials, next_serial, .. } = self;
-        Particles { bodies, forcing, strategy, gravity, density, states, last_dt, serials, next_serial }
+        let Self { bodies, forcing, gravity, density, states, last_dt, serials, .. } = self;
+        Particles { bodies, forcing, strategy, gravity, density, states, last_dt, serials }
     }
 
     /// Mass and inertia as they resist (U, Ω) in the world.
@@ -195,13 +194,13 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
     /// Bodies were taken out of [`bodies`](Self::bodies): what is kept of each goes by its new number from now on. (Those that are added are noticed.) The fluid where they were
     /// goes on as it moved; momentum on its way between fluid and them is lost.
     pub fn renumber(&mut self, numbers: &Renumbering) {
-        numbers.apply(&mut self.serials);
+        self.serials.renumber(numbers);
         numbers.apply(&mut self.states);
         self.forcing.renumber(numbers);
     }
     /// What body `b` keeps when numbers close up: bodies are counted as they are put into the flow, from 0. `None` for one that has been added since the last step.
     pub fn serial(&self, b: BodyId) -> Option<u64> {
-        self.serials.get(b.0).copied()
+        self.serials.of(b)
     }
 
     /// Makes the fluid follow the bodies and free of divergence, as often as forcing and flow ask for.
@@ -351,9 +350,7 @@ where
         for (b, s) in self.states.iter_mut().enumerate().skip(started) {
             s.internal = [six(self.forcing.internal_momentum(flow.velocity(), &self.bodies, BodyId(b))); 2];
         }
-        let last = self.next_serial;
-        self.next_serial += (n - started) as u64;
-        self.serials.extend(last..self.next_serial);
+        self.serials.count(n);
         Ok(())
     }
 
@@ -391,17 +388,13 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Checkpoint for Particles<F, B, S> {
         }
         sink("coupling", &values);
         sink("last_dt", &[self.last_dt]);
-        let serials = self.serials.iter().chain([&self.next_serial]);
-        sink("serials", &serials.map(|s| *s as f64).collect::<Vec<_>>());
+        self.serials.save(sink);
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         self.bodies.restore(&|name| source(&format!("bodies.{name}")))?;
         self.last_dt = RestartError::take(source, "last_dt", 1)?[0];
         let values = RestartError::take(source, "coupling", self.bodies.n_bodies() * STATE)?;
-        let serials = RestartError::take(source, "serials", self.bodies.n_bodies() + 1)?;
-        let (next, serials) = serials.split_last().unwrap_or((&0.0, &[]));
-        self.next_serial = *next as u64;
-        self.serials = serials.iter().map(|s| *s as u64).collect();
+        self.serials.restore(source, self.bodies.n_bodies())?;
         self.states.clear();
         for v in values.chunks_exact(STATE) {
             let six = |i: usize| Vector6::from_column_slice(&v[6 * i..6 * i + 6]);

@@ -1,6 +1,34 @@
 //! The run loop.
-use crate::{CouplingError, FlowSolver, Immersed, Simulation};
+use crate::CouplingError;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What a run moves on in time: a [`Simulation`](crate::Simulation) of flow and bodies, or [`Grains`](crate::Grains) without a fluid.
+pub trait Evolving {
+    /// Before the first step of a run.
+    ///
+    /// # Errors
+    /// [`CouplingError`] when it cannot begin.
+    fn begin(&mut self) -> Result<(), CouplingError>;
+    /// One step of length `dt` \[s\].
+    ///
+    /// # Errors
+    /// [`CouplingError`] when it cannot go on.
+    fn step(&mut self, dt: f64) -> Result<(), CouplingError>;
+    /// Time \[s\].
+    fn time(&self) -> f64;
+    /// Sets the clock exactly.
+    fn set_time(&mut self, time: f64);
+    /// Steps made.
+    fn steps(&self) -> u64;
+    /// Length of the last step \[s\].
+    fn last_dt(&self) -> f64;
+    /// Courant number of a step of `dt`.
+    fn courant(&self, dt: f64) -> f64;
+    /// The longest step \[s\] with Courant number ≤ `courant` that is stable; infinite if any is.
+    fn stable_dt(&self, courant: f64) -> f64;
+    /// The longest step \[s\] that is stable however slow everything is; infinite if any is.
+    fn longest_dt(&self) -> f64;
+}
 
 /// How long to run, in which steps, and when to show the state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -179,25 +207,25 @@ pub struct RunSummary {
 /// # Errors
 /// The first error of a step or an observer. After an error within a step the simulation is between
 /// two steps: go on from a saved state.
-pub fn run<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>>(
-    simulation: &mut Simulation<D, P, A>,
+pub fn run<S: Evolving>(
+    simulation: &mut S,
     schedule: &Schedule,
-    observer: &mut impl Observer<Simulation<D, P, A>>,
+    observer: &mut impl Observer<S>,
     stop: &AtomicBool,
 ) -> Result<RunSummary, CouplingError> {
     schedule.check()?;
     let mut summary = RunSummary { dt: [f64::INFINITY, 0.0], ..RunSummary::default() };
     let mut info = StepInfo {
-        step: simulation.flow.steps(),
-        time: simulation.flow.time(),
-        dt: simulation.flow.last_dt(),
+        step: simulation.steps(),
+        time: simulation.time(),
+        dt: simulation.last_dt(),
         courant: 0.0,
         snapshot: None,
     };
     // Ends of intervals that are behind, up to round-off: other schedules cut time otherwise.
     let behind = info.time + ROUND_OFF * schedule.end / schedule.intervals as f64;
     let mut index = (0..=schedule.intervals).take_while(|&i| schedule.time(i) <= behind).count().max(1) - 1;
-    simulation.particles.begin(&simulation.flow)?;
+    simulation.begin()?;
     observer.begin(simulation);
     if info.step == 0 {
         info.snapshot = Some(0);
@@ -210,27 +238,26 @@ pub fn run<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>>(
                 summary.stopped = true;
                 return Ok(summary);
             }
-            let flow = &simulation.flow;
-            let full = schedule.dt.unwrap_or_else(|| flow.stable_dt(schedule.courant));
-            if full < COLLAPSED * flow.viscous_limit().min(schedule.end) {
-                let time = flow.time();
+            let full = schedule.dt.unwrap_or_else(|| simulation.stable_dt(schedule.courant));
+            if full < COLLAPSED * simulation.longest_dt().min(schedule.end) {
+                let time = simulation.time();
                 return Err(CouplingError::Collapsed { dt: full, time, courant: schedule.courant });
             }
             let [first, growth] = schedule.ramp;
             let share = (first * growth.powf(info.step as f64)).min(1.0);
             // Equal steps to the end of the interval, up to round-off in the number of steps.
-            let left = target - flow.time();
+            let left = target - simulation.time();
             let steps = (left / (full * share) - ROUND_OFF).ceil().max(1.0);
             let dt = left / steps;
             simulation.step(dt)?;
             if steps == 1.0 {
-                simulation.flow.set_time(target);
+                simulation.set_time(target);
             }
             info = StepInfo {
-                step: simulation.flow.steps(),
-                time: simulation.flow.time(),
+                step: simulation.steps(),
+                time: simulation.time(),
                 dt,
-                courant: simulation.flow.courant(dt),
+                courant: simulation.courant(dt),
                 snapshot: (steps == 1.0).then_some(index + 1),
             };
             if info.courant > MOST_COURANT {

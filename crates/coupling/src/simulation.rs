@@ -1,5 +1,5 @@
 //! Flow and what is immersed in it.
-use crate::{CouplingError, FlowSolver};
+use crate::{CouplingError, Evolving, FlowSolver};
 use fv_mesh::Projection;
 use interfaces::{Checkpoint, RestartError, Vector};
 use std::time::{Duration, Instant};
@@ -171,6 +171,36 @@ impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Simulation<D, P, A> {
         particles.couple(flow, dt, timings)?;
         timings.measure(Module::Finish, || flow.finish(dt))?;
         Ok(())
+    }
+}
+
+impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Evolving for Simulation<D, P, A> {
+    fn begin(&mut self) -> Result<(), CouplingError> {
+        self.particles.begin(&self.flow)
+    }
+    fn step(&mut self, dt: f64) -> Result<(), CouplingError> {
+        Simulation::step(self, dt)
+    }
+    fn time(&self) -> f64 {
+        self.flow.time()
+    }
+    fn set_time(&mut self, time: f64) {
+        self.flow.set_time(time);
+    }
+    fn steps(&self) -> u64 {
+        self.flow.steps()
+    }
+    fn last_dt(&self) -> f64 {
+        self.flow.last_dt()
+    }
+    fn courant(&self, dt: f64) -> f64 {
+        self.flow.courant(dt)
+    }
+    fn stable_dt(&self, courant: f64) -> f64 {
+        self.flow.stable_dt(courant)
+    }
+    fn longest_dt(&self) -> f64 {
+        self.flow.viscous_limit()
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! A [`SnapshotSource`] is a matrix with one column per snapshot of which any part can be read: NumPy's [`NpyArray`] (alone or from an [`NpzFile`]), the files of a
 //! run that a `.pvd` lists ([`VtkSeries`]), or a matrix in memory. [`to_mat`](SnapshotSource::to_mat) reads it whole;
-//! [`Pod::of`](crate::pod::Pod::of) makes modes of it in two passes, [`StreamingPod`](crate::pod::StreamingPod) in one.
+//! [`Pod::of`](crate::pod::Pod::of) makes modes of it in two passes, [`StreamingPod`](crate::pod::StreamingPod) in one. [`NpyWriter`] writes such files while a run goes on.
 //!
 //! ```no_run
 //! use mor::pod::{Pod, PodParams};
@@ -16,6 +16,7 @@
 mod base64;
 mod error;
 mod npy;
+mod npy_writer;
 mod npz;
 mod series;
 mod source;
@@ -26,6 +27,7 @@ mod xml;
 
 pub use error::SnapshotError;
 pub use npy::{NpyArray, SnapshotAxis};
+pub use npy_writer::NpyWriter;
 pub use npz::NpzFile;
 pub use series::VtkSeries;
 pub use source::SnapshotSource;

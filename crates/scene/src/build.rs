@@ -126,7 +126,7 @@ impl Setup {
         let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
         let diffusion =
             self.flow.diffusion.unwrap_or(if bodies { Diffusion::Explicit } else { Diffusion::Auto });
-        let mut flow = Projection::new(grid.clone(), self.all_sides(), self.fluid)?
+        let mut flow = Projection::new(grid.clone(), self.all_sides(), self.fluid())?
             .with_convection(self.flow.convection)
             .with_diffusion(diffusion)
             .with_pressure_solver(self.flow.pressure)?;
@@ -153,7 +153,7 @@ impl Setup {
         self.check_force()?;
         let grid = self.grid()?;
         let params = PisoParams { time_scheme: TimeScheme::Euler, ..PisoParams::default() };
-        let mut flow = Piso::new(grid.clone(), self.all_sides(), self.fluid)?
+        let mut flow = Piso::new(grid.clone(), self.all_sides(), self.fluid())?
             .with_convection(self.flow.convection)
             .with_params(params)?;
         if let Some(u) = self.initial(&grid)? {
@@ -164,11 +164,11 @@ impl Setup {
 
     /// The bodies under a law of contact.
     pub(crate) fn cast<L: ContactLaw>(&self, law: L) -> Result<Cast<L>, BuildError> {
-        let period = |a: usize| {
-            let periodic = self.sides.get(a).is_some_and(|pair| matches!(pair[0], Side::Periodic));
-            periodic.then(|| self.axes[a].length())
-        };
+        let period = |a: usize| self.periodic(a).then(|| self.axes[a].length());
         let mut bodies = RigidBodies::with_law(Periods::new([0, 1, 2].map(period)), law);
+        if self.fluid.is_none() {
+            bodies.set_gravity(self.gravity);
+        }
         let Bodies { list, inflows, exits, walls, wall_material, overlaps, .. } = &self.bodies;
         for wall in walls {
             bodies.add_wall(*wall, *wall_material)?;
@@ -202,7 +202,7 @@ impl Setup {
 
     fn inflow(&self, setup: &InflowSetup) -> Result<Inflow, PlacingError> {
         let spans = |a: usize| {
-            self.sides.get(a).is_some_and(|pair| matches!(pair[0], Side::Periodic))
+            self.periodic(a)
                 && setup.region.min[a] == self.axes[a].lower()
                 && setup.region.max[a] == self.axes[a].upper()
         };
@@ -231,12 +231,16 @@ impl Setup {
     pub(crate) fn lubricated(&self, roughness: f64) -> Result<Lubricated<Chen>, BuildError> {
         // Cells around bodies are equal: the narrowest of all.
         let spacing = self.axes.iter().map(fv_mesh::Axis::narrowest).fold(f64::INFINITY, f64::min);
-        let viscosity = self.fluid.viscosity * self.fluid.density;
+        let viscosity = self.fluid().viscosity * self.fluid().density;
         Ok(Lubricated::new(self.chen(), viscosity, SmoothFilm::new(spacing)?)?.with_roughness(roughness)?)
+    }
+    /// The law that keeps energy.
+    pub(crate) fn potential(&self) -> dem::Potential {
+        dem::Potential::default().with_length_factor(self.bodies.length_factor)
     }
     pub(crate) fn smooth(&self) -> SmoothForcing {
         let coupling = &self.bodies.coupling;
-        let mut forcing = SmoothForcing::new(self.fluid.density);
+        let mut forcing = SmoothForcing::new(self.fluid().density);
         if let Some(kernel) = coupling.kernel {
             forcing = forcing.with_kernel(kernel);
         }
@@ -246,7 +250,7 @@ impl Setup {
         forcing
     }
     pub(crate) fn hfdib(&self) -> Hfdib {
-        Hfdib::new(self.fluid.density)
+        Hfdib::new(self.fluid().density)
     }
 
     /// What the scene is made of: which parts are at work, and which are not.
@@ -260,8 +264,10 @@ impl Setup {
             ContactLawChoice::None => "none",
         };
         let moves = bodies.any_moves();
+        let fluid = self.fluid.is_some();
         let forcing = match bodies.forcing() {
             _ if !any => "no bodies",
+            _ if !fluid => "no fluid",
             _ if self.flow.algorithm == Algorithm::Simple => "walls at rest by cut cells",
             ForcingChoice::CutLinks => "walls at rest by cut links",
             ForcingChoice::Hfdib => "hybrid fictitious domain–immersed boundary",
@@ -282,14 +288,15 @@ impl Setup {
         };
         let turbulence = match &self.turbulence {
             Some(t) => t.model.name().to_owned(),
+            None if !fluid => "no fluid".into(),
             None => "no `turbulence`: the flow is resolved, or laminar".into(),
         };
         let names: Vec<&str> = self.scalars.iter().map(|s| s.name.as_str()).collect();
         vec![
-            ("flow", true, algorithm.into()),
+            ("flow", fluid, if fluid { algorithm } else { "no `fluid`: bodies alone" }.into()),
             ("turbulence model", self.turbulence.is_some(), turbulence),
             ("scalars", !names.is_empty(), if names.is_empty() { "none".into() } else { names.join(", ") }),
-            ("immersed boundary", any, forcing.into()),
+            ("immersed boundary", any && fluid, forcing.into()),
             (
                 "rigid bodies",
                 moves,
@@ -302,6 +309,15 @@ impl Setup {
                     format!("law {law}, {} walls", bodies.walls.len())
                 } else {
                     why_no_contact.into()
+                },
+            ),
+            (
+                "reduced models",
+                !self.models.is_empty(),
+                if self.models.is_empty() {
+                    "none".into()
+                } else {
+                    self.models.iter().map(|m| m.name.as_str()).collect::<Vec<_>>().join(", ")
                 },
             ),
             (

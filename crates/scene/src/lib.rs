@@ -33,6 +33,7 @@
 mod build;
 mod cast;
 mod document;
+mod dry;
 mod expression;
 mod log;
 mod look;

@@ -1,14 +1,32 @@
 //! The observer of the time loop, and what is saved.
 use crate::log::Log;
-use crate::run::see;
-use crate::view::{Flow, Guests, View};
+use crate::setup::Setup;
+use crate::view::{Flow, Guests, Seen, View};
 use crate::watch::{Audience, output};
-use coupling::{CouplingError, FlowSolver, Immersed, Ledger, LedgerReport, Observer, Simulation, StepInfo};
-use example_support::progress::{Progress, Status};
+use coupling::{
+    CouplingError, Evolving, FlowSolver, Immersed, Ledger, LedgerReport, Observer, Simulation, StepInfo,
+};
+use example_support::progress::Progress;
 use interfaces::{Checkpoint, RestartError};
 use std::io;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
+
+/// What a scene runs, and how those see it who look on.
+pub(crate) trait Show: Evolving + Checkpoint {
+    fn see<'a>(&'a mut self, setup: &'a Setup) -> impl View + 'a;
+}
+
+impl<const D: usize, P, A> Show for Simulation<D, P, A>
+where
+    P: Guests + Immersed<D, A>,
+    A: Flow<D> + FlowSolver<D>,
+{
+    fn see<'a>(&'a mut self, _: &'a Setup) -> impl View + 'a {
+        let timings = *self.timings();
+        Seen { flow: &mut self.flow, guests: &self.particles, timings }
+    }
+}
 
 /// Books that may be kept.
 pub(crate) trait Books<S>: Observer<S> + Checkpoint {
@@ -88,7 +106,8 @@ impl Checkpoint for Kept<'_> {
 }
 
 /// The observer of the time loop: everyone who looks on, progress, log, saved states.
-pub(crate) struct Look<K> {
+pub(crate) struct Look<'a, K> {
+    pub(crate) setup: &'a Setup,
     pub(crate) audience: Audience,
     pub(crate) books: K,
     pub(crate) extremes: Extremes,
@@ -104,7 +123,7 @@ pub(crate) struct Look<K> {
     pub(crate) output: f64,
 }
 
-impl<K: Checkpoint> Look<K> {
+impl<K: Checkpoint> Look<'_, K> {
     fn save_if_due<S: Checkpoint>(&mut self, simulation: &mut S) -> Result<(), CouplingError> {
         if self.saved.elapsed() >= self.save_every { self.save(simulation) } else { Ok(()) }
     }
@@ -126,50 +145,39 @@ impl<K: Checkpoint> Look<K> {
     }
 }
 
-impl<const D: usize, P, A, K> Observer<Simulation<D, P, A>> for Look<K>
-where
-    P: Guests + Immersed<D, A>,
-    A: Flow<D> + FlowSolver<D>,
-    K: Books<Simulation<D, P, A>>,
-{
-    fn begin(&mut self, simulation: &mut Simulation<D, P, A>) {
+/// Steps between two looks at the clock.
+const STRIDE: u64 = 4;
+
+impl<S: Show, K: Books<S>> Observer<S> for Look<'_, K> {
+    fn begin(&mut self, simulation: &mut S) {
         self.books.begin(simulation);
     }
-    fn step(&mut self, simulation: &mut Simulation<D, P, A>, info: &StepInfo) -> Result<(), CouplingError> {
+    fn step(&mut self, simulation: &mut S, info: &StepInfo) -> Result<(), CouplingError> {
         self.books.step(simulation, info)?;
         let [low, high, courant] = self.extremes.0;
         self.extremes.0 = [low.min(info.dt), high.max(info.dt), courant.max(info.courant)];
-        self.audience.step(&mut see(simulation), info)?;
-        if let Some(progress) = &mut self.progress {
-            progress.step(info.step, || Status {
-                time: info.time,
-                dt: info.dt,
-                courant: info.courant,
-                divergence: FlowSolver::statistics(&mut simulation.flow).divergence * info.dt,
-            });
+        let mut seen = simulation.see(self.setup);
+        self.audience.step(&mut seen, info)?;
+        if let Some(progress) = self.progress.as_mut().filter(|_| info.step.is_multiple_of(STRIDE)) {
+            progress.tell(info.step, info.time, || seen.status(info));
         }
+        drop(seen);
         if info.snapshot.is_none() {
             self.save_if_due(simulation)?;
         }
         Ok(())
     }
-    fn snapshot(
-        &mut self,
-        simulation: &mut Simulation<D, P, A>,
-        index: usize,
-        info: &StepInfo,
-    ) -> Result<(), CouplingError> {
+    fn snapshot(&mut self, simulation: &mut S, index: usize, info: &StepInfo) -> Result<(), CouplingError> {
         if self.only_end && index == 0 {
             return Ok(());
         }
-        let mut seen = see(simulation);
+        let mut seen = simulation.see(self.setup);
         self.audience.snapshot(&mut seen, index, info)?;
-        let iterations = seen.pressure_iterations();
+        let (iterations, energy) = (seen.pressure_iterations(), seen.kinetic_energy());
+        drop(seen);
         let StepInfo { step, time, dt, courant, .. } = *info;
-        let flow = FlowSolver::statistics(&mut simulation.flow);
         self.log.line(&format!(
-            "t = {time:.6e} s, step {step}, dt {dt:.3e} s, Courant {courant:.3}, kinetic energy {:.6e} J{}",
-            flow.kinetic_energy,
+            "t = {time:.6e} s, step {step}, dt {dt:.3e} s, Courant {courant:.3}, kinetic energy {energy:.6e} J{}",
             if iterations > 0 { format!(", {iterations} pressure iterations") } else { String::new() }
         ))?;
         self.save_if_due(simulation)

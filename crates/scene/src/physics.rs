@@ -180,7 +180,7 @@ impl Setup {
             match turbulence.scale {
                 ScaleChoice::Length(length) => Inflow::from_length(speed, intensity, length),
                 ScaleChoice::ViscosityRatio(ratio) => {
-                    Inflow::from_viscosity_ratio(speed, intensity, ratio, self.fluid.viscosity)
+                    Inflow::from_viscosity_ratio(speed, intensity, ratio, self.fluid().viscosity)
                 }
             }
         };

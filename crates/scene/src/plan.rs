@@ -2,6 +2,7 @@
 use crate::build::BuildError;
 use crate::setup::{Algorithm, Setup};
 use crate::steady::Steady;
+use coupling::{Evolving, Grains};
 use fv_mesh::{Axis, Side};
 use std::fmt;
 
@@ -33,6 +34,8 @@ pub struct Plan {
 /// CPU seconds per cell and step of the flow alone in the plane and in space (docs/results.md), and per marker.
 const COST: [f64; 2] = [1.2e-8, 3.5e-8];
 const COST_OF_MARKER: f64 = 1.5e-6;
+/// CPU seconds per body and step without a fluid, of polyhedra in a pile; spheres take a tenth.
+const COST_OF_BODY: f64 = 4e-4;
 /// CPU seconds per cell and iteration of the steady algorithm.
 const COST_OF_ITERATION: f64 = 4e-7;
 
@@ -49,10 +52,14 @@ impl Setup {
         let cells = self.cells() as f64;
         let moved = self.bodies.any_moves();
         // Bodies are put together without a flow, which they do not need for that.
-        if moved {
+        if moved && self.fluid.is_some() {
             self.cast(self.chen())?;
         }
         let (dt, pressure) = match self.flow.algorithm {
+            _ if self.fluid.is_none() => {
+                let contact = Grains::new(self.cast(self.chen())?).longest_dt();
+                (Some(self.dt.unwrap_or(contact).min(self.end)), "no fluid".to_owned())
+            }
             Algorithm::Simple => {
                 let _: Steady<D> = self.steady()?;
                 (None, "multigrid".to_owned())
@@ -75,6 +82,7 @@ impl Setup {
         let markers: f64 = if moved { self.bodies.list.iter().map(|b| surface(b, h, D)).sum() } else { 0.0 };
         let cpu = steps
             * match self.flow.algorithm {
+                _ if self.fluid.is_none() => self.bodies.list.len() as f64 * COST_OF_BODY,
                 Algorithm::Projection => cells * COST[D - 2] + markers * COST_OF_MARKER,
                 Algorithm::Piso => 20.0 * cells * COST[D - 2] + markers * COST_OF_MARKER,
                 Algorithm::Simple => cells * COST_OF_ITERATION,
@@ -110,7 +118,7 @@ impl Setup {
         let initial = self.initial.as_ref().map_or(0.0, |u| norm(u.each_ref().map(|u| u.at(&middle[..3]))));
         let bodies = self.bodies.list.iter().map(|b| {
             let radius = b.shape.bounding_radius();
-            let ratio = (b.material.density / self.fluid.density - 1.0).abs();
+            let ratio = (b.material.density / self.fluid().density - 1.0).abs();
             let fall = if self.bodies.any_free() {
                 (2.0 * radius * ratio * self.gravity.norm()).sqrt()
             } else {
@@ -124,6 +132,7 @@ impl Setup {
     /// What looks doubtful.
     fn warnings(&self) -> Vec<String> {
         let mut out = Vec::new();
+        let Some(fluid) = self.fluid else { return out };
         let h = self.axes.iter().map(Axis::narrowest).fold(f64::INFINITY, f64::min);
         let list = &self.bodies.list;
         let extent = |b: &crate::setup::BodySetup| {
@@ -165,8 +174,8 @@ impl Setup {
             }
         }
         let speed = self.speed();
-        if self.fluid.viscosity > 0.0 && speed > 0.0 {
-            let cell = speed * h / self.fluid.viscosity;
+        if fluid.viscosity > 0.0 && speed > 0.0 {
+            let cell = speed * h / fluid.viscosity;
             if cell > 50.0 && self.flow.convection == fv_mesh::Convection::Central {
                 out.push(format!(
                     "the Reynolds number of a cell is {cell:.0}: central convection may oscillate; take more cells, or convection = \"quick\" or \"limited\""

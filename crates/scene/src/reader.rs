@@ -60,6 +60,11 @@ impl<'a> Reader<'a> {
             |item: &Item| if let Value::Whole(n) = item.value { usize::try_from(n).ok() } else { None };
         self.list(key).map(|items| items.iter().filter_map(whole).collect())
     }
+    pub(crate) fn texts(&self, key: &str) -> Vec<&'a str> {
+        let text =
+            |item: &'a Item| if let Value::Text(text) = &item.value { Some(text.as_str()) } else { None };
+        self.list(key).unwrap_or_default().iter().filter_map(text).collect()
+    }
     pub(crate) fn flags(&self, key: &str) -> Option<[bool; 3]> {
         let items = self.list(key)?;
         Some(std::array::from_fn(|a| {

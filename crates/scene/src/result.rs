@@ -72,8 +72,6 @@ impl RunResult {
     ) -> Self {
         let flow = view.statistics();
         let dim = view.dim();
-        let volume: f64 = (0..dim).map(|a| view.axis(a).length()).product();
-        let mean: Vec<f64> = (0..dim).map(|a| flow.volume_flow[a] / volume).collect();
         let [shortest, longest, courant] = extremes.0;
         let mut result = json!({
             "scene": setup.name,
@@ -85,13 +83,18 @@ impl RunResult {
             "time": view.time(),
             "steps": view.steps(),
             "step": { "shortest": number(shortest), "longest": number(longest), "courant": number(courant) },
-            "flow": {
+        });
+        if let Some(flow) = flow {
+            let volume: f64 = (0..dim).map(|a| view.axis(a).length()).product();
+            result["flow"] = json!({
                 "kinetic_energy": number(flow.kinetic_energy),
                 "dissipation": number(flow.dissipation),
                 "divergence": number(flow.divergence),
-                "mean_velocity": mean,
-            },
-        });
+                "mean_velocity": (0..dim).map(|a| flow.volume_flow[a] / volume).collect::<Vec<f64>>(),
+            });
+        } else {
+            result["kinetic_energy"] = number(view.kinetic_energy());
+        }
         let others: serde_json::Map<String, Value> = view
             .others()
             .into_iter()

@@ -2,20 +2,19 @@
 use crate::build::BuildError;
 use crate::cast::Cast;
 use crate::log::Log;
-use crate::look::{Books, Extremes, Kept, Look, Whole};
+use crate::look::{Books, Extremes, Kept, Look, Show, Whole};
 use crate::options::Options;
 use crate::physics::Physics;
 use crate::result::{Ending, RunResult};
 use crate::setup::{Algorithm, ContactLawChoice, ForcingChoice, Setup, StrategyChoice};
 use crate::still::Still;
-use crate::view::{Flow, Guests, Seen};
 use crate::watch::{
-    Audience, AveragesWatch, FieldsWatch, ForcesWatch, ImagesWatch, ProbesWatch, TrajectoriesWatch, Watch,
-    output,
+    Audience, AveragesWatch, FieldsWatch, ForcesWatch, ImagesWatch, ModelsWatch, ProbesWatch,
+    TrajectoriesWatch, Watch, output,
 };
 use coupling::{
-    CheckpointError, CouplingError, Exchange, Explicit, FlowSolver, Immersed, Iterated, Ledger, Particles,
-    Schedule, Simulation, Strategy,
+    CheckpointError, CouplingError, Exchange, Explicit, FlowSolver, Grains, Immersed, Iterated, Ledger,
+    Particles, Schedule, Simulation, Strategy,
 };
 use dem::{ContactLaw, Population, Rolling};
 use example_support::cpu::Stopwatch;
@@ -69,6 +68,9 @@ impl Setup {
         stop: &AtomicBool,
     ) -> Result<RunResult, RunError> {
         let stage = Stage { setup: self, options, fingerprint, stop };
+        if self.fluid.is_none() {
+            return self.grains(&stage);
+        }
         let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
         match self.flow.algorithm {
             Algorithm::Simple => return stage.steady(self.steady::<D>()?),
@@ -88,6 +90,16 @@ impl Setup {
         match self.bodies.forcing() {
             ForcingChoice::Hfdib => self.bodies_by::<D, _>(&stage, self.hfdib()),
             _ => self.bodies_by::<D, _>(&stage, self.smooth()),
+        }
+    }
+
+    /// Bodies without a fluid.
+    fn grains(&self, stage: &Stage<'_>) -> Result<RunResult, RunError> {
+        match self.bodies.law {
+            ContactLawChoice::Chen => stage.march(Grains::new(self.cast(self.chen())?), ()),
+            ContactLawChoice::Potential => stage.march(Grains::new(self.cast(self.potential())?), ()),
+            ContactLawChoice::Rolling => stage.march(Grains::new(self.cast(Rolling(self.chen()))?), ()),
+            ContactLawChoice::None => stage.march(Grains::new(self.cast(())?), ()),
         }
     }
 
@@ -112,8 +124,7 @@ impl Setup {
                 stage.bodies(flow, self.particles(forcing, self.cast(self.chen())?))
             }
             (ContactLawChoice::Potential, ..) => {
-                let law = dem::Potential::default().with_length_factor(self.bodies.length_factor);
-                stage.bodies(flow, self.particles(forcing, self.cast(law)?))
+                stage.bodies(flow, self.particles(forcing, self.cast(self.potential())?))
             }
             (ContactLawChoice::Rolling, ..) => {
                 stage.bodies(flow, self.particles(forcing, self.cast(Rolling(self.chen()))?))
@@ -126,7 +137,7 @@ impl Setup {
     where
         Population<L>: Checkpoint,
     {
-        let particles = Particles::new(cast, forcing, self.fluid.density, self.gravity);
+        let particles = Particles::new(cast, forcing, self.fluid().density, self.gravity);
         match self.bodies.coupling.virtual_mass {
             Some(factor) => particles.with_virtual_mass(factor),
             None => particles,
@@ -187,7 +198,11 @@ impl Stage<'_> {
         let moves = setup.bodies.any_moves();
         let mut watches: Vec<Box<dyn Watch>> = Vec::new();
         let out = &setup.output;
-        watches.push(Box::new(FieldsWatch::new(folder, [out.fields, out.bodies && moves], resume)?));
+        watches.push(Box::new(FieldsWatch::new(
+            folder,
+            [out.fields && setup.fluid.is_some(), out.bodies && moves],
+            resume,
+        )?));
         if out.bodies && moves {
             watches.push(Box::new(TrajectoriesWatch::new(folder, names.clone(), resume)?));
         }
@@ -198,10 +213,14 @@ impl Stage<'_> {
             watches.push(Box::new(ProbesWatch::new(folder, &setup.probes, dim, resume)?));
         }
         if let Some(forces) = setup.forces.filter(|_| bodies) {
-            watches.push(Box::new(ForcesWatch::new(folder, forces, names, setup.fluid.density, resume)?));
+            watches.push(Box::new(ForcesWatch::new(folder, forces, names, setup.fluid().density, resume)?));
         }
         if let Some(averages) = setup.averages {
             watches.push(Box::new(AveragesWatch::new(folder, averages, dim, setup.cells())));
+        }
+        if !setup.models.is_empty() {
+            let images = setup.output.images.clone();
+            watches.push(Box::new(ModelsWatch::new(folder, &setup.models, images, self.options.quiet)?));
         }
         Ok(Audience::new(watches))
     }
@@ -219,16 +238,7 @@ impl Stage<'_> {
     }
 
     /// Steps to the end of the run, or until it is stopped.
-    fn march<const D: usize, P, A, K>(
-        &self,
-        mut simulation: Simulation<D, P, A>,
-        mut books: K,
-    ) -> Result<RunResult, RunError>
-    where
-        P: Guests + Immersed<D, A>,
-        A: Flow<D> + FlowSolver<D>,
-        K: Books<Simulation<D, P, A>>,
-    {
+    fn march<S: Show, K: Books<S>>(&self, mut simulation: S, mut books: K) -> Result<RunResult, RunError> {
         let watch = Stopwatch::start();
         let setup = self.setup;
         self.make_folder()?;
@@ -245,7 +255,7 @@ impl Stage<'_> {
                 audience: None,
             };
             coupling::load(&state, &mut whole).map_err(|e| self.not_resumed(e, &state))?;
-            resume = Some(FlowSolver::time(&simulation.flow));
+            resume = Some(simulation.time());
         }
         let mut audience = self.audience(resume)?;
         if resume.is_some() {
@@ -260,17 +270,18 @@ impl Stage<'_> {
         };
         schedule.check()?;
         let mut log = Log::open(self.folder(), self.options.resume)?;
-        let begin = FlowSolver::time(&simulation.flow);
+        let begin = simulation.time();
         log.line(&format!(
             "{} {} from t = {begin:.6e} s, step {}, to {} s: {} cells, {} bodies",
             if resume.is_some() { "going on with" } else { "running" },
             setup.name,
-            FlowSolver::steps(&simulation.flow),
+            simulation.steps(),
             setup.end,
             setup.cells(),
             setup.bodies.list.len(),
         ))?;
         let mut look = Look {
+            setup,
             audience,
             books,
             extremes,
@@ -299,7 +310,7 @@ impl Stage<'_> {
         }
         let Look { mut audience, books, extremes, mut log, output, .. } = look;
         let ending = if summary.stopped { Ending::Stopped } else { Ending::Done };
-        let mut seen = see(&mut simulation);
+        let mut seen = simulation.see(setup);
         if ending == Ending::Done {
             audience.finish(&mut seen)?;
         } else {
@@ -318,9 +329,4 @@ impl Stage<'_> {
             error => RunError::Resume(error),
         }
     }
-}
-
-pub(crate) fn see<const D: usize, P, A>(simulation: &mut Simulation<D, P, A>) -> Seen<'_, D, A, P> {
-    let timings = *simulation.timings();
-    Seen { flow: &mut simulation.flow, guests: &simulation.particles, timings }
 }

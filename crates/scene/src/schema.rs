@@ -7,6 +7,7 @@ mod factories;
 mod flow;
 mod json;
 mod manual;
+mod models;
 mod physics;
 mod run;
 
@@ -160,7 +161,13 @@ pub(crate) static SCENE: Table = Table {
             "What happens at the sides of the box.",
             "{ x = \"periodic\", y = \"wall\" }",
         ),
-        required("fluid", Kind::Table(&flow::FLUID), "The fluid.", "{ density = 1000.0, nu = 1e-6 }"),
+        optional(
+            "fluid",
+            Kind::Table(&flow::FLUID),
+            "no fluid: bodies alone, under gravity and contacts; the cells are those of pictures",
+            "The fluid.",
+            "{ density = 1000.0, nu = 1e-6 }",
+        ),
         optional(
             "gravity",
             Kind::List(&Kind::Number(Range::Any, "m/s²"), 2, 3),
@@ -280,6 +287,13 @@ pub(crate) static SCENE: Table = Table {
             "none",
             "Means in time of velocity and pressure, and the Reynolds stresses.",
             "{ start = 10.0 }",
+        ),
+        optional(
+            "models",
+            Kind::List(&Kind::Table(&models::MODEL), 0, 100),
+            "none",
+            "Reduced models of the run's snapshots, made at its end.",
+            "[{ name = \"solid\", field = \"lambda\", frames = [\"upper\", \"lower\"] }]",
         ),
         optional(
             "references",

@@ -1,9 +1,11 @@
 //! What a scene says, as the libraries take it.
 mod bodies;
+mod dry;
 mod factories;
 mod flow;
 mod grid;
 mod measures;
+mod models;
 mod physics;
 mod shapes;
 mod sides;
@@ -12,6 +14,7 @@ pub(crate) use bodies::{Bodies, BodySetup, ContactLawChoice, ForcingChoice, Moti
 pub(crate) use factories::InflowSetup;
 pub(crate) use flow::{Algorithm, FlowSetup};
 pub(crate) use measures::{Averages, Forces, Images, Output, ProbeSetup, Quantity, Reference};
+pub(crate) use models::{Coefficients, ModelSetup};
 pub(crate) use physics::{ModelChoice, ScalarSetup, ScaleChoice, TurbulenceSetup};
 
 use crate::document::{Document, Place};
@@ -21,7 +24,7 @@ use crate::reader::Reader;
 use crate::schema;
 use coupling::WeightBalance;
 use fv_mesh::{Axis, Fluid, Side, Sides};
-use interfaces::Vector;
+use interfaces::{Lattice, Nodes, Point, Vector};
 use std::path::{Path, PathBuf};
 
 /// Everything that a scene says.
@@ -32,7 +35,8 @@ pub(crate) struct Setup {
     /// Two or three.
     pub(crate) axes: Vec<Axis>,
     pub(crate) sides: Vec<[Side; 2]>,
-    pub(crate) fluid: Fluid,
+    /// None: bodies alone.
+    pub(crate) fluid: Option<Fluid>,
     pub(crate) gravity: Vector,
     /// Body force per mass, of the time.
     pub(crate) force: Option<[Expression; 3]>,
@@ -51,6 +55,7 @@ pub(crate) struct Setup {
     pub(crate) forces: Option<Forces>,
     pub(crate) averages: Option<Averages>,
     pub(crate) references: Vec<Reference>,
+    pub(crate) models: Vec<ModelSetup>,
     /// Seconds of the wall clock between saved states.
     pub(crate) save_every: f64,
     pub(crate) save_at_end: bool,
@@ -106,7 +111,7 @@ impl Setup {
             }
             None => WeightBalance::None,
         };
-        let setup = Self {
+        let mut setup = Self {
             title: root.text("title").map_or_else(|| name.clone(), Into::into),
             output: measures::output(&table("output"), &name, &axes)?,
             probes: measures::probes(root, &context, &axes, &sides)?,
@@ -122,22 +127,30 @@ impl Setup {
             end,
             dt: time.number("dt"),
             courant: time.number("courant").unwrap_or(if moved { 0.1 } else { 0.4 }),
-            ramp: time.flag("ramp").unwrap_or(bodies.any_free()),
+            ramp: time.flag("ramp").unwrap_or(bodies.any_free() && fluid.is_some()),
             save_every: checkpoint.number("every").unwrap_or(10.0),
             save_at_end: checkpoint.flag("at_end").unwrap_or(true),
             turbulence: physics::turbulence(root, dim)?,
             scalars: physics::scalars(root, &context, &sides)?,
+            models: Vec::new(),
             axes,
             sides,
             flow,
             bodies,
         };
+        let fields = setup.fields();
+        let fields: Vec<&str> = fields.iter().map(String::as_str).collect();
+        let snapshots = setup.output.snapshots;
+        setup.models = models::read(root, &setup.axes, &setup.bodies, (snapshots, &fields))?;
         setup.agrees(root)?;
         Ok(setup)
     }
 
     /// Does all of it go together?
     fn agrees(&self, root: &Reader<'_>) -> Result<(), Problem> {
+        if self.fluid.is_none() {
+            dry::agrees(root, self)?;
+        }
         let dim = self.dim();
         let check = |key: &str, sides: Result<(), fv_mesh::FlowError>| sides.map_err(|e| root.fail(key, e));
         match dim {
@@ -175,10 +188,12 @@ impl Setup {
                     "turbulence models go with \"projection\" and \"simple\"; take one of these",
                 ));
             }
-            Algorithm::Simple if !self.probes.is_empty() || self.averages.is_some() => {
+            Algorithm::Simple
+                if !self.probes.is_empty() || self.averages.is_some() || !self.models.is_empty() =>
+            {
                 return Err(fail(
                     "algorithm",
-                    "a steady flow has no history; leave out probes and averages, or take \"projection\"",
+                    "a steady flow has no history; leave out probes, averages and models, or take \"projection\"",
                 ));
             }
             Algorithm::Piso if bodies && self.bodies.forcing() != ForcingChoice::Hfdib => {
@@ -196,14 +211,8 @@ impl Setup {
             _ => {}
         }
         if let Some(Quantity::Field(name)) = self.output.images.as_ref().map(|i| &i.quantity) {
-            let of_model = match &self.turbulence {
-                Some(t) if t.model.averages() => &["k", "eddy_viscosity"][..],
-                Some(_) => &["eddy_viscosity"],
-                None => &[],
-            };
-            let known: Vec<&str> =
-                self.scalars.iter().map(|s| s.name.as_str()).chain(of_model.iter().copied()).collect();
-            if !known.contains(&name.as_str()) {
+            let known = self.others();
+            if !known.contains(name) {
                 let known = if known.is_empty() { "none".into() } else { known.join(", ") };
                 let output = root.table("output").unwrap_or_else(|| root.clone());
                 return Err(
@@ -238,6 +247,41 @@ impl Setup {
         Ok(())
     }
 
+    /// Names of the fields besides λ, velocity and pressure.
+    fn others(&self) -> Vec<String> {
+        let of_model = match &self.turbulence {
+            Some(t) if t.model.averages() => &["k", "eddy_viscosity"][..],
+            Some(_) => &["eddy_viscosity"],
+            None => &[],
+        };
+        self.scalars.iter().map(|s| s.name.as_str()).chain(of_model.iter().copied()).map(Into::into).collect()
+    }
+    /// Names of all fields.
+    fn fields(&self) -> Vec<String> {
+        let always: &[&str] =
+            if self.fluid.is_some() { &["lambda", "velocity", "pressure"] } else { &["lambda", "velocity"] };
+        always.iter().map(|name| (*name).into()).chain(self.others()).collect()
+    }
+    /// The fluid; without one a vacuum.
+    pub(crate) fn fluid(&self) -> Fluid {
+        self.fluid.unwrap_or(Fluid { density: 0.0, viscosity: 0.0 })
+    }
+    /// The centres of the cells.
+    pub(crate) fn lattice(&self) -> Lattice {
+        let nodes = |a: usize| Nodes::centres(self.axes[a].faces(), self.periodic(a));
+        let [nx, ny] = [0, 1].map(|a| self.axes[a].cells());
+        match self.dim() {
+            2 => Lattice::new([nodes(0), nodes(1)], 0, [1, nx]),
+            _ => Lattice::new([nodes(0), nodes(1), nodes(2)], 0, [1, nx, nx * ny]),
+        }
+    }
+    pub(crate) fn periodic(&self, a: usize) -> bool {
+        self.sides.get(a).is_some_and(|pair| matches!(pair[0], Side::Periodic))
+    }
+    /// The lower corner of the box.
+    pub(crate) fn corner(&self) -> Point {
+        Point::from([0, 1, 2].map(|a| self.axes.get(a).map_or(0.0, Axis::lower)))
+    }
     pub(crate) fn dim(&self) -> usize {
         self.axes.len()
     }

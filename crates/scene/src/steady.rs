@@ -48,7 +48,7 @@ impl Setup {
         let grid = self.grid()?;
         let params =
             if self.turbulence.is_some() { SimpleParams::turbulent() } else { SimpleParams::default() };
-        let mut flow = Simple::new(grid.clone(), self.all_sides(), self.fluid)?
+        let mut flow = Simple::new(grid.clone(), self.all_sides(), self.fluid())?
             .with_convection(self.flow.convection)
             .with_params(params)?;
         let bodies = self.still();

@@ -3,7 +3,7 @@ use crate::cast::Cast;
 use crate::physics::{Model, Physics};
 use crate::steady::Steady;
 use crate::still::Still;
-use coupling::{Particles, Strategy, Timings};
+use coupling::{Particles, StepInfo, Strategy, Timings};
 use dem::{ContactLaw, Population, RigidDynamics};
 use fv_mesh::{
     Axis, CartesianGrid, CellWriter, Field, FlowStatistics, Hooked, OutputError, Piso, SampleError, Sampler,
@@ -14,37 +14,68 @@ use interfaces::{Bodies, BodyId, Checkpoint, Closure, Lattice, Point, Wrench};
 use std::io::{self, Write};
 use turb::YPlus;
 
-/// What is asked of a simulation by its observers.
+/// What is asked of a simulation by its observers. Where there is no fluid, there is nothing to tell of it.
 pub(crate) trait View {
     fn axis(&self, a: usize) -> &Axis;
     fn dim(&self) -> usize;
     fn periodic(&self, a: usize) -> bool;
     fn time(&self) -> f64;
     fn steps(&self) -> u64;
-    fn statistics(&mut self) -> FlowStatistics;
+    /// Of the flow, if there is a fluid.
+    fn statistics(&mut self) -> Option<FlowStatistics> {
+        None
+    }
+    /// Of the flow; of the bodies where there is no fluid \[J\].
+    fn kinetic_energy(&mut self) -> f64 {
+        self.statistics().map_or(0.0, |flow| flow.kinetic_energy)
+    }
+    /// What progress tells of a step.
+    fn status(&mut self, info: &StepInfo) -> String {
+        let divergence = self.statistics().map_or(0.0, |flow| flow.divergence * info.dt);
+        format!("dt {:.2e} s  Co {:.2}  div {divergence:.1e}", info.dt, info.courant)
+    }
     fn timings(&self) -> &Timings;
     /// The lattice of the cells' centres.
     fn lattice(&self) -> Lattice;
-    /// Component `c` of the velocity at the centres, x fastest.
+    /// Component `c` of the velocity at the centres, x fastest; without a fluid that of the bodies, and 0 elsewhere.
     fn centred(&self, c: usize, out: &mut Vec<f64>);
-    fn pressure(&self, out: &mut Vec<f64>);
+    fn pressure(&self, out: &mut Vec<f64>) {
+        out.clear();
+    }
     /// Fields besides these at the centres, x fastest: what scalars and a turbulence model have.
-    fn others(&self) -> Vec<Other<'_>>;
+    fn others(&self) -> Vec<Other<'_>> {
+        Vec::new()
+    }
     /// How far from walls a turbulence model finds the first cells.
-    fn y_plus(&self) -> Option<YPlus>;
+    fn y_plus(&self) -> Option<YPlus> {
+        None
+    }
     /// Hands velocity and pressure at every point to `take`, under the point's number.
     fn sample(
         &self,
         points: &[[f64; 3]],
         take: &mut dyn FnMut(usize, [f64; 3], f64),
-    ) -> Result<(), SampleError>;
+    ) -> Result<(), SampleError> {
+        let _ = (points, take);
+        Ok(())
+    }
     /// Iterations of the last pressure solution.
-    fn pressure_iterations(&self) -> usize;
+    fn pressure_iterations(&self) -> usize {
+        0
+    }
     /// Writes λ, velocity and pressure for ParaView; the name's extension is [`extension`](Self::extension).
-    fn write_fields(&self, lambda: &[f64], out: &mut dyn Write) -> Result<(), OutputError>;
+    fn write_fields(&self, lambda: &[f64], out: &mut dyn Write) -> Result<(), OutputError> {
+        let _ = (lambda, out);
+        Ok(())
+    }
     /// Writes other fields: name, and one, two or three components.
-    fn write_named(&self, fields: &[(&str, Vec<&[f64]>)], out: &mut dyn Write) -> Result<(), OutputError>;
-    fn extension(&self) -> &'static str;
+    fn write_named(&self, fields: &[(&str, Vec<&[f64]>)], out: &mut dyn Write) -> Result<(), OutputError> {
+        let _ = (fields, out);
+        Ok(())
+    }
+    fn extension(&self) -> &'static str {
+        ""
+    }
     fn bodies(&self) -> &dyn Bodies;
     /// A number that a body keeps, however many come and go.
     fn serial(&self, b: BodyId) -> u64;
@@ -266,8 +297,8 @@ impl<const D: usize, A: Flow<D>, P: Guests> View for Seen<'_, D, A, P> {
     fn steps(&self) -> u64 {
         self.flow.steps()
     }
-    fn statistics(&mut self) -> FlowStatistics {
-        self.flow.statistics()
+    fn statistics(&mut self) -> Option<FlowStatistics> {
+        Some(self.flow.statistics())
     }
     fn timings(&self) -> &Timings {
         &self.timings

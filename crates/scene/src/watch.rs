@@ -3,6 +3,7 @@ mod averages;
 mod fields;
 mod forces;
 mod images;
+mod models;
 mod probes;
 mod table;
 mod trajectories;
@@ -11,6 +12,7 @@ pub(crate) use averages::AveragesWatch;
 pub(crate) use fields::FieldsWatch;
 pub(crate) use forces::ForcesWatch;
 pub(crate) use images::ImagesWatch;
+pub(crate) use models::ModelsWatch;
 pub(crate) use probes::ProbesWatch;
 pub(crate) use trajectories::TrajectoriesWatch;
 
@@ -30,7 +32,12 @@ pub(crate) trait Watch: Checkpoint {
         let _ = (view, info);
         Ok(())
     }
-    /// At the start and the end of every interval; `lambda` is the solid fraction of the cells.
+    /// Does the snapshot with this index take λ?
+    fn takes_lambda(&self, index: usize) -> bool {
+        let _ = index;
+        false
+    }
+    /// At the start and the end of every interval; `lambda` is the solid fraction of the cells, 0 if nobody takes it.
     fn snapshot(
         &mut self,
         view: &mut dyn View,
@@ -84,7 +91,7 @@ impl Audience {
         let lattice = view.lattice();
         self.lambda.clear();
         self.lambda.resize((0..view.dim()).map(|a| view.axis(a).cells()).product(), 0.0);
-        if view.bodies().n_bodies() > 0 {
+        if view.bodies().n_bodies() > 0 && self.watches.iter().any(|watch| watch.takes_lambda(index)) {
             self.fraction.update(&lattice, view.bodies())?;
             self.fraction.add_to_dense(&lattice, &mut self.lambda);
         }

@@ -112,7 +112,7 @@ pub(super) fn read(
     context: &Context<'_>,
     axes: &[Axis],
     sides: &[[Side; 2]],
-    fluid: Fluid,
+    fluid: Option<Fluid>,
 ) -> Result<Bodies, Problem> {
     let materials = Materials::read(root)?;
     let bounds = bounds(axes);
@@ -172,7 +172,7 @@ pub(super) fn read(
     Ok(bodies)
 }
 
-fn agrees(root: &Reader<'_>, bodies: &Bodies, fluid: Fluid) -> Result<(), Problem> {
+fn agrees(root: &Reader<'_>, bodies: &Bodies, fluid: Option<Fluid>) -> Result<(), Problem> {
     let coupling = root.table("coupling");
     let fail = |key: &str, message: String| {
         coupling.as_ref().map_or_else(|| root.fail("coupling", &message), |t| t.fail(key, &message))
@@ -184,7 +184,10 @@ fn agrees(root: &Reader<'_>, bodies: &Bodies, fluid: Fluid) -> Result<(), Proble
             "cut links are for bodies at rest; take \"smooth\", or make every body's motion \"fixed\"".into(),
         ));
     }
-    if forcing == ForcingChoice::CutLinks && !bodies.list.is_empty() && fluid.viscosity == 0.0 {
+    if forcing == ForcingChoice::CutLinks
+        && !bodies.list.is_empty()
+        && fluid.is_some_and(|f| f.viscosity == 0.0)
+    {
         return Err(root.fail("fluid", "walls by cut links need a viscosity; give `nu` above 0"));
     }
     let chen = bodies.law == ContactLawChoice::Chen && bodies.lubrication.is_none();

@@ -24,8 +24,9 @@ pub(crate) struct FlowSetup {
     pub(crate) iterations: usize,
 }
 
-pub(super) fn fluid(root: &Reader<'_>) -> Result<Fluid, Problem> {
-    let Some(t) = root.table("fluid") else { return Err(root.fail("fluid", "the fluid is missing")) };
+/// The fluid, if there is one.
+pub(super) fn fluid(root: &Reader<'_>) -> Result<Option<Fluid>, Problem> {
+    let Some(t) = root.table("fluid") else { return Ok(None) };
     let density = t.number("density").unwrap_or(1.0);
     let viscosity = match (t.number("nu"), t.number("mu")) {
         (Some(nu), None) => nu,
@@ -40,7 +41,7 @@ pub(super) fn fluid(root: &Reader<'_>) -> Result<Fluid, Problem> {
             t.fail("mu", format!("{viscosity} m²/s follows for the kinematic viscosity; give a finite one"))
         );
     }
-    Ok(Fluid { density, viscosity })
+    Ok(Some(Fluid { density, viscosity }))
 }
 
 pub(super) fn read(root: &Reader<'_>) -> Result<FlowSetup, Problem> {

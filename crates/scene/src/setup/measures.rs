@@ -153,6 +153,19 @@ fn images(t: &Reader<'_>, axes: &[Axis], snapshots: usize) -> Result<Images, Pro
     })
 }
 
+/// The key `name`, which becomes a file's.
+pub(super) fn file_name(t: &Reader<'_>) -> Result<String, Problem> {
+    let name = t.text("name").unwrap_or_default();
+    let good = !name.is_empty()
+        && name.chars().all(|c| c.is_alphanumeric() || "-_. ".contains(c))
+        && !name.starts_with('.');
+    if good {
+        Ok(name.into())
+    } else {
+        Err(t.fail("name", "this becomes the name of a file; use letters, digits, -, _ and ."))
+    }
+}
+
 pub(super) fn probes(
     root: &Reader<'_>,
     context: &Context<'_>,
@@ -161,13 +174,7 @@ pub(super) fn probes(
 ) -> Result<Vec<ProbeSetup>, Problem> {
     let mut out: Vec<ProbeSetup> = Vec::new();
     for t in root.tables("probes") {
-        let name = t.text("name").unwrap_or_default().to_owned();
-        let good = !name.is_empty()
-            && name.chars().all(|c| c.is_alphanumeric() || "-_. ".contains(c))
-            && !name.starts_with('.');
-        if !good {
-            return Err(t.fail("name", "this becomes the name of a file; use letters, digits, -, _ and ."));
-        }
+        let name = file_name(&t)?;
         if out.iter().any(|other| other.name == name) {
             return Err(t.fail("name", format!("there are probes \"{name}\" already; give another name")));
         }

@@ -70,6 +70,9 @@ impl Watch for FieldsWatch {
     fn name(&self) -> &'static str {
         "fields"
     }
+    fn takes_lambda(&self, _: usize) -> bool {
+        self.fields.is_some()
+    }
     fn snapshot(
         &mut self,
         view: &mut dyn View,

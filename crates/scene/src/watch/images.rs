@@ -31,21 +31,6 @@ impl ImagesWatch {
         })
     }
 
-    /// Numbers of the slice's cells, across fastest.
-    fn cells(view: &dyn View, (normal, at): (usize, f64)) -> ([usize; 2], Vec<usize>) {
-        let n: [usize; 3] = [0, 1, 2].map(|a| if a < view.dim() { view.axis(a).cells() } else { 1 });
-        let [a, b] = match normal {
-            0 => [1, 2],
-            1 => [0, 2],
-            _ => [0, 1],
-        };
-        let layer = if normal < view.dim() { view.axis(normal).locate(at).unwrap_or(0) } else { 0 };
-        let stride = [1, n[0], n[0] * n[1]];
-        let cells = (0..n[b])
-            .flat_map(|j| (0..n[a]).map(move |i| i * stride[a] + j * stride[b] + layer * stride[normal]));
-        ([a, b], cells.collect())
-    }
-
     /// Vorticity of the plane at the cells, from central differences of the centred velocity.
     fn vorticity(view: &dyn View, [a, b]: [usize; 2], u: &[f64], v: &[f64], out: &mut Vec<f64>) {
         let (x, y) = (view.axis(a), view.axis(b));
@@ -70,6 +55,21 @@ impl ImagesWatch {
     }
 }
 
+/// The axes across and up of a slice normal to an axis at a place on it, and the numbers of its cells, across fastest.
+pub(super) fn slice_of(view: &dyn View, (normal, at): (usize, f64)) -> ([usize; 2], Vec<usize>) {
+    let n: [usize; 3] = [0, 1, 2].map(|a| if a < view.dim() { view.axis(a).cells() } else { 1 });
+    let [a, b] = match normal {
+        0 => [1, 2],
+        1 => [0, 2],
+        _ => [0, 1],
+    };
+    let layer = if normal < view.dim() { view.axis(normal).locate(at).unwrap_or(0) } else { 0 };
+    let stride = [1, n[0], n[0] * n[1]];
+    let cells = (0..n[b])
+        .flat_map(|j| (0..n[a]).map(move |i| i * stride[a] + j * stride[b] + layer * stride[normal]));
+    ([a, b], cells.collect())
+}
+
 impl Checkpoint for ImagesWatch {
     fn save(&self, _: &mut dyn FnMut(&str, &[f64])) {}
     fn restore<'a>(&mut self, _: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
@@ -81,6 +81,9 @@ impl Watch for ImagesWatch {
     fn name(&self) -> &'static str {
         "images"
     }
+    fn takes_lambda(&self, index: usize) -> bool {
+        index.is_multiple_of(self.images.every)
+    }
     fn snapshot(
         &mut self,
         view: &mut dyn View,
@@ -91,7 +94,7 @@ impl Watch for ImagesWatch {
         if !index.is_multiple_of(self.images.every) {
             return Ok(());
         }
-        let ([a, b], cells) = Self::cells(view, self.images.slice);
+        let ([a, b], cells) = slice_of(view, self.images.slice);
         let slice = |field: &[f64]| -> Vec<f64> { cells.iter().map(|&c| field[c]).collect() };
         let dim = view.dim();
         let quantity = self.images.quantity.clone();
@@ -131,7 +134,8 @@ impl Watch for ImagesWatch {
             Quantity::Field(_) => self.values.iter().any(|v| *v < 0.0),
             _ => true,
         };
-        let limits = self.images.limits.unwrap_or_else(|| limits(&self.values, &self.solid, signed));
+        let alone = view.statistics().is_none();
+        let limits = self.images.limits.unwrap_or_else(|| limits(&self.values, &self.solid, signed, alone));
         let of_field;
         let label = match &quantity {
             Quantity::Field(name) => {
@@ -150,18 +154,24 @@ impl Watch for ImagesWatch {
         let section =
             Section { across: view.axis(a).faces(), up: view.axis(b).faces(), names: [names[a], names[b]] };
         let solids = view.bodies().n_bodies() > 0;
-        let layer =
-            Layer { values: &self.values, solid: solids.then_some(&self.solid), limits, label, signed };
+        let layer = Layer {
+            values: &self.values,
+            solid: solids.then_some(&self.solid),
+            solids_alone: alone,
+            limits,
+            label,
+            signed,
+        };
         let path = self.folder.join(format!("{index:05}.png"));
         let title = format!("{}   t = {:.4} s", self.title, info.time);
         section.draw(&path, &layer, &title).map_err(output("drawing", &path))
     }
 }
 
-/// From 0 or symmetric about it, to the largest value in the fluid.
-fn limits(values: &[f64], solid: &[f64], signed: bool) -> [f64; 2] {
-    let fluid = values.iter().zip(solid).filter(|(v, s)| **s < 0.5 && v.is_finite()).map(|(v, _)| v.abs());
-    let most = fluid.fold(0.0, f64::max);
+/// From 0 or symmetric about it, to the largest value in the fluid, or in the solids where there is none.
+fn limits(values: &[f64], solid: &[f64], signed: bool, alone: bool) -> [f64; 2] {
+    let counts = |(v, s): &(&f64, &f64)| (**s < 0.5) != alone && v.is_finite();
+    let most = values.iter().zip(solid).filter(counts).map(|(v, _)| v.abs()).fold(0.0, f64::max);
     let most = if most > 0.0 { most } else { 1.0 };
     [if signed { -most } else { 0.0 }, most]
 }

@@ -26,6 +26,8 @@ pub struct Layer<'a> {
     pub values: &'a [f64],
     /// Solid fraction, if there are solids.
     pub solid: Option<&'a [f64]>,
+    /// The values are those of the solids: there is nothing between them.
+    pub solids_alone: bool,
     /// Ends of the colour bar.
     pub limits: [f64; 2],
     /// Label of the colour bar, with its unit.
@@ -94,8 +96,13 @@ impl Section<'_> {
                 let value = at(layer.values, column, row);
                 let mut colour = map.at((value - low) / (high - low));
                 let share = layer.solid.map_or(0.0, |solid| at(solid, column, row).clamp(0.0, 1.0));
+                if layer.solids_alone {
+                    colour = mix(WHITE, colour, share);
+                }
                 if share > 0.0 {
-                    colour = mix(colour, WHITE, 0.55 * share);
+                    if !layer.solids_alone {
+                        colour = mix(colour, WHITE, 0.55 * share);
+                    }
                     // A line where half of a cell is solid.
                     if (share - 0.5).abs() < 0.25 {
                         colour = mix(colour, BLACK, 0.9 - 3.6 * (share - 0.5).abs());

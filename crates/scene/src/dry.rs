@@ -1,0 +1,93 @@
+//! Bodies without a fluid as those see them who look on.
+use crate::cast::Cast;
+use crate::look::Show;
+use crate::setup::Setup;
+use crate::view::View;
+use coupling::{Evolving, Grains, StepInfo, Timings};
+use dem::{ContactLaw, Population, RigidDynamics};
+use fv_mesh::Axis;
+use ibm::SolidFraction;
+use interfaces::{Bodies, BodyId, Checkpoint, Dynamics, Kinematics, Lattice, Wrench};
+use std::io::{self, Write};
+
+impl<L: ContactLaw> Show for Grains<Cast<L>>
+where
+    Population<L>: Checkpoint,
+{
+    fn see<'a>(&'a mut self, setup: &'a Setup) -> impl View + 'a {
+        Dry { setup, grains: self }
+    }
+}
+
+/// Bodies, and the box that they are in.
+struct Dry<'a, L: ContactLaw> {
+    setup: &'a Setup,
+    grains: &'a Grains<Cast<L>>,
+}
+
+impl<L: ContactLaw> View for Dry<'_, L>
+where
+    Population<L>: Checkpoint,
+{
+    fn axis(&self, a: usize) -> &Axis {
+        &self.setup.axes[a]
+    }
+    fn dim(&self) -> usize {
+        self.setup.dim()
+    }
+    fn periodic(&self, a: usize) -> bool {
+        self.setup.periodic(a)
+    }
+    fn time(&self) -> f64 {
+        self.grains.time()
+    }
+    fn steps(&self) -> u64 {
+        self.grains.steps()
+    }
+    fn kinetic_energy(&mut self) -> f64 {
+        self.grains.bodies.rigid_bodies().kinetic_energy()
+    }
+    fn status(&mut self, info: &StepInfo) -> String {
+        let (n, contacts) = (self.grains.bodies.n_bodies(), self.contacts());
+        format!("dt {:.1e} s  {n} bodies  {contacts} contacts  E {:.2e} J", info.dt, self.kinetic_energy())
+    }
+    fn timings(&self) -> &Timings {
+        self.grains.timings()
+    }
+    fn lattice(&self) -> Lattice {
+        self.setup.lattice()
+    }
+    fn centred(&self, c: usize, out: &mut Vec<f64>) {
+        out.clear();
+        out.resize(self.setup.cells(), 0.0);
+        let (lattice, bodies) = (self.lattice(), &self.grains.bodies);
+        let mut cover = SolidFraction::new();
+        // Snapshots have found λ already: bodies are where it can be found.
+        if cover.update(&lattice, bodies).is_ok() {
+            for b in bodies.ids() {
+                let twist = bodies.twist(b);
+                cover.nodes(b).iter().for_each(|n| out[n.index] = twist.at(n.arm)[c]);
+            }
+        }
+    }
+    fn bodies(&self) -> &dyn Bodies {
+        &self.grains.bodies
+    }
+    fn serial(&self, b: BodyId) -> u64 {
+        self.grains.serial(b).unwrap_or(b.0 as u64)
+    }
+    fn loads(&self, b: BodyId, dt: f64) -> [Wrench; 2] {
+        [Wrench::default(), self.grains.bodies.contact_impulse(b) * (1.0 / dt)]
+    }
+    fn contacts(&self) -> usize {
+        self.grains.bodies.rigid_bodies().n_contacts()
+    }
+    fn turnover(&self) -> [u64; 2] {
+        self.grains.bodies.turnover()
+    }
+    fn write_bodies(&self, mut out: &mut dyn Write) -> io::Result<bool> {
+        let corner = self.setup.corner();
+        self.grains.bodies.rigid_bodies().write_vtp(&mut out, corner)?;
+        Ok(true)
+    }
+}

@@ -119,6 +119,11 @@ fn polyhedra_that_are_killed_go_on() {
     killed("sedimenting_polyhedra", &["grid.cells=[32, 32, 64]", "time.end=0.01"]);
 }
 
+#[test]
+fn grains_without_a_fluid_that_are_killed_go_on() {
+    killed("hopper", &["time.end=0.2"]);
+}
+
 /// Who reads the plan or the results may leave: no panic, and what had to be done is done.
 #[test]
 fn nobody_has_to_read() {

@@ -343,6 +343,85 @@ fn a_warm_sphere_with_large_eddies_goes_on_as_if_it_had_not_stopped() {
     [whole, halves].iter().for_each(|out| std::fs::remove_dir_all(out).unwrap());
 }
 
+/// Reduced models of half a run that goes on are those of the whole one; modes that move show a disc's edge that as many modes at rest do not.
+#[test]
+fn reduced_models_go_on_and_moving_modes_pay() {
+    let text = r#"
+gravity = [0.0, -9.81]
+grid = { cells = [32, 64], size = [4e-3, 8e-3] }
+sides = { x = "periodic", y = "periodic" }
+fluid = { density = 1000.0, nu = 1e-6 }
+bodies = [{ name = "disc", shape = { type = "disc", radius = 5e-4 }, density = 1100.0, position = [2e-3, 6e-3] }]
+models = [
+    { name = "moving", field = "lambda", frames = ["disc"], ranks = [3] },
+    { name = "still", field = "lambda", ranks = [3], coefficients = "spline" },
+    { name = "wake", field = "velocity", tolerance = 0.02, hidden = [6] },
+]
+time = { end = 0.24 }
+output = { snapshots = 32, fields = false, image_every = 32 }
+"#;
+    let [whole, halves] = ["models-whole", "models-halves"].map(folder);
+    let run = |out: &Path, more: &[&str], resume: bool| {
+        let more: Vec<String> = more.iter().map(|s| (*s).into()).collect();
+        let scene = Scene::parse("fall.toml", text, &more).unwrap();
+        scene.run(&Options { resume, ..quiet(out) }, &AtomicBool::new(false)).unwrap().result
+    };
+    let all = run(&whole, &[], false);
+    run(&halves, &["time.end=0.12", "output.snapshots=16"], false);
+    assert_eq!(all["models"], run(&halves, &[], true)["models"]);
+    let same =
+        |name: &str| std::fs::read(whole.join(name)).unwrap() == std::fs::read(halves.join(name)).unwrap();
+    assert!(same("models/lambda.npy") && same("models/moving.model") && same("models/wake.model"));
+    let error = |k: usize| all["models"][k]["held_out"]["total"].as_f64().unwrap();
+    assert!(error(0) < 0.2 * error(1), "{} {}", error(0), error(1));
+    // The tolerance of the modes, and what the network adds.
+    let wake = &all["models"][2]["training"]["projection"];
+    assert!(wake.as_f64().unwrap() <= 0.02, "{wake}");
+    for file in ["models/moving_modes.vti", "models/still_off.png", "models/velocity.npy"] {
+        assert!(whole.join(file).exists(), "{file}");
+    }
+    for (more, told) in [
+        ("models.0.field=\"salt\"", "there are: lambda, velocity, pressure"),
+        ("models.0.frames=[\"disk\"]", "no body \"disk\""),
+        ("models.0.ranks=[3, 3]", "2 numbers; give 1"),
+        ("models.1.turning=true", "modes stay where they are"),
+        ("output.snapshots=10", "output.snapshots of 16"),
+        ("models.1.name=\"moving\"", "already"),
+    ] {
+        let found = Scene::parse("fall.toml", text, &[more.into()]).err().map(|e| e.to_string());
+        assert!(found.as_ref().is_some_and(|t| t.contains(told)), "{more}: {found:?}");
+    }
+    [whole, halves].iter().for_each(|out| std::fs::remove_dir_all(out).unwrap());
+}
+
+/// Without a fluid: a block slides down an inclined plane as Coulomb's law has it, and goes on with the same bits.
+#[test]
+fn a_block_slides_without_a_fluid() {
+    let text = std::fs::read_to_string(root().join("scenes/sliding_block.toml")).unwrap();
+    let [whole, halves] = ["block-whole", "block-halves"].map(folder);
+    let run = |out: &Path, more: &[&str], resume: bool| {
+        let more: Vec<String> = more.iter().map(|s| (*s).into()).collect();
+        let scene = Scene::parse("sliding_block.toml", &text, &more).unwrap();
+        scene.run(&Options { resume, ..quiet(out) }, &AtomicBool::new(false)).unwrap()
+    };
+    let all = run(&whole, &[], false);
+    assert!(all.compared[0].error().abs() < 1e-4, "{:?}", all.compared);
+    assert!(all.result.get("flow").is_none() && all.result["contacts"] == 1);
+    run(&halves, &["time.end=0.2", "output.snapshots=20"], false);
+    assert_eq!(all.result, run(&halves, &[], true).result);
+    assert!(!whole.join("fields").exists() && whole.join("bodies/00040.vtp").exists());
+    for (more, told) in [
+        ("coupling={}", "this needs a fluid"),
+        ("probes=[]", "this needs a fluid"),
+        ("output.quantity=\"pressure\"", "pictures show the bodies"),
+        ("bodies.0.motion=\"fixed\"", "nothing happens"),
+    ] {
+        let found = Scene::parse("sliding_block.toml", &text, &[more.into()]).err().map(|e| e.to_string());
+        assert!(found.as_ref().is_some_and(|t| t.contains(told)), "{more}: {found:?}");
+    }
+    [whole, halves].iter().for_each(|out| std::fs::remove_dir_all(out).unwrap());
+}
+
 /// What cannot be together is told, by its key.
 #[test]
 fn physics_that_does_not_go_together_is_told() {

@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 /// A model, with modes that stay or move.
 pub(super) enum Fitted {
     Still(Podiann),
-    Moving(Spodiann),
+    Moving(Box<Spodiann>),
 }
 
 /// Why a model could not be made.
@@ -124,7 +124,13 @@ impl Fitted {
             })?;
             let params = SpodiannParams { coefficients: method, paths: None };
             let how = (grid, setup.interpolation);
-            Self::Moving(Spodiann::new(training.points.as_ref(), &found, how, &training.motions, params)?)
+            Self::Moving(Box::new(Spodiann::new(
+                training.points.as_ref(),
+                &found,
+                how,
+                &training.motions,
+                params,
+            )?))
         };
         let assess = |which: &[usize]| -> Result<Value, FitError> {
             let Assessment { projection, interpolation, total } =

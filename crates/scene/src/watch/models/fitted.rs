@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 
 /// A model, with modes that stay or move.
 pub(super) enum Fitted {
-    Still(Podiann),
+    Still(Box<Podiann>),
     Moving(Box<Spodiann>),
 }
 
@@ -112,7 +112,7 @@ impl Fitted {
                 ..PodParams::default()
             };
             let pod = Pod::new(training.snapshots.as_ref(), &params)?;
-            Self::Still(Podiann::new(training.points.as_ref(), &pod, method)?)
+            Self::Still(Box::new(Podiann::new(training.points.as_ref(), &pod, method)?))
         } else {
             let grid = grid(view, setup.interpolation)?;
             let ranks = setup.ranks.clone().map_or(Ranks::Found, Ranks::Given);

@@ -1,5 +1,6 @@
 //! One axis of a grid.
 use crate::FlowError;
+use interfaces::Nodes;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -190,6 +191,15 @@ impl Axis {
     /// Mean width of a cell \[m\].
     pub fn mean_width(&self) -> f64 {
         self.length() / self.cells() as f64
+    }
+    /// The centres of the cells as nodes of a lattice.
+    pub fn centres(&self, periodic: bool) -> Nodes {
+        if self.is_uniform() {
+            let h = self.mean_width();
+            Nodes::uniform(self.lower() + 0.5 * h, h, self.cells(), periodic)
+        } else {
+            Nodes::centres(self.faces(), periodic)
+        }
     }
     /// Width of cell `i` \[m\].
     pub fn width(&self, i: usize) -> f64 {

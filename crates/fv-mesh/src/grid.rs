@@ -183,14 +183,13 @@ impl<const D: usize> CartesianGrid<D> {
             let (axis, periodic) = (&self.axes[a], sides.periodic(a));
             let walled = usize::from(face == Some(a) && !periodic);
             base += walled * stride[a];
-            if axis.is_uniform() {
-                let (h, n) = (axis.mean_width(), axis.cells() - walled);
-                let shift = if face == Some(a) { walled as f64 } else { 0.5 };
-                Nodes::uniform(axis.lower() + shift * h, h, n, periodic)
-            } else if face == Some(a) {
-                Nodes::faces(axis.faces(), periodic)
-            } else {
-                Nodes::centres(axis.faces(), periodic)
+            match (face == Some(a), axis.is_uniform()) {
+                (false, _) => axis.centres(periodic),
+                (true, false) => Nodes::faces(axis.faces(), periodic),
+                (true, true) => {
+                    let (h, n) = (axis.mean_width(), axis.cells() - walled);
+                    Nodes::uniform(axis.lower() + walled as f64 * h, h, n, periodic)
+                }
             }
         });
         Lattice::new(axes, base, stride)

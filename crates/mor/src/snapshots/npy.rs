@@ -198,15 +198,15 @@ impl SnapshotSource for NpyArray {
 const LINES: usize = 1 << 20;
 
 /// What the header tells.
-struct Header {
-    kind: Number,
-    fortran: bool,
-    shape: Vec<usize>,
+pub(super) struct Header {
+    pub(super) kind: Number,
+    pub(super) fortran: bool,
+    pub(super) shape: Vec<usize>,
 }
 
 impl Header {
     /// And how many bytes it takes.
-    fn read(from: &mut impl Read, path: &Path) -> Result<(Self, u64), SnapshotError> {
+    pub(super) fn read(from: &mut impl Read, path: &Path) -> Result<(Self, u64), SnapshotError> {
         let wrong = |why: &str| SnapshotError::format(path, why);
         let short = |_| wrong("the header of NumPy's format is not whole");
         let mut magic = [0; 8];

@@ -1,5 +1,6 @@
 //! Snapshots into a file of NumPy's.
 use super::SnapshotError;
+use super::npy::{Header, Number};
 use interfaces::SnapshotSink;
 use std::error::Error;
 use std::fs::{File, OpenOptions};
@@ -31,6 +32,15 @@ pub struct NpyWriter {
 
 /// Bytes of the header, whatever the shape is.
 const HEADER: usize = 128;
+/// `<f8`.
+const NUMBER: Number = Number { double: true, big_endian: false };
+
+fn other(path: &Path) -> SnapshotError {
+    SnapshotError::format(
+        path,
+        "only a file of snapshots × rows that `NpyWriter` wrote can be gone on with; create another one",
+    )
+}
 
 impl NpyWriter {
     /// A new file, in place of one that may be there.
@@ -45,14 +55,20 @@ impl NpyWriter {
         Ok(writer)
     }
 
-    /// Goes on with a file of this type behind its first `snapshots` of `rows` numbers each; what follows them is cut off.
+    /// Goes on with a file that this type wrote behind its first `snapshots`; what follows them is cut off.
     ///
     /// # Errors
-    /// [`SnapshotError::Io`]; [`SnapshotError::Truncated`] if there are not so many.
-    pub fn resume(path: impl AsRef<Path>, rows: usize, snapshots: usize) -> Result<Self, SnapshotError> {
+    /// [`SnapshotError::Io`]; [`SnapshotError::Format`] if the file is not of this type's; [`SnapshotError::Truncated`] if there are not so many snapshots.
+    pub fn resume(path: impl AsRef<Path>, snapshots: usize) -> Result<Self, SnapshotError> {
         let path = path.as_ref();
         let io = |e| SnapshotError::io(path, &e);
-        let file = OpenOptions::new().read(true).write(true).open(path).map_err(io)?;
+        let mut file = OpenOptions::new().read(true).write(true).open(path).map_err(io)?;
+        let (header, bytes) = Header::read(&mut file, path)?;
+        let ours = bytes == HEADER as u64 && !header.fortran && header.kind == NUMBER;
+        let &[_, rows] = &header.shape[..] else { return Err(other(path)) };
+        if !ours {
+            return Err(other(path));
+        }
         let (expected, found) = ((HEADER + 8 * rows * snapshots) as u64, file.metadata().map_err(io)?.len());
         if found < expected {
             let what = format!("an array of {snapshots} × {rows}");
@@ -128,16 +144,24 @@ mod tests {
         writer.flush().unwrap();
         drop(writer);
         // Two of them were written after the state that the run goes on from.
-        let mut writer = NpyWriter::resume(&parts, 3, 3).unwrap();
+        let mut writer = NpyWriter::resume(&parts, 3).unwrap();
         (3..7).for_each(|k| writer.push(0.0, &field(k)).unwrap());
         writer.flush().unwrap();
         assert_eq!(std::fs::read(&whole).unwrap(), std::fs::read(&parts).unwrap());
         let read = NpyArray::open(&parts, SnapshotAxis::First).unwrap().to_mat().unwrap();
         assert_eq!([read.nrows(), read.ncols()], [3, 7]);
         assert!((0..7).all(|k| (0..3).all(|i| read[(i, k)] == field(k)[i])));
-        let fail = NpyWriter::resume(&parts, 3, 8).err().unwrap();
+        let fail = NpyWriter::resume(&parts, 8).err().unwrap();
         assert!(matches!(fail, SnapshotError::Truncated { .. }), "{fail}");
         assert!(writer.push(0.0, &[1.0]).unwrap_err().to_string().contains("1 values where 3"));
+        // NumPy's own files may have other headers.
+        std::fs::write(
+            &whole,
+            b"\x93NUMPY\x01\x00\x36\x00{'descr': '<f8', 'fortran_order': True, 'shape': (1, 1)}\n",
+        )
+        .unwrap();
+        let fail = NpyWriter::resume(&whole, 0).err().unwrap();
+        assert!(matches!(fail, SnapshotError::Format { .. }), "{fail}");
         [whole, parts].iter().for_each(|path| std::fs::remove_file(path).unwrap());
     }
 }

@@ -66,6 +66,10 @@ const DOUBLES: [f64; 2] = [30.0, 40.0];
 impl Setup {
     /// Memory for fields and solvers, roughly \[bytes\].
     pub(crate) fn memory(&self) -> f64 {
+        if self.fluid.is_none() {
+            // What pictures show.
+            return self.cells() as f64 * 6.0 * 8.0;
+        }
         let averages = if self.averages.is_some() { 10.0 } else { 0.0 };
         self.cells() as f64 * (DOUBLES[self.dim() - 2] + averages) * 8.0
     }

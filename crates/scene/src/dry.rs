@@ -57,16 +57,21 @@ where
     fn lattice(&self) -> Lattice {
         self.setup.lattice()
     }
-    fn centred(&self, c: usize, out: &mut Vec<f64>) {
-        out.clear();
-        out.resize(self.setup.cells(), 0.0);
+    fn centred(&self, out: &mut [Vec<f64>]) {
+        for out in out.iter_mut() {
+            out.clear();
+            out.resize(self.setup.cells(), 0.0);
+        }
         let (lattice, bodies) = (self.lattice(), &self.grains.bodies);
         let mut cover = SolidFraction::new();
         // Snapshots have found λ already: bodies are where it can be found.
         if cover.update(&lattice, bodies).is_ok() {
             for b in bodies.ids() {
                 let twist = bodies.twist(b);
-                cover.nodes(b).iter().for_each(|n| out[n.index] = twist.at(n.arm)[c]);
+                for node in cover.nodes(b) {
+                    let velocity = twist.at(node.arm);
+                    out.iter_mut().zip(velocity.iter()).for_each(|(out, u)| out[node.index] = *u);
+                }
             }
         }
     }

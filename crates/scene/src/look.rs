@@ -145,9 +145,6 @@ impl<K: Checkpoint> Look<'_, K> {
     }
 }
 
-/// Steps between two looks at the clock.
-const STRIDE: u64 = 4;
-
 impl<S: Show, K: Books<S>> Observer<S> for Look<'_, K> {
     fn begin(&mut self, simulation: &mut S) {
         self.books.begin(simulation);
@@ -158,7 +155,7 @@ impl<S: Show, K: Books<S>> Observer<S> for Look<'_, K> {
         self.extremes.0 = [low.min(info.dt), high.max(info.dt), courant.max(info.courant)];
         let mut seen = simulation.see(self.setup);
         self.audience.step(&mut seen, info)?;
-        if let Some(progress) = self.progress.as_mut().filter(|_| info.step.is_multiple_of(STRIDE)) {
+        if let Some(progress) = &mut self.progress {
             progress.tell(info.step, info.time, || seen.status(info));
         }
         drop(seen);

@@ -34,8 +34,8 @@ pub struct Plan {
 /// CPU seconds per cell and step of the flow alone in the plane and in space (docs/results.md), and per marker.
 const COST: [f64; 2] = [1.2e-8, 3.5e-8];
 const COST_OF_MARKER: f64 = 1.5e-6;
-/// CPU seconds per body and step without a fluid, of polyhedra in a pile; spheres take a tenth.
-const COST_OF_BODY: f64 = 4e-4;
+/// CPU seconds per body and step (of 20 steps of the contacts) without a fluid, of smooth bodies and of polyhedra in a pile.
+const COST_OF_BODY: [f64; 2] = [8e-6, 2e-4];
 /// CPU seconds per cell and iteration of the steady algorithm.
 const COST_OF_ITERATION: f64 = 4e-7;
 
@@ -82,7 +82,12 @@ impl Setup {
         let markers: f64 = if moved { self.bodies.list.iter().map(|b| surface(b, h, D)).sum() } else { 0.0 };
         let cpu = steps
             * match self.flow.algorithm {
-                _ if self.fluid.is_none() => self.bodies.list.len() as f64 * COST_OF_BODY,
+                _ if self.fluid.is_none() => {
+                    let cost = |b: &crate::setup::BodySetup| {
+                        COST_OF_BODY[usize::from(b.shape.polyhedron().is_some())]
+                    };
+                    self.bodies.list.iter().map(cost).sum()
+                }
                 Algorithm::Projection => cells * COST[D - 2] + markers * COST_OF_MARKER,
                 Algorithm::Piso => 20.0 * cells * COST[D - 2] + markers * COST_OF_MARKER,
                 Algorithm::Simple => cells * COST_OF_ITERATION,

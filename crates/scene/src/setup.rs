@@ -24,7 +24,7 @@ use crate::reader::Reader;
 use crate::schema;
 use coupling::WeightBalance;
 use fv_mesh::{Axis, Fluid, Side, Sides};
-use interfaces::{Lattice, Nodes, Point, Vector};
+use interfaces::{Lattice, Point, Vector};
 use std::path::{Path, PathBuf};
 
 /// Everything that a scene says.
@@ -268,7 +268,7 @@ impl Setup {
     }
     /// The centres of the cells.
     pub(crate) fn lattice(&self) -> Lattice {
-        let nodes = |a: usize| Nodes::centres(self.axes[a].faces(), self.periodic(a));
+        let nodes = |a: usize| self.axes[a].centres(self.periodic(a));
         let [nx, ny] = [0, 1].map(|a| self.axes[a].cells());
         match self.dim() {
             2 => Lattice::new([nodes(0), nodes(1)], 0, [1, nx]),

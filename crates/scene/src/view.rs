@@ -5,6 +5,7 @@ use crate::steady::Steady;
 use crate::still::Still;
 use coupling::{Particles, StepInfo, Strategy, Timings};
 use dem::{ContactLaw, Population, RigidDynamics};
+use example_support::progress::Status;
 use fv_mesh::{
     Axis, CartesianGrid, CellWriter, Field, FlowStatistics, Hooked, OutputError, Piso, SampleError, Sampler,
     Sides, Velocity,
@@ -32,13 +33,13 @@ pub(crate) trait View {
     /// What progress tells of a step.
     fn status(&mut self, info: &StepInfo) -> String {
         let divergence = self.statistics().map_or(0.0, |flow| flow.divergence * info.dt);
-        format!("dt {:.2e} s  Co {:.2}  div {divergence:.1e}", info.dt, info.courant)
+        Status { time: info.time, dt: info.dt, courant: info.courant, divergence }.to_string()
     }
     fn timings(&self) -> &Timings;
     /// The lattice of the cells' centres.
     fn lattice(&self) -> Lattice;
-    /// Component `c` of the velocity at the centres, x fastest; without a fluid that of the bodies, and 0 elsewhere.
-    fn centred(&self, c: usize, out: &mut Vec<f64>);
+    /// The components of the velocity at the centres, x fastest, into the first of `out`; without a fluid that of the bodies, and 0 elsewhere.
+    fn centred(&self, out: &mut [Vec<f64>]);
     fn pressure(&self, out: &mut Vec<f64>) {
         out.clear();
     }
@@ -306,9 +307,11 @@ impl<const D: usize, A: Flow<D>, P: Guests> View for Seen<'_, D, A, P> {
     fn lattice(&self) -> Lattice {
         self.flow.grid().lattice(None, self.flow.sides())
     }
-    fn centred(&self, c: usize, out: &mut Vec<f64>) {
-        out.clear();
-        self.flow.centred_velocity(c).for_each(|u| out.push(u));
+    fn centred(&self, out: &mut [Vec<f64>]) {
+        for (c, out) in out.iter_mut().enumerate().take(D) {
+            out.clear();
+            self.flow.centred_velocity(c).for_each(|u| out.push(u));
+        }
     }
     fn pressure(&self, out: &mut Vec<f64>) {
         out.clear();

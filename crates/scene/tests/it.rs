@@ -1,7 +1,7 @@
 //! Scenes as their users have them: every file in `scenes/`, spoilt files, interrupted runs, folders that cannot be written to.
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestCaseError, TestRunner};
-use scene::{Ending, Options, Scene, json_schema, manual};
+use scene::{Ending, Options, RunResult, Scene, json_schema, manual};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -55,6 +55,18 @@ fn folder(name: &str) -> PathBuf {
 
 fn quiet(out: &Path) -> Options {
     Options { quiet: true, out: Some(out.into()), ..Options::default() }
+}
+
+/// Runs the scene in `text` with `more` set.
+fn run(text: &str, more: &[&str], options: &Options) -> RunResult {
+    let more: Vec<String> = more.iter().map(|s| (*s).into()).collect();
+    let scene = Scene::parse("scene.toml", text, &more).unwrap();
+    scene.run(options, &AtomicBool::new(false)).unwrap()
+}
+
+/// What is told of that scene with `more` set; nothing if it is right.
+fn problems(text: &str, more: &str) -> String {
+    Scene::parse("scene.toml", text, &[more.into()]).err().map(|e| e.to_string()).unwrap_or_default()
 }
 
 #[test]
@@ -325,11 +337,8 @@ field = "temperature"
 #[test]
 fn a_warm_sphere_with_large_eddies_goes_on_as_if_it_had_not_stopped() {
     let [whole, halves] = ["warm-whole", "warm-halves"].map(folder);
-    let run = |out: &Path, more: &[&str], resume: bool| {
-        let more: Vec<String> = more.iter().map(|s| (*s).into()).collect();
-        let scene = Scene::parse("warm.toml", WARM, &more).unwrap();
-        scene.run(&Options { resume, ..quiet(out) }, &AtomicBool::new(false)).unwrap().result
-    };
+    let run =
+        |out: &Path, more: &[&str], resume: bool| run(WARM, more, &Options { resume, ..quiet(out) }).result;
     let all = run(&whole, &[], false);
     run(&halves, &["time.end=0.3", "output.snapshots=1"], false);
     let rest = run(&halves, &[], true);
@@ -361,11 +370,8 @@ time = { end = 0.24 }
 output = { snapshots = 32, fields = false, image_every = 32 }
 "#;
     let [whole, halves] = ["models-whole", "models-halves"].map(folder);
-    let run = |out: &Path, more: &[&str], resume: bool| {
-        let more: Vec<String> = more.iter().map(|s| (*s).into()).collect();
-        let scene = Scene::parse("fall.toml", text, &more).unwrap();
-        scene.run(&Options { resume, ..quiet(out) }, &AtomicBool::new(false)).unwrap().result
-    };
+    let run =
+        |out: &Path, more: &[&str], resume: bool| run(text, more, &Options { resume, ..quiet(out) }).result;
     let all = run(&whole, &[], false);
     run(&halves, &["time.end=0.12", "output.snapshots=16"], false);
     assert_eq!(all["models"], run(&halves, &[], true)["models"]);
@@ -388,8 +394,8 @@ output = { snapshots = 32, fields = false, image_every = 32 }
         ("output.snapshots=10", "output.snapshots of 16"),
         ("models.1.name=\"moving\"", "already"),
     ] {
-        let found = Scene::parse("fall.toml", text, &[more.into()]).err().map(|e| e.to_string());
-        assert!(found.as_ref().is_some_and(|t| t.contains(told)), "{more}: {found:?}");
+        let found = problems(text, more);
+        assert!(found.contains(told), "{more}: {found}");
     }
     [whole, halves].iter().for_each(|out| std::fs::remove_dir_all(out).unwrap());
 }
@@ -399,25 +405,26 @@ output = { snapshots = 32, fields = false, image_every = 32 }
 fn a_block_slides_without_a_fluid() {
     let text = std::fs::read_to_string(root().join("scenes/sliding_block.toml")).unwrap();
     let [whole, halves] = ["block-whole", "block-halves"].map(folder);
-    let run = |out: &Path, more: &[&str], resume: bool| {
-        let more: Vec<String> = more.iter().map(|s| (*s).into()).collect();
-        let scene = Scene::parse("sliding_block.toml", &text, &more).unwrap();
-        scene.run(&Options { resume, ..quiet(out) }, &AtomicBool::new(false)).unwrap()
-    };
+    let run = |out: &Path, more: &[&str], resume: bool| run(&text, more, &Options { resume, ..quiet(out) });
     let all = run(&whole, &[], false);
     assert!(all.compared[0].error().abs() < 1e-4, "{:?}", all.compared);
     assert!(all.result.get("flow").is_none() && all.result["contacts"] == 1);
     run(&halves, &["time.end=0.2", "output.snapshots=20"], false);
     assert_eq!(all.result, run(&halves, &[], true).result);
+    // An open side, by which bodies may leave.
+    assert_eq!(problems(&text, "sides.x=\"outlet\""), "");
     assert!(!whole.join("fields").exists() && whole.join("bodies/00040.vtp").exists());
     for (more, told) in [
         ("coupling={}", "this needs a fluid"),
         ("probes=[]", "this needs a fluid"),
         ("output.quantity=\"pressure\"", "pictures show the bodies"),
         ("bodies.0.motion=\"fixed\"", "nothing happens"),
+        ("output.fields=true", "no fields to write"),
+        ("sides.x={type=\"inlet\", velocity=[1.0, 0.0]}", "along x: without `fluid` nothing enters"),
+        ("sides.y={type=\"wall\", velocity=[1.0, 0.0]}", "along y: without `fluid` nothing enters or drives"),
     ] {
-        let found = Scene::parse("sliding_block.toml", &text, &[more.into()]).err().map(|e| e.to_string());
-        assert!(found.as_ref().is_some_and(|t| t.contains(told)), "{more}: {found:?}");
+        let found = problems(&text, more);
+        assert!(found.contains(told), "{more}: {found}");
     }
     [whole, halves].iter().for_each(|out| std::fs::remove_dir_all(out).unwrap());
 }

@@ -1,5 +1,6 @@
 //! How far a run has come: a bar on a terminal, about ten plain lines elsewhere. Both go to stderr.
 
+use std::fmt;
 use std::io::{IsTerminal, Write, stderr};
 use std::time::{Duration, Instant};
 
@@ -27,6 +28,13 @@ pub struct Status {
     pub courant: f64,
     /// What is left of the divergence.
     pub divergence: f64,
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { dt, courant, divergence, .. } = self;
+        write!(f, "dt {dt:.2e} s  Co {courant:.2}  div {divergence:.1e}")
+    }
 }
 
 /// The progress of a run from its first instant to its last.
@@ -75,9 +83,8 @@ impl Progress {
         if step.is_multiple_of(STRIDE) {
             let now = Instant::now();
             if now.duration_since(self.shown) >= PAUSE {
-                let s = status();
-                let text = format!("dt {:.2e} s  Co {:.2}  div {:.1e}", s.dt, s.courant, s.divergence);
-                self.show(step, s.time, &text, now);
+                let status = status();
+                self.show(step, status.time, &status.to_string(), now);
             }
         }
     }

@@ -2,6 +2,7 @@
 use super::{Quantity, Setup};
 use crate::problem::Problem;
 use crate::reader::Reader;
+use fv_mesh::Side;
 
 /// What only a fluid gives a meaning.
 const WET: [&str; 11] = [
@@ -32,12 +33,28 @@ pub(super) fn agrees(root: &Reader<'_>, setup: &Setup) -> Result<(), Problem> {
             "without `fluid` and without a body that moves nothing happens; give one of these",
         ));
     }
+    for (a, pair) in setup.sides.iter().enumerate() {
+        for side in pair {
+            let known = match side {
+                Side::Wall(u) => *u == [0.0; 3],
+                side => matches!(side, Side::Periodic | Side::FreeSlip | Side::ConvectiveOutlet),
+            };
+            if !known {
+                let sides = root.table("sides").unwrap_or_else(|| root.clone());
+                let axis = ["x", "y", "z"][a];
+                return Err(sides.fail_here(format!("along {axis}: without `fluid` nothing enters or drives; take \"wall\" (at rest), \"symmetry\", \"periodic\", or \"outlet\" for a side that bodies may leave by")));
+            }
+        }
+    }
+    let output = root.table("output");
+    if output.as_ref().and_then(|t| t.flag("fields")) == Some(true) {
+        return Err(root.fail("output", "without `fluid` there are no fields to write; leave out `fields`"));
+    }
     let quantity = setup.output.images.as_ref().map(|i| &i.quantity);
     if let Some(Quantity::Pressure | Quantity::Vorticity | Quantity::Field(_)) = quantity {
-        let output = root.table("output").unwrap_or_else(|| root.clone());
-        return Err(
-            output.fail("quantity", "without `fluid` pictures show the bodies: their speed, u, v or w")
-        );
+        return Err(output
+            .unwrap_or_else(|| root.clone())
+            .fail("quantity", "without `fluid` pictures show the bodies: their speed, u, v or w"));
     }
     Ok(())
 }

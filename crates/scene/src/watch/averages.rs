@@ -106,9 +106,7 @@ impl Watch for AveragesWatch {
             return Ok(());
         }
         self.seconds += info.dt;
-        for c in 0..self.dim {
-            view.centred(c, &mut self.fields[c]);
-        }
+        view.centred(&mut self.fields[..self.dim]);
         view.pressure(&mut self.fields[self.dim]);
         let (first, products) = self.sums.split_at_mut(self.dim + 1);
         for (sum, field) in first.iter_mut().zip(&self.fields) {

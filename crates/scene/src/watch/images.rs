@@ -99,9 +99,7 @@ impl Watch for ImagesWatch {
         let dim = view.dim();
         let quantity = self.images.quantity.clone();
         if !matches!(quantity, Quantity::Field(_) | Quantity::Pressure) {
-            for (c, field) in self.fields.iter_mut().enumerate().take(dim) {
-                view.centred(c, field);
-            }
+            view.centred(&mut self.fields[..dim]);
         }
         let mut unit = String::new();
         match &quantity {

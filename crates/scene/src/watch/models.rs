@@ -26,7 +26,7 @@ pub(crate) struct ModelsWatch {
     fields: Vec<Recorded>,
     models: Vec<Followed>,
     field: Vec<f64>,
-    component: Vec<f64>,
+    components: [Vec<f64>; 3],
     results: Vec<Value>,
 }
 
@@ -35,7 +35,6 @@ struct Recorded {
     name: String,
     path: PathBuf,
     file: Option<NpyWriter>,
-    rows: usize,
 }
 
 /// A model to be, and where its frames have been.
@@ -67,7 +66,7 @@ impl ModelsWatch {
             let name = &model.field;
             if fields.iter().all(|field| field.name != *name) {
                 let path = folder.join(format!("{name}.npy"));
-                fields.push(Recorded { name: name.clone(), path, file: None, rows: 0 });
+                fields.push(Recorded { name: name.clone(), path, file: None });
             }
         }
         let follow = |setup: &ModelSetup| Followed {
@@ -76,7 +75,17 @@ impl ModelsWatch {
         };
         let models = models.iter().map(follow).collect();
         let (times, results) = (Vec::new(), Vec::new());
-        Ok(Self { folder, images, quiet, times, fields, models, field: vec![], component: vec![], results })
+        Ok(Self {
+            folder,
+            images,
+            quiet,
+            times,
+            fields,
+            models,
+            field: vec![],
+            components: Default::default(),
+            results,
+        })
     }
 
     /// The picture: the field between two snapshots that made the model, as it is and as the model has it, and their difference.
@@ -104,18 +113,18 @@ impl ModelsWatch {
             let least = values.iter().copied().fold(0.0, f64::min);
             [least, values.iter().copied().fold(f64::MIN_POSITIVE, f64::max)]
         };
-        for (what, values) in
-            [("run", truth.clone()), ("model", slice(&story.predicted)), ("off", slice(&off))]
+        let (predicted, off) = (slice(&story.predicted), slice(&off));
+        let label = match model.setup.field.as_str() {
+            "lambda" => "solid fraction",
+            "velocity" => "|u| in m/s",
+            "pressure" => "pressure in Pa",
+            name => name,
+        };
+        for (what, values, of) in
+            [("run", &truth, &truth), ("model", &predicted, &truth), ("off", &off, &off)]
         {
-            let limits = if what == "off" { ends(&values) } else { ends(&truth) };
-            let layer = Layer {
-                values: &values,
-                solid: None,
-                solids_alone: false,
-                limits,
-                label: &model.setup.field,
-                signed: false,
-            };
+            let limits = ends(of);
+            let layer = Layer { values, solid: None, solids_alone: false, limits, label, signed: false };
             let path = self.folder.join(format!("{}_{what}.png", model.setup.name));
             let title = format!("{}, {what}   t = {:.4} s", model.setup.name, story.time);
             section.draw(&path, &layer, &title).map_err(output("drawing", &path))?;
@@ -127,9 +136,6 @@ impl ModelsWatch {
 impl Checkpoint for ModelsWatch {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         sink("times", &self.times);
-        for field in &self.fields {
-            sink(&format!("rows.{}", field.name), &[field.rows as f64]);
-        }
         for model in &self.models {
             let pose = |p: &Pose| {
                 let (x, q) = (p.position, p.orientation);
@@ -144,8 +150,7 @@ impl Checkpoint for ModelsWatch {
         self.times = source("times").ok_or_else(|| missing("times"))?.to_vec();
         let m = self.times.len();
         for field in &mut self.fields {
-            field.rows = RestartError::take(source, &format!("rows.{}", field.name), 1)?[0] as usize;
-            let file = NpyWriter::resume(&field.path, field.rows, m);
+            let file = NpyWriter::resume(&field.path, m);
             field.file = Some(file.map_err(|e| RestartError::Differs(e.to_string()))?);
         }
         for model in &mut self.models {
@@ -184,10 +189,9 @@ impl Watch for ModelsWatch {
                 "lambda" => self.field.extend(lambda),
                 "pressure" => view.pressure(&mut self.field),
                 "velocity" => {
-                    for c in 0..view.dim() {
-                        view.centred(c, &mut self.component);
-                        self.field.extend(&self.component);
-                    }
+                    let components = &mut self.components[..view.dim()];
+                    view.centred(components);
+                    components.iter().for_each(|u| self.field.extend(u));
                 }
                 name => {
                     let others = view.others();
@@ -199,7 +203,6 @@ impl Watch for ModelsWatch {
                 Some(file) => file,
                 None => recorded.file.insert(NpyWriter::create(path).map_err(failed(path))?),
             };
-            recorded.rows = self.field.len();
             file.push(info.time, &self.field).map_err(|e| output("writing", path)(io::Error::other(e)))?;
         }
         for model in &mut self.models {

@@ -2,12 +2,13 @@
 use crate::setup::{Coefficients, ModelSetup};
 use crate::view::View;
 use interfaces::Pose;
-use mor::interpolation::{InterpolationError, Method, NetworkParams, Record, Samples, SplineParams};
+use mor::interpolation::{Method, NetworkParams, Record, Samples, SplineParams};
 use mor::models::{Assessment, ModelError, Podiann, Spodiann, SpodiannParams};
-use mor::pod::{Pod, PodError, PodParams, Rank};
-use mor::shifted::{Grid, Interpolation, Motions, Ranks, ShiftedError, ShiftedPod, Shifts};
+use mor::pod::{Pod, PodParams, Rank};
+use mor::shifted::{Grid, Interpolation, Motion, Motions, Ranks, ShiftedError, ShiftedPod};
 use mor::{Mat, MatRef};
 use serde_json::{Value, json};
+use std::error::Error;
 use std::ops::ControlFlow;
 
 /// A model, with modes that stay or move.
@@ -16,18 +17,8 @@ pub(super) enum Fitted {
     Moving(Box<Spodiann>),
 }
 
-/// Why a model could not be made.
-#[derive(Debug, thiserror::Error)]
-pub(super) enum FitError {
-    #[error(transparent)]
-    Pod(#[from] PodError),
-    #[error(transparent)]
-    Shifted(#[from] ShiftedError),
-    #[error(transparent)]
-    Model(#[from] ModelError),
-    #[error(transparent)]
-    Interpolation(#[from] InterpolationError),
-}
+/// Why a model could not be made, by whoever could not.
+type Failure = Box<dyn Error + Send + Sync>;
 
 /// What there is to tell.
 pub(super) struct Story {
@@ -52,23 +43,26 @@ struct Part {
 }
 
 impl Part {
+    /// Frames begin where the bodies are at the first of all snapshots.
     fn of(
         setup: &ModelSetup,
         (times, all): (&[f64], MatRef<'_, f64>),
         paths: &[Vec<Pose>],
         which: &[usize],
-    ) -> Result<Self, ShiftedError> {
-        // Frames begin where the bodies are at the first snapshot, in every part.
-        let along = |path: &Vec<Pose>| which.iter().map(|&k| path[k]).collect::<Vec<_>>();
-        let mut part: Vec<Vec<Pose>> = paths.iter().map(along).collect();
-        part.iter_mut().zip(paths).for_each(|(part, path)| part.insert(0, path[0]));
-        let motions =
-            if setup.turning { Motions::along(&part)? } else { Motions::along_without_turning(&part)? };
-        Ok(Self {
+    ) -> Self {
+        let motion = |k: usize, j: usize| {
+            let (first, now) = (&paths[k][0], &paths[k][which[j]]);
+            if setup.turning {
+                Motion::between(first, now)
+            } else {
+                Motion::translation(now.position - first.position)
+            }
+        };
+        Self {
             points: Mat::from_fn(1, which.len(), |_, j| times[which[j]]),
             snapshots: Mat::from_fn(all.nrows(), which.len(), |i, j| all[(i, which[j])]),
-            motions: Motions::by(paths.len(), which.len(), |k, j| motions.motion(k, j + 1)),
-        })
+            motions: Motions::by(paths.len(), which.len(), motion),
+        }
     }
 }
 
@@ -85,12 +79,11 @@ impl Fitted {
         view: &dyn View,
         (times, all): (&[f64], MatRef<'_, f64>),
         paths: &[Vec<Pose>],
-    ) -> Result<(Self, Story), FitError> {
+    ) -> Result<(Self, Story), Failure> {
         let (made, others): (Vec<usize>, Vec<usize>) =
             (0..times.len()).partition(|k| k.is_multiple_of(setup.every));
         let part = |which: &[usize]| Part::of(setup, (times, all), paths, which);
-        let training = part(&made)?;
-        let samples = || Samples::new(training.points.as_ref(), training.points.as_ref());
+        let training = part(&made);
         let (network, spline);
         let method: Option<&dyn Method> = match &setup.coefficients {
             Coefficients::Best => None,
@@ -99,18 +92,15 @@ impl Fitted {
                 Some(&network)
             }
             Coefficients::Spline => {
-                spline = SplineParams::highest(&samples()?)?;
+                spline = SplineParams::highest(&Samples::new(
+                    training.points.as_ref(),
+                    training.points.as_ref(),
+                )?)?;
                 Some(&spline)
             }
         };
         let fitted = if paths.is_empty() {
-            let rank = setup.ranks.as_ref().map_or(Rank::Tolerance(setup.tolerance), |r| Rank::Fixed(r[0]));
-            let params = PodParams {
-                rank,
-                most: Some(MOST),
-                weights: volumes(view, all.nrows()),
-                ..PodParams::default()
-            };
+            let params = PodParams { weights: volumes(view, all.nrows()), ..modes(setup) };
             let pod = Pod::new(training.snapshots.as_ref(), &params)?;
             Self::Still(Box::new(Podiann::new(training.points.as_ref(), &pod, method)?))
         } else {
@@ -132,9 +122,9 @@ impl Fitted {
                 params,
             )?))
         };
-        let assess = |which: &[usize]| -> Result<Value, FitError> {
+        let assess = |which: &[usize]| -> Result<Value, Failure> {
             let Assessment { projection, interpolation, total } =
-                fitted.assess(&part(&some(which, TESTED))?)?;
+                fitted.assess(&part(&some(which, TESTED)))?;
             Ok(json!({ "projection": projection, "interpolation": interpolation, "total": total }))
         };
         let shown = others.get(others.len() / 2).or(made.last()).copied().unwrap_or(0);
@@ -195,6 +185,16 @@ impl Fitted {
     }
 }
 
+/// How many modes, of those that stay.
+fn modes(setup: &ModelSetup) -> PodParams {
+    match &setup.ranks {
+        Some(ranks) => PodParams::of_rank(ranks[0]),
+        None => {
+            PodParams { rank: Rank::Tolerance(setup.tolerance), most: Some(MOST), ..PodParams::default() }
+        }
+    }
+}
+
 /// Volumes of the cells for every row, where they are not all equal.
 fn volumes(view: &dyn View, rows: usize) -> Option<Vec<f64>> {
     let dim = view.dim();
@@ -224,4 +224,36 @@ fn grid(view: &dyn View, interpolation: Interpolation) -> Result<Grid, ShiftedEr
         Interpolation::Spectral => grid,
         _ => grid.bounded((0..view.dim()).filter(|&a| !view.periodic(a))),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ranks that are given are not cut to what may be found.
+    #[test]
+    fn given_ranks_are_given() {
+        let mut setup = ModelSetup {
+            name: "a".into(),
+            field: "lambda".into(),
+            frames: vec![],
+            turning: false,
+            ranks: Some(vec![2 * MOST]),
+            tolerance: 1e-3,
+            interpolation: Interpolation::Spectral,
+            coefficients: Coefficients::Best,
+            every: 2,
+        };
+        assert_eq!(modes(&setup), PodParams::of_rank(2 * MOST));
+        setup.ranks = None;
+        assert_eq!((modes(&setup).rank, modes(&setup).most), (Rank::Tolerance(1e-3), Some(MOST)));
+    }
+
+    #[test]
+    fn some_are_spread_evenly() {
+        let all: Vec<usize> = (0..100).collect();
+        assert_eq!(some(&all, 25).len(), 25);
+        assert_eq!(some(&all[..7], 25), all[..7]);
+        assert_eq!(some(&[], 25), Vec::<usize>::new());
+    }
 }

@@ -8,28 +8,14 @@ use siltflow::ibm::{SmoothFilm, SmoothForcing};
 use siltflow::interfaces::UnresolvedFilm;
 
 fn main() -> Outcome<()> {
-    run_cases(&[
-        ("wall", || table(Before::Wall, deeper)),
-        ("spheres", || table(Before::Sphere, deeper)),
-        ("surface-wall", || table(Before::Wall, on_surface)),
-        ("surface-spheres", || table(Before::Sphere, on_surface)),
-        ("sinking", sink),
-    ])
-}
-
-fn deeper() -> SmoothForcing {
-    SmoothForcing::new(1.0)
-}
-
-fn on_surface() -> SmoothForcing {
-    deeper().with_surface_markers()
+    run_cases(&[("wall", || table(Before::Wall)), ("spheres", || table(Before::Sphere)), ("sinking", sink)])
 }
 
 /// Gaps in cells.
 const GAPS: [f64; 10] = [3.0, 2.0, 1.2, 0.9, 0.6, 0.4, 0.3, 0.2, 0.1, 0.05];
 
-/// A sphere of diameter 1 at gaps that stay; the model is that of deeper markers.
-fn table(before: Before, forcing: fn() -> SmoothForcing) -> Outcome<()> {
+/// A sphere of diameter 1 at gaps that stay.
+fn table(before: Before) -> Outcome<()> {
     println!(
         "\nSphere before {before:?}: force over 6πμRU (with the model), torque over 8πμR³Ω by the grid alone"
     );
@@ -52,7 +38,7 @@ fn table(before: Before, forcing: fn() -> SmoothForcing) -> Outcome<()> {
         for cells in GAPS {
             let watch = Stopwatch::start();
             let gap = cells / per_diameter as f64;
-            let found = resistance(before, per_diameter, gap, 0.25, Box::new(forcing()))?;
+            let found = resistance(before, per_diameter, gap, 0.25, Box::new(SmoothForcing::new(1.0)))?;
             // 6πμR*²U/δ over 6πμRV, V the speed of one of them: R*/R is 1 or a half, U/V 1 or 2.
             let (exact, part, wall) = match before {
                 Before::Wall => (brenner(2.0 * gap), 0.5, true),

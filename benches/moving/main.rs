@@ -37,8 +37,6 @@ const WAYS: [Way; 4] = [
     ("hfdib", || Box::new(Hfdib::new(1.0))),
 ];
 
-const ON_SURFACE: Way = ("surface, Yang", || Box::new(SmoothForcing::new(1.0).with_surface_markers()));
-
 fn measured() -> Outcome<Vec<[f64; 2]>> {
     let row = |line: &str| -> Outcome<[f64; 2]> {
         let (time, force) =
@@ -140,7 +138,7 @@ fn turning_sphere() -> Outcome<()> {
         "\nSphere that turns in creeping flow: torque over 8πμR³Ω, with explicit and with implicit diffusion"
     );
     println!("{:>16} {:>6} {:>9} {:>9} {:>8}", "forcing", "per D", "explicit", "implicit", "CPU s");
-    for (name, forcing) in WAYS.into_iter().chain([ON_SURFACE]) {
+    for (name, forcing) in WAYS {
         for per_diameter in [8, 12] {
             let watch = Stopwatch::start();
             let torque = |diffusion| turning(per_diameter, forcing(), diffusion);
@@ -160,7 +158,7 @@ fn sphere_in_cube() -> Outcome<()> {
         "\nFixed sphere in a periodic cube of 4 D, creeping flow: drag over 6πμRU, {exact:.4} by Hasimoto"
     );
     println!("{:>16} {:>6} {:>9} {:>8} {:>8}", "forcing", "per D", "drag", "off", "CPU s");
-    for (name, forcing) in WAYS.into_iter().chain([ON_SURFACE]) {
+    for (name, forcing) in WAYS {
         for per_diameter in [6, 8, 12] {
             let watch = Stopwatch::start();
             let drag = periodic_cube::drag(per_diameter, forcing())?;

@@ -9,7 +9,7 @@
 //! Sample runs:
 //! ```text
 //! cargo run --release --example settling_sphere                                   # E4, 12 cells per diameter
-//! cargo run --release --example settling_sphere -- --case e1 --surface-markers
+//! cargo run --release --example settling_sphere -- --case e1
 //! cargo run --release --example settling_sphere -- --cells-per-diameter 24 --end 1.1 --no-vtk
 //! ```
 mod report;
@@ -37,9 +37,6 @@ struct Cli {
     /// No model of what the grid does not resolve of the film between sphere and floor.
     #[arg(long)]
     no_lubrication: bool,
-    /// Markers on the surface itself, the kernel's blur made up for by the shear (`SmoothForcing::with_surface_markers`).
-    #[arg(long)]
-    surface_markers: bool,
     #[command(flatten)]
     run: RunOptions,
 }
@@ -56,13 +53,10 @@ fn main() -> ExitCode {
 fn settle<L: ContactLaw>(cli: &Cli, scene: &SettlingSphere, law: L, stop: &AtomicBool) -> Outcome<Ending> {
     let fluid = cli.case.fluid();
     let mut forcing = SmoothForcing::new(fluid.density);
-    if cli.surface_markers {
-        forcing = forcing.with_surface_markers();
-    }
     if let Some(kernel) = cli.run.kernel {
         forcing = forcing.with_kernel(kernel);
     }
-    let setup = format!("{scene:?} {law:?} {}", cli.surface_markers);
+    let setup = format!("{scene:?} {law:?}");
     let mut fall = scene.build(forcing, law)?;
     let out = cli.run.out.clone().unwrap_or_else(|| "out/settling_sphere".into());
     let plan =

@@ -39,9 +39,6 @@ pub(crate) struct Options {
     /// Viscous terms: explicit, implicit, or implicit where the step asks for it.
     #[arg(long, value_enum, default_value = "auto")]
     diffusion: Viscous,
-    /// Put the markers on the surface itself.
-    #[arg(long)]
-    surface_markers: bool,
     /// Galileo number.
     #[arg(long, default_value_t = 50.0)]
     galileo: f64,

@@ -65,7 +65,6 @@ pub(crate) struct Case {
     pub(crate) courant: f64,
     pub(crate) cells: usize,
     viscous: Viscous,
-    surface_markers: bool,
     galileo: f64,
     end: f64,
 }
@@ -82,35 +81,22 @@ pub(crate) struct Run {
     pub(crate) cpu: f64,
 }
 
-const HEADER: &str = "shape,density_ratio,courant,cells_per_diameter,diffusion,surface_markers,galileo,end,speed_at_10,speed_at_30,steps,largest_courant,cpu_s";
+const HEADER: &str = "shape,density_ratio,courant,cells_per_diameter,diffusion,galileo,end,speed_at_10,speed_at_30,steps,largest_courant,cpu_s";
 
 impl Run {
     fn line(&self) -> String {
         let Self { case, speeds: [first, last], steps, reached, cpu } = self;
-        let Case { kind, ratio, courant, cells, viscous, surface_markers, galileo, end } = case;
+        let Case { kind, ratio, courant, cells, viscous, galileo, end } = case;
         let (kind, viscous) = (kind.name(), viscous.name());
         format!(
-            "{kind},{ratio},{courant},{cells},{viscous},{surface_markers},{galileo},{end},{first:.6},{last:.6},{steps},{reached:.4},{cpu:.2}"
+            "{kind},{ratio},{courant},{cells},{viscous},{galileo},{end},{first:.6},{last:.6},{steps},{reached:.4},{cpu:.2}"
         )
     }
 
     fn parse(line: &str) -> Option<Self> {
         let parts: Vec<&str> = line.split(',').collect();
-        let [
-            kind,
-            ratio,
-            courant,
-            cells,
-            viscous,
-            surface_markers,
-            galileo,
-            end,
-            first,
-            last,
-            steps,
-            reached,
-            cpu,
-        ] = parts[..]
+        let [kind, ratio, courant, cells, viscous, galileo, end, first, last, steps, reached, cpu] =
+            parts[..]
         else {
             return None;
         };
@@ -121,7 +107,6 @@ impl Run {
             courant: number(courant)?,
             cells: cells.parse().ok()?,
             viscous: Viscous::from_str(viscous, false).ok()?,
-            surface_markers: surface_markers.parse().ok()?,
             galileo: number(galileo)?,
             end: number(end)?,
         };
@@ -193,8 +178,8 @@ fn read(path: &Path) -> Outcome<Vec<Run>> {
 
 impl Case {
     pub(crate) fn new(options: &Options, kind: Kind, ratio: f64, courant: f64, cells: usize) -> Self {
-        let Options { diffusion, surface_markers, galileo, end, .. } = *options;
-        Self { kind, ratio, courant, cells, viscous: diffusion, surface_markers, galileo, end }
+        let Options { diffusion, galileo, end, .. } = *options;
+        Self { kind, ratio, courant, cells, viscous: diffusion, galileo, end }
     }
 }
 
@@ -217,12 +202,9 @@ fn own_rock(out: &Path) -> Outcome<TriangleMesh> {
 }
 
 fn one(case: Case, shape: Arc<dyn Shape>) -> Outcome<Run> {
-    let Case { kind, ratio, courant, cells, viscous, surface_markers, galileo, end } = case;
+    let Case { kind, ratio, courant, cells, viscous, galileo, end } = case;
     let mut scene = FreeBody { shape, per_diameter: cells, galileo, ..FreeBody::new(ratio)? };
     scene.diffusion = viscous.diffusion();
-    if surface_markers {
-        scene.forcing = scene.forcing.with_surface_markers();
-    }
     let mut simulation = scene.build(OneSolve::default())?;
     let (mut speeds, watch) = (Speeds::default(), Stopwatch::start());
     let schedule = Schedule { end, intervals: 60, courant, ..Schedule::default() };

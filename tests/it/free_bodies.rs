@@ -38,11 +38,11 @@ fn a_sphere_settles_as_measured() {
     });
 }
 
-/// Uhlmann (2005), 16 cells per diameter, until wakes have begun to pull the trailing disc on.
+/// Uhlmann (2005), 20 cells per diameter, until wakes have begun to pull the trailing disc on.
 #[test]
 fn two_discs_draft() {
     with_threads(1, || {
-        let mut fall = SinkingDiscs::drafting(16).build(SmoothForcing::new(FLUID_DENSITY)).unwrap();
+        let mut fall = SinkingDiscs::drafting(20).build(SmoothForcing::new(FLUID_DENSITY)).unwrap();
         let motion = motion(&mut fall, 0.15, 0.2);
         let published = [
             include_str!("../data/uhlmann_2005_trailing_streamwise_position.csv"),

@@ -68,17 +68,10 @@ pub trait FlowSolver<const D: usize>: Checkpoint {
     fn courant(&self, dt: f64) -> f64;
     /// The longest step \[s\] with Courant number ≤ `courant` that is stable.
     fn stable_dt(&self, courant: f64) -> f64;
-    /// The part θ of the viscous terms along each axis that the predictor of the step under way took at its own end, so that they have not seen what was added to the velocity since: ½ by
-    /// Crank–Nicolson's scheme.
-    fn implicit_diffusion(&self) -> Vector {
-        Vector::zeros()
-    }
-    /// What viscosity does in the step under way, of `dt` \[s\].
-    fn viscous_step(&self, dt: f64) -> ViscousStep {
-        ViscousStep {
-            diffused: self.fluid().viscosity * dt / self.weights()[0],
-            implicit: self.implicit_diffusion(),
-        }
+    /// What viscosity does in the step under way, of `dt` \[s\]; `None` where forces on walls do not follow from the fluid's own viscosity alone: beside models for turbulence, or where diffusion sees the
+    /// forcing.
+    fn viscous_step(&self, _dt: f64) -> Option<ViscousStep> {
+        None
     }
     /// The longest step that viscous terms allow \[s\]; infinite if any is stable.
     fn viscous_limit(&self) -> f64 {
@@ -154,9 +147,10 @@ impl<const D: usize> FlowSolver<D> for Projection<D> {
     fn viscous_limit(&self) -> f64 {
         Projection::viscous_limit(self)
     }
-    fn implicit_diffusion(&self) -> Vector {
-        let implicit = self.implicit_axes();
-        Vector::from_fn(|a, _| if a < D && implicit[a] { 0.5 } else { 0.0 })
+    fn viscous_step(&self, dt: f64) -> Option<ViscousStep> {
+        let (implicit, diffused) = (self.implicit_axes(), Projection::fluid(self).viscosity * dt);
+        let implicit = Vector::from_fn(|a, _| if a < D && implicit[a] { 0.5 } else { 0.0 });
+        Some(ViscousStep { diffused, implicit })
     }
 }
 
@@ -186,7 +180,7 @@ where
     fn viscous_limit(&self) -> f64 {
         self.flow.viscous_limit()
     }
-    fn implicit_diffusion(&self) -> Vector {
-        self.flow.implicit_diffusion()
+    fn viscous_step(&self, dt: f64) -> Option<ViscousStep> {
+        if self.hooks.closure.is_absent() { self.flow.viscous_step(dt) } else { None }
     }
 }

@@ -61,7 +61,7 @@ pub struct State {
     pub foreseen: Vector6<f64>,
     /// What the equation of motion left in the last two rounds of the step under way, and how far the velocity was changed for it.
     pub residuals: [Vector6<f64>; 2],
-    pub relaxation: f64,
+    pub relaxation: [f64; 2],
 }
 
 impl State {

@@ -36,6 +36,10 @@ pub trait ClosureSlot<const D: usize> {
     fn correct(&mut self, flow: &Projection<D>, dt: f64) -> Result<(), FlowError>;
     /// How fast it diffuses momentum at most: the largest Σ ν_t/h² of any cell or wall, over the axes \[1/s\].
     fn fastest(&self) -> f64;
+    /// Is there no model at all, so that friction is that of the fluid's own viscosity?
+    fn is_absent(&self) -> bool {
+        false
+    }
 }
 
 impl<const D: usize> ClosureSlot<D> for () {
@@ -51,6 +55,10 @@ impl<const D: usize> ClosureSlot<D> for () {
     fn fastest(&self) -> f64 {
         0.0
     }
+    #[inline(always)]
+    fn is_absent(&self) -> bool {
+        true
+    }
 }
 
 /// A model, or none.
@@ -63,6 +71,9 @@ impl<const D: usize, C: ClosureSlot<D>> ClosureSlot<D> for Option<C> {
     }
     fn fastest(&self) -> f64 {
         self.as_ref().map_or(0.0, C::fastest)
+    }
+    fn is_absent(&self) -> bool {
+        self.as_ref().is_none_or(C::is_absent)
     }
 }
 

@@ -1,13 +1,15 @@
 //! Which bodies are near others.
-use interfaces::{Aabb, Vector};
+use interfaces::{Aabb, BodyId, Vector};
 
-/// Finds boxes that meet no other; holds the memory that this takes.
+/// Finds boxes that meet and those that meet no other; holds the memory that this takes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Crowd {
     /// To be filled in.
     pub(crate) boxes: Vec<Aabb>,
     /// Whether each box meets no other.
     pub(crate) alone: Vec<bool>,
+    /// Boxes that meet, both ways round, sorted.
+    pairs: Vec<[usize; 2]>,
     /// Lower and upper end of each box along one axis, sorted.
     spans: Vec<(f64, f64, usize)>,
 }
@@ -16,11 +18,14 @@ impl Crowd {
     /// Finds the boxes that are `alone` in a space with these periods (zero where it does not repeat). A box longer than half a
     /// period is taken to meet all.
     pub(crate) fn find_alone(&mut self, periods: Vector) {
-        let Self { boxes, alone, spans } = self;
+        let Self { boxes, alone, pairs, spans } = self;
         let long = |b: &Aabb| (0..3).any(|a| periods[a] > 0.0 && b.extent()[a] > 0.5 * periods[a]);
         alone.clear();
         alone.resize(boxes.len(), boxes.len() < 2 || !boxes.iter().any(long));
+        pairs.clear();
         if !alone.contains(&true) {
+            let others = |k: usize| (0..boxes.len()).filter(move |&other| other != k);
+            pairs.extend((0..boxes.len()).flat_map(|k| others(k).map(move |other| [k, other])));
             return;
         }
         // Sweeps along the axis on which they spread farthest.
@@ -57,9 +62,18 @@ impl Crowd {
             for &(_, _, other) in spans[at + 1..].iter().take_while(|span| span.0 <= high) {
                 if other != k && !(0..3).any(|a| apart(&boxes[k], &boxes[other], a)) {
                     (alone[k], alone[other]) = (false, false);
+                    pairs.extend([[k, other], [other, k]]);
                 }
             }
         }
+        pairs.sort_unstable();
+        pairs.dedup();
+    }
+
+    /// The boxes that box `k` meets, or may meet if any is long.
+    pub(crate) fn others(&self, k: usize) -> impl Iterator<Item = BodyId> {
+        let first = self.pairs.partition_point(|pair| pair[0] < k);
+        self.pairs[first..].iter().take_while(move |pair| pair[0] == k).map(|pair| BodyId(pair[1]))
     }
 }
 
@@ -80,7 +94,7 @@ mod tests {
             let boxes: Vec<_> = places.iter().map(|&(x, y, size)| Aabb::around(Point::new(x, y, 0.0), half(size))).collect();
             let mut crowd = Crowd { boxes, ..Crowd::default() };
             crowd.find_alone(periods);
-            let Crowd { boxes, alone, .. } = crowd;
+            let Crowd { boxes, alone, .. } = &crowd;
             for (k, a) in boxes.iter().enumerate() {
                 let meets = |b: &Aabb| (0..2).all(|axis| {
                     let mut apart = 0.5 * (a.min + a.max.coords - b.min.coords - b.max.coords)[axis];
@@ -89,8 +103,10 @@ mod tests {
                     }
                     apart.abs() <= 0.5 * (a.extent() + b.extent())[axis]
                 });
-                let met = boxes.iter().enumerate().any(|(other, b)| other != k && meets(b));
-                prop_assert_eq!(alone[k], !met, "{}", k);
+                let met = |&other: &usize| other != k && meets(&boxes[other]);
+                let met: Vec<_> = (0..boxes.len()).filter(met).map(BodyId).collect();
+                prop_assert_eq!(alone[k], met.is_empty(), "{}", k);
+                prop_assert_eq!(crowd.others(k).collect::<Vec<_>>(), met, "{}", k);
             }
         }
     }
@@ -102,6 +118,7 @@ mod tests {
         let mut crowd = Crowd { boxes: boxes.into(), ..Crowd::default() };
         crowd.find_alone(Vector::new(10.5, 0.0, 0.0));
         assert_eq!(crowd.alone, [false, false]);
+        assert_eq!(crowd.others(1).collect::<Vec<_>>(), [BodyId(0)]);
         crowd.find_alone(Vector::zeros());
         assert_eq!(crowd.alone, [true, true]);
     }

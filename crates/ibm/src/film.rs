@@ -44,7 +44,7 @@ const BODIES: [(f64, [f64; 10]); 2] = [
 /// How far beyond the largest measured radius the tables are trusted: they change with the logarithm of the radius.
 const BEYOND: f64 = 2.0;
 /// Gaps, in cells, between which the model fades out.
-const FADES: [f64; 2] = [2.0, 3.0];
+pub(crate) const FADES: [f64; 2] = [2.0, 3.0];
 /// Below this gap, in cells, this share of ln(1/δ) is not resolved.
 const SHEARED: (f64, f64) = (0.21, 0.88);
 

@@ -32,12 +32,12 @@ impl Layer {
         let mut angular = self.momentum.fixed_rows_mut::<3>(3);
         angular += sums.momentum_arm.cross(&unit);
     }
-    /// Adds a point at the arm r where a fluid mass w moves along the unit vector n only: `along` is √w n, `momentum` √w n·û.
-    pub(crate) fn add_along(&mut self, along: Vector, arm: Vector, momentum: f64) {
+    /// Adds `share` of a point at the arm r where a fluid mass w moves along the unit vector n only: `along` is √w n, `momentum` √w n·û.
+    pub(crate) fn add_along(&mut self, share: f64, along: Vector, arm: Vector, momentum: f64) {
         let turn = arm.cross(&along);
         let j = Vector6::new(along.x, along.y, along.z, turn.x, turn.y, turn.z);
-        self.mass += j * j.transpose();
-        self.momentum += momentum * j;
+        self.mass += share * j * j.transpose();
+        self.momentum += share * momentum * j;
     }
 }
 
@@ -70,7 +70,7 @@ impl LayerSums {
 /// What viscosity does in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViscousStep {
-    /// ν dt \[m²\], over the weight of the velocity at the end of the step where the scheme in time has one (3/2 of BDF2).
+    /// ν dt \[m²\].
     pub diffused: f64,
     /// The part θ of the viscous terms along each axis that was taken at the end of the step, before the forcing: 0 of explicit ones, ½ by Crank–Nicolson's scheme.
     pub implicit: Vector,
@@ -80,8 +80,8 @@ pub struct ViscousStep {
 /// [`place`](Self::place), then [`force`](Self::force) before each of
 /// [`rounds`](Self::rounds) pressure solutions. Impulses are per step, about each body's centre.
 pub trait Forcing: Send {
-    /// A step begins. Where nobody says so, the viscosity is not known: what follows from it is left out.
-    fn begin(&mut self, _step: ViscousStep) {}
+    /// A step begins. Where the viscosity is not known, what follows from it is left out.
+    fn begin(&mut self, _step: Option<ViscousStep>) {}
 
     /// Takes note of where the bodies are; only those that moved cost anything. What tells of them below is asked for with
     /// the bodies where they are then.

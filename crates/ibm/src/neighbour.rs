@@ -19,10 +19,14 @@ impl Neighbour {
 
     /// Is `x` inside it, or outside by no more than `within` \[m\]?
     pub(crate) fn holds<B: Bodies + ?Sized>(&self, bodies: &B, x: Point, within: f64) -> bool {
+        self.may_hold(x, within) && self.distance(bodies, x, 2.0 * within + f64::MIN_POSITIVE) <= within
+    }
+
+    /// Is `x` inside the box around it, or outside by no more than `within` \[m\]?
+    pub(crate) fn may_hold(&self, x: Point, within: f64) -> bool {
         let Aabb { min, max } = self.bounds.grown(within);
         // A plane body's box is flat.
-        let beside = (0..2).any(|a| x[a] < min[a] || x[a] > max[a]);
-        !beside && self.distance(bodies, x, 2.0 * within + f64::MIN_POSITIVE) <= within
+        (0..2).all(|a| (min[a]..=max[a]).contains(&x[a]))
     }
 
     /// Lists those of `among` whose boxes may be within `cells` cells of body `b`, itself as it repeats among them.

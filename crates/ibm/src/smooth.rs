@@ -1,4 +1,5 @@
 //! Direct forcing at surface markers, spread by a smooth kernel.
+mod clearance;
 mod curvature;
 mod markers;
 mod slip;
@@ -7,29 +8,32 @@ mod stencils;
 use crate::crowd::Crowd;
 use crate::forcing::LayerSums;
 use crate::solid_fraction::check;
-use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction, ViscousStep, surface_elements};
-use curvature::follow_curvature;
+use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction, ViscousStep};
+use clearance::Clearance;
 use interfaces::{Bodies, BodyId, Kinematics, Point, Renumbering, Vector, VelocityField, Wrench};
 use markers::Markers;
 
-/// Smooth direct forcing (Uhlmann 2005; several passes as in Wang et al. 2008; a smooth [`Kernel`] as Yang et al. 2009), with
-/// markers moved into the solid by the kernel's own [`Kernel::retraction`] r_d and, where the surface is curved, by 1.75 r_d² times the sum of
-/// its principal curvatures more, which puts the no-slip surface where the body's is.
+/// Smooth direct forcing (Uhlmann 2005; several passes as in Wang et al. 2008; a smooth [`Kernel`] as Yang et al. 2009) with markers on the surface that make up for what
+/// the kernel blurs there:
 ///
 /// ```text
-/// Δg_m = (U + Ω×r_m + u_s − E u)_m,   u += Σ_m δ_h(x − x_m) (Δg_m/c) A_m h
+/// (1 + β P_t) Δg_m = (U + Ω×r_m + u_s + s − E u)_m,   s = −β P_t g_m,   β = r h/(c ν dt),   P_t = 1 − nnᵀ
+/// u += Σ_m δ_h(x − x_m) (Δg_m/c) A_m h
 /// ```
 ///
-/// u_s is the surface's own motion, if it has one; E reads the velocity at the markers with the same kernel that spreads.
-/// Momentum is conserved: what the fluid gets, the body loses.
+/// u_s is the surface's own motion, if it has one; E reads the velocity at the markers with the same kernel that spreads; g is the sum of the Δg of the passes of a step, and c the kernel's
+/// [`self_overlap`](Kernel::self_overlap). Where there is shear γ = τ/μ, τ being the force per area that markers put on the fluid, the kernel blurs the kink of the velocity, and they read
+/// r γ less than there is without slip (r about the kernel's [`retraction`](Kernel::retraction)): they ask for that. It is right to second order in the size of the cells for drag, torque and strain alike.
+/// ν dt is told by [`begin`](Forcing::begin) (`coupling::Particles` do).
 ///
-/// [`with_surface_markers`](Self::with_surface_markers) puts the markers on the surface itself and makes up for the kernel's blur by the shear there, which is right to second order in the size of the cells
-/// for drag, torque and strain alike.
+/// Where it is not known, and near other surfaces, markers stand inside the body instead: at the depth r_d of the kernel's retraction and 1.75 r_d² times the sum of the principal curvatures more, where they read no slip.
+/// From three cells to two away from another body or a side of the box they go from the one to the other. ([`SmoothFilm`](crate::SmoothFilm) tells what is missing of films then; markers on the
+/// surface reach farther across them, which makes them up to twice as stiff as they are.)
+///
+/// Momentum is conserved: what the fluid gets, the body loses.
 #[derive(Clone, Debug)]
 pub struct SmoothForcing {
     density: f64,
-    /// Are the markers on the surface itself?
-    on_surface: bool,
     /// The step under way, once one is known.
     step: Option<ViscousStep>,
     /// Other than that suited.
@@ -40,6 +44,7 @@ pub struct SmoothForcing {
     crowd: Crowd,
     /// Bodies moved since the crowd was looked at.
     moved: bool,
+    clearance: Clearance,
     /// Places of the markers of a body.
     places: Vec<Point>,
     /// A velocity per marker of a body.
@@ -56,7 +61,6 @@ impl SmoothForcing {
     pub fn new(density: f64) -> Self {
         Self {
             density,
-            on_surface: false,
             step: None,
             kernel: None,
             passes: 3,
@@ -64,6 +68,7 @@ impl SmoothForcing {
             bodies: Vec::new(),
             crowd: Crowd::default(),
             moved: false,
+            clearance: Clearance::default(),
             places: Vec::new(),
             values: Default::default(),
             outside: Default::default(),
@@ -80,20 +85,6 @@ impl SmoothForcing {
     #[must_use]
     pub fn with_passes(mut self, passes: usize) -> Self {
         self.passes = passes.max(1);
-        self
-    }
-    /// Markers on the surface itself. Where there is shear γ = τ/μ, the kernel blurs the kink of the velocity, and they read r γ less than there is without slip (r = 0.31 to 0.34 cells for
-    /// [`Kernel::Yang`]), τ being the force per area that they put on the fluid. They ask for that:
-    ///
-    /// ```text
-    /// (1 + β P_t) Δg_m = (U + Ω×r_m + u_s + s − E u)_m,   s = −β P_t g_m,   β = r h/(c ν dt),   P_t = 1 − nnᵀ
-    /// ```
-    ///
-    /// g is the sum of the Δg of the passes of a step. ν dt is told by [`begin`](Forcing::begin) (`coupling::Particles` do); before, it is as if there were no shear. Films thinner than a cell are up to twice as stiff with them as they are, more than
-    /// [`SmoothFilm`](crate::SmoothFilm) takes away.
-    #[must_use]
-    pub fn with_surface_markers(mut self) -> Self {
-        self.on_surface = true;
         self
     }
     /// How often λ of a body was computed, over all velocity components.
@@ -116,40 +107,40 @@ impl SmoothForcing {
         let cell = uniform_cell(velocity, kernel, bodies, b)?;
         let h = cell.powf(1.0 / dim as f64);
         let markers = &mut self.bodies[b.0];
+        let pose = bodies.pose(b);
+        let mut turned = markers.pose.is_none_or(|old| old.orientation != pose.orientation);
         // Made once, unless the body has come to where the cells are of another size.
-        let made = markers.elements.is_empty() || (cell / markers.cell - 1.0).abs() > 3.0 * UNEQUAL;
-        if made {
-            markers.cell = cell;
+        if markers.elements.is_empty() || (cell / markers.cell - 1.0).abs() > 3.0 * UNEQUAL {
             let extent = bodies.solid(b).aabb().extent();
             let size = extent.x.min(extent.y).min(if dim == 3 { extent.z } else { f64::INFINITY });
             if size < LEAST_CELLS * h {
                 return Err(IbmError::TooCoarse { body: b, size, spacing: h, least: LEAST_CELLS });
             }
+            markers.cell = cell;
             let spacing = if dim == 2 { 1.0 } else { SPACING };
-            let (retraction, solid) = (kernel.retraction() * h, bodies.solid(b));
-            let offset = if self.on_surface { 0.0 } else { -retraction };
-            markers.elements = surface_elements(solid, spacing * h, offset);
+            markers.make(bodies.solid(b), dim, [h, spacing * h, kernel.retraction() * h]);
             if markers.elements.is_empty() {
-                return Err(IbmError::NoSurface { body: b, offset });
+                return Err(IbmError::NoSurface { body: b, offset: -kernel.retraction() * h });
             }
-            if !self.on_surface {
-                markers.elements.iter_mut().for_each(|e| follow_curvature(e, solid, dim, h, retraction));
-            }
-            let scale = self.density * h / kernel.self_overlap();
-            markers.masses = markers.elements.iter().map(|e| e.area * scale).collect();
+            turned = true;
         }
-        let pose = bodies.pose(b);
-        if made || markers.pose.is_none_or(|old| old.orientation != pose.orientation) {
-            markers.arms.clear();
-            markers.arms.extend(markers.elements.iter().map(|e| pose.orientation * e.point.coords));
-            if self.on_surface {
-                let normals = markers.elements.iter().map(|e| pose.orientation * e.normal);
-                markers.slip.get_or_insert_default().turn(normals);
-            }
+        if turned {
+            markers.turn(&pose);
         }
-        self.places.clear();
-        self.places.extend(markers.arms.iter().map(|arm| pose.position + arm));
-        markers.stencils.set(kernel, velocity, &self.places);
+        let Self { places, clearance, crowd, .. } = self;
+        // Where the viscosity is not known, nothing can be made up for.
+        let share = if self.step.is_some() {
+            let surface = markers.surface.iter().map(|arm| pose.position + arm);
+            clearance.share(velocity, bodies, b, crowd.others(b.0), (surface, h))
+        } else {
+            0.0
+        };
+        if turned || markers.share != share {
+            markers.stand(share, self.density * h / kernel.self_overlap(), dim);
+        }
+        places.clear();
+        places.extend(markers.arms.iter().map(|arm| pose.position + arm));
+        markers.stencils.set(kernel, velocity, places);
         Ok(())
     }
 
@@ -168,7 +159,6 @@ impl SmoothForcing {
             bounds
         }));
         self.crowd.find_alone(Vector::from_fn(|a, _| axes[a].period().unwrap_or(0.0)));
-        self.bodies.iter_mut().zip(&self.crowd.alone).for_each(|(markers, alone)| markers.alone = *alone);
     }
 
     /// 1 − χ of the markers of body `b`, χ = E λ: the shares of their fluid outside the body.
@@ -232,25 +222,29 @@ impl Forcing for SmoothForcing {
                 self.bodies.fill_with(Markers::default);
             }
         }
+        let unmoved = |b: usize, markers: &Markers| markers.pose == Some(bodies.pose(BodyId(b)));
+        self.moved |= !self.bodies.iter().enumerate().all(|(b, markers)| unmoved(b, markers));
+        if self.moved {
+            self.find_alone(velocity, bodies);
+        }
+        let dim = velocity.dim();
         for b in 0..bodies.n_bodies() {
-            let pose = bodies.pose(BodyId(b));
-            if self.bodies[b].pose != Some(pose) {
-                self.moved = true;
-                for c in 0..velocity.dim() {
+            let (markers, alone) = (&self.bodies[b], self.crowd.alone[b]);
+            // Those near others stand where these let them.
+            let near = self.moved && !(alone && markers.alone);
+            if near || !unmoved(b, markers) || markers.known != self.step.is_some() {
+                for c in 0..dim {
                     check(velocity.lattice(c), bodies, BodyId(b))?;
                 }
                 self.place_body(velocity, bodies, BodyId(b))?;
-                self.bodies[b].pose = Some(pose);
             }
-            self.bodies[b].reaction = Wrench::default();
-            let (kernel, step, markers) = (self.kernel(velocity.dim()), self.step, &mut self.bodies[b]);
-            if let Some(slip) = &mut markers.slip {
-                slip.begin(step, kernel, markers.cell.powf(1.0 / velocity.dim() as f64));
-            }
+            let (kernel, step, markers) = (self.kernel(dim), self.step, &mut self.bodies[b]);
+            markers.pose = Some(bodies.pose(BodyId(b)));
+            (markers.alone, markers.known) = (alone, step.is_some());
+            markers.reaction = Wrench::default();
+            markers.slip.begin(step, kernel, markers.cell.powf(1.0 / dim as f64), markers.share);
         }
-        if std::mem::take(&mut self.moved) {
-            self.find_alone(velocity, bodies);
-        }
+        self.moved = false;
         Ok(())
     }
 
@@ -268,8 +262,8 @@ impl Forcing for SmoothForcing {
         1
     }
 
-    fn begin(&mut self, step: ViscousStep) {
-        self.step = Some(step);
+    fn begin(&mut self, step: Option<ViscousStep>) {
+        self.step = step;
     }
 
     fn layer(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies, b: BodyId) -> Layer {
@@ -287,17 +281,17 @@ impl Forcing for SmoothForcing {
             self.bodies[b.0].read(c, lattice, velocity.component(c), (bodies, b), &mut found[c]);
         }
         let Markers { slip, arms, .. } = &self.bodies[b.0];
-        if let Some(slip) = slip {
+        if slip.any() {
             // √w (1 − y P_t) √w of each marker, y = β/(1 + β): its part along the normal, and what is the same all round.
             for (m, arm) in arms.iter().enumerate() {
                 let (yields, n) = slip.yields(m);
                 let (mut along, mut momentum) = (Vector::zeros(), 0.0);
                 for c in 0..dim {
-                    along[c] = (yields * outside[c][m]).sqrt() * n[c];
+                    along[c] = outside[c][m].sqrt() * n[c];
                     momentum += along[c] * found[c][m];
                     outside[c][m] *= 1.0 - yields;
                 }
-                layer.add_along(along, *arm, momentum);
+                layer.add_along(yields, along, *arm, momentum);
             }
         }
         for c in 0..dim {
@@ -319,9 +313,9 @@ impl Forcing for SmoothForcing {
     }
 
     fn force(&mut self, velocity: &mut dyn VelocityField, bodies: &dyn Kinematics) {
-        let Self { density, passes, bodies: all, values, on_surface, .. } = self;
+        let Self { density, passes, bodies: all, values, .. } = self;
         let dim = velocity.dim();
-        if *on_surface {
+        if all.iter().any(|markers| markers.slip.any()) {
             let lattices = [0, 1, 2].map(|c| velocity.lattice(c.min(dim - 1)).clone());
             return in_turn(all, *passes, |b, markers| {
                 markers.pass_with_slip((velocity, &lattices), (bodies, b), *density, values);
@@ -335,7 +329,7 @@ impl Forcing for SmoothForcing {
     }
 
     fn hidden_dissipation(&self) -> f64 {
-        self.bodies.iter().filter_map(|m| Some(m.slip.as_ref()?.hidden(&m.masses))).sum()
+        self.bodies.iter().map(|m| m.slip.hidden(&m.masses)).sum()
     }
 
     fn reaction(&self, b: BodyId) -> Wrench {

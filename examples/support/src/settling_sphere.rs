@@ -180,7 +180,7 @@ impl SettlingSphere {
         let grid = CartesianGrid::from_axes([axis(0, 0.37)?, axis(1, 0.3)?, axis(2, 0.11)?])?;
         let mut flow =
             Projection::new(grid, Side::WALL.everywhere(), fluid)?.with_diffusion(Diffusion::Explicit);
-        let mut forcing = SmoothForcing::new(fluid.density).with_surface_markers();
+        let mut forcing = SmoothForcing::new(fluid.density);
         let at = BOX.map(|l| 0.5 * l);
         // Reynolds number 1e-6.
         let speed = 1e-6 * fluid.viscosity / DIAMETER;

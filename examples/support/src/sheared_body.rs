@@ -49,8 +49,6 @@ pub struct Shear {
     pub reynolds: f64,
     /// Other than that suited.
     pub kernel: Option<Kernel>,
-    /// Are the markers on the surface itself ([`SmoothForcing::with_surface_markers`])?
-    pub surface_markers: bool,
     /// How viscous terms are advanced.
     pub diffusion: Diffusion,
 }
@@ -65,7 +63,6 @@ impl Default for Shear {
             cells_per_diameter: 8,
             reynolds: 0.1,
             kernel: None,
-            surface_markers: false,
             diffusion: Diffusion::Explicit,
         }
     }
@@ -121,9 +118,6 @@ impl Shear {
         let mut forcing = SmoothForcing::new(fluid.density);
         if let Some(kernel) = self.kernel {
             forcing = forcing.with_kernel(kernel);
-        }
-        if self.surface_markers {
-            forcing = forcing.with_surface_markers();
         }
         let particles = Particles::new(bodies, forcing, fluid.density, Vector::zeros());
         let fall = Simulation::new(flow, particles, WeightBalance::None)?;

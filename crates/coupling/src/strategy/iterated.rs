@@ -15,7 +15,7 @@ use nalgebra::Vector6;
 /// ```
 ///
 /// goes back to u* and forces the fluid anew, until |r| is small or `most` rounds are made. ω follows from the last two r of a body
-/// (Aitken's relaxation), begins with 1 and stays between 0.05 and 2. Every round costs a pressure solution. What is left of r is handed on like δ.
+/// (Aitken's relaxation, one for its translation and one for its rotation), begins with 1 and stays between 0.05 and 5. Every round costs a pressure solution. What is left of r is handed on like δ.
 #[derive(Clone, Debug)]
 pub struct Iterated {
     /// |r| over the sum of what acts on the body, at which it is enough.
@@ -47,7 +47,7 @@ impl Iterated {
 impl Strategy for Iterated {}
 
 /// Bounds of ω.
-const RELAXATION: [f64; 2] = [0.05, 2.0];
+const RELAXATION: [f64; 2] = [0.05, 5.0];
 
 impl sealed::Strategy for Iterated {
     fn held(state: &State, weight: Vector6<f64>, dt: f64, known: bool) -> Load {
@@ -133,13 +133,19 @@ impl<F: Forcing, B: Dynamics> Particles<F, B, Iterated> {
         let s = &mut self.states[b.0];
         let [now, last] = &s.residuals;
         let change = now - last;
-        let curved = product(&change, &change, &resistance);
-        s.relaxation = if first || curved == 0.0 {
-            1.0
-        } else {
-            (-s.relaxation * product(last, &change, &resistance) / curved).clamp(RELAXATION[0], RELAXATION[1])
-        };
-        let step = -s.relaxation * now.component_div(&resistance);
+        // Translation and rotation drag different shares of the fluid along.
+        for (part, relaxation) in s.relaxation.iter_mut().enumerate() {
+            let of = |a: &Vector6<f64>, b: &Vector6<f64>| {
+                (3 * part..3 * part + 3).map(|i| a[i] * b[i] / resistance[i]).sum::<f64>()
+            };
+            let curved = of(&change, &change);
+            *relaxation = if first || curved == 0.0 {
+                1.0
+            } else {
+                (-*relaxation * of(last, &change) / curved).clamp(RELAXATION[0], RELAXATION[1])
+            };
+        }
+        let step = Vector6::from_fn(|i, _| -s.relaxation[i / 3] * now[i] / resistance[i]);
         let added = Vector6::from_fn(|i, _| s.added[i / 3]);
         s.load += (mass * step + added.component_mul(&step)) / dt;
         let velocity = self.velocity(b) + step;

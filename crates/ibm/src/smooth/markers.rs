@@ -1,7 +1,11 @@
 //! The markers of one body.
+use super::curvature::curvature;
 use super::slip::Slip;
 use super::stencils::Stencils;
-use interfaces::{BodyId, Kinematics, Lattice, Pose, SurfaceElement, Twist, Vector, VelocityField, Wrench};
+use crate::surface_elements;
+use interfaces::{
+    BodyId, Kinematics, Lattice, Pose, Solid, SurfaceElement, Twist, Vector, VelocityField, Wrench,
+};
 
 /// The markers of one body.
 #[derive(Clone, Debug, Default)]
@@ -9,21 +13,67 @@ pub(super) struct Markers {
     pub(super) pose: Option<Pose>,
     /// Volume of a cell around the body \[m³\].
     pub(super) cell: f64,
-    /// In the body's frame.
+    /// Where they stand when others are near, in the body's frame.
     pub(super) elements: Vec<SurfaceElement>,
+    /// How far that is inside the surface \[m\], and the curvature of this \[1/m\].
+    depths: Vec<[f64; 2]>,
+    /// Their places on the surface, from the centre of mass, in the world.
+    pub(super) surface: Vec<Vector>,
+    /// The part s of the depth by which they stand nearer to the surface.
+    pub(super) share: f64,
+    /// The viscosity was known when they were placed.
+    pub(super) known: bool,
     /// No other body's markers reach where these do.
     pub(super) alone: bool,
-    /// From the centre of mass, in the world.
+    /// Places from the centre of mass, in the world.
     pub(super) arms: Vec<Vector>,
     /// ρ ΔV_m / c: the fluid mass that a marker moves \[kg\].
     pub(super) masses: Vec<f64>,
     pub(super) stencils: Stencils,
     pub(super) reaction: Wrench,
-    /// What they read past the surface, if they lie on it.
-    pub(super) slip: Option<Slip>,
+    /// What they read past the surface.
+    pub(super) slip: Slip,
 }
 
 impl Markers {
+    /// Makes those of `solid`, `spacing` apart on cells of size `h`, for a kernel with this `retraction`.
+    pub(super) fn make(&mut self, solid: &dyn Solid, dim: usize, [h, spacing, retraction]: [f64; 3]) {
+        self.elements = surface_elements(solid, spacing, -retraction);
+        self.depths.clear();
+        self.depths.extend(self.elements.iter_mut().map(|element| {
+            let curvature = curvature(element.point + retraction * element.normal, solid, dim, h);
+            let most = LARGEST_SHARE * retraction;
+            let deeper = (SHARE * retraction * retraction * curvature).clamp(-most, most);
+            element.point -= deeper * element.normal;
+            element.area *= 1.0 - curvature * deeper;
+            [retraction + deeper, curvature]
+        }));
+    }
+
+    /// Follows the body's orientation.
+    pub(super) fn turn(&mut self, pose: &Pose) {
+        self.surface.clear();
+        let surface = |(e, [depth, _]): (&SurfaceElement, &[f64; 2])| e.point.coords + *depth * e.normal;
+        self.surface
+            .extend(self.elements.iter().zip(&self.depths).map(|parts| pose.orientation * surface(parts)));
+        self.slip.turn(self.elements.iter().map(|e| pose.orientation * e.normal));
+    }
+
+    /// Stands at (1 − s) of the depth, with the areas of the level surface there: A (1 − K(1−s)d/n)ⁿ/(1 − Kd/n)ⁿ, n = `dim` − 1.
+    pub(super) fn stand(&mut self, share: f64, mass_per_area: f64, dim: usize) {
+        self.share = share;
+        self.arms.clear();
+        self.masses.clear();
+        let directions = dim as i32 - 1;
+        for (m, [depth, curvature]) in self.depths.iter().enumerate() {
+            let inwards = (1.0 - share) * depth;
+            self.arms.push(self.surface[m] - inwards * self.slip.normal(m));
+            let narrower = |inwards: f64| 1.0 - (curvature * inwards / f64::from(directions)).min(NARROWEST);
+            let wider = (narrower(inwards) / narrower(*depth)).powi(directions);
+            self.masses.push(self.elements[m].area * wider * mass_per_area);
+        }
+    }
+
     /// What the markers of body `b` read of component `c`, without what their surface does besides moving with it.
     pub(super) fn read(
         &self,
@@ -45,7 +95,7 @@ impl Markers {
     #[inline]
     pub(super) fn missing(&self, m: usize, twist: &Twist, found: &[Vec<f64>], dim: usize) -> Vector {
         let mut missing = twist.at(self.arms[m]);
-        missing += self.slip.as_ref().map_or(Vector::zeros(), |slip| slip.of(m));
+        missing += self.slip.of(m);
         (0..dim).for_each(|c| missing[c] -= found[c][m]);
         (dim..3).for_each(|c| missing[c] = 0.0);
         missing
@@ -93,11 +143,9 @@ impl Markers {
         let (twist, per_mass) = (bodies.twist(b), 1.0 / (density * self.cell));
         for m in 0..self.arms.len() {
             let mut change = self.missing(m, &twist, values, dim);
-            if let Some(slip) = &mut self.slip {
-                change = slip.answer(m, change);
-                (0..dim).for_each(|c| change[c] *= self.stencils.relax[c][m]);
-                slip.given[m] += change;
-            }
+            change = self.slip.answer(m, change);
+            (0..dim).for_each(|c| change[c] *= self.stencils.relax[c][m]);
+            self.slip.given[m] += change;
             let impulse = self.masses[m] * change;
             self.reaction.force -= impulse;
             self.reaction.torque -= self.arms[m].cross(&impulse);
@@ -105,6 +153,43 @@ impl Markers {
         }
         for (c, values) in values.iter().enumerate().take(dim) {
             self.stencils.spread(c, &lattices[c], values, velocity.component_mut(c));
+        }
+    }
+}
+
+/// C in d = r_d + C r_d² K, the depth at which markers read no slip. Measured with spheres of 6 to 16 cells per diameter whose markers all stand at it: the torque of a turning one becomes right to 0.1 %,
+/// the drag of one in a periodic cube is off by half of what it was. (The retraction makes up for what the kernel blurs of straight profiles; those at a bulging surface are bent. The blurred profile
+/// around a turning sphere, Ω within, Ω(a/r)³ outside, asks for C = 2 to second order, drag for more.)
+const SHARE: f64 = 1.75;
+/// Largest part of the retraction that curvature adds to it: edges are rounder than the cells see.
+const LARGEST_SHARE: f64 = 0.5;
+/// Largest Kd/n: so much narrower level surfaces inside an edge may be.
+const NARROWEST: f64 = 0.5;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Ball;
+
+    /// On the surface or at their depth, with its area there.
+    #[test]
+    fn markers_of_a_ball_stand_deeper_by_its_curvature() {
+        let (radius, h, r) = (0.5, 0.05, 0.0156);
+        for dim in [2, 3] {
+            let (mut markers, directions) = (Markers::default(), dim as f64 - 1.0);
+            markers.make(&Ball { radius, dim }, dim, [h, h, r]);
+            markers.turn(&Pose::at([0.3, 0.2, 0.1]));
+            let depth = r + SHARE * r * r * directions / radius;
+            for share in [0.0, 0.3, 1.0] {
+                markers.stand(share, 2.0, dim);
+                let at = radius - (1.0 - share) * depth;
+                // Differences over h see the curvature to (h/R)².
+                let off = |arm: &Vector| (arm.norm() - at).abs();
+                assert!(markers.arms.iter().all(|arm| off(arm) < 0.01 * r * r / radius), "{dim} {share}");
+                let area = std::f64::consts::TAU * at * if dim == 3 { 2.0 * at } else { 1.0 };
+                let found = 0.5 * markers.masses.iter().sum::<f64>();
+                assert!((found / area - 1.0).abs() < 2e-3, "{dim} {share}: {found} {area}");
+            }
         }
     }
 }

@@ -43,8 +43,8 @@ impl Slip {
         self.normals.clear();
         self.normals.extend(normals);
     }
-    /// A step begins, on cells of size `h`; nothing has been given yet. Without a step that is known there is no slip.
-    pub(super) fn begin(&mut self, step: Option<ViscousStep>, kernel: Kernel, h: f64) {
+    /// A step begins, on cells of size `h`, with this `share` s of the blur to make up for; nothing has been given yet. Without a step that is known there is no slip.
+    pub(super) fn begin(&mut self, step: Option<ViscousStep>, kernel: Kernel, h: f64, share: f64) {
         self.given.clear();
         self.given.resize(self.normals.len(), Vector::zeros());
         self.ratios.clear();
@@ -56,9 +56,20 @@ impl Slip {
         let per_reach = h * h / (overlap * diffused);
         self.ratios.extend(self.normals.iter().map(|n| {
             let squares = n.component_mul(n);
-            let reach = retraction + overlap / 12.0 * (1.0 - squares.norm_squared());
-            (reach * per_reach - implicit.dot(&squares)).max(LEAST)
+            let reach = share * (retraction + overlap / 12.0 * (1.0 - squares.norm_squared()));
+            // None of nothing, even without viscosity.
+            let blurred = if reach > 0.0 { reach * per_reach } else { 0.0 };
+            (blurred - implicit.dot(&squares)).max(LEAST)
         }));
+    }
+    /// Does anything slip?
+    pub(super) fn any(&self) -> bool {
+        self.ratios.iter().any(|ratio| *ratio != 0.0)
+    }
+    /// The normal of marker `m`.
+    #[inline]
+    pub(super) fn normal(&self, m: usize) -> Vector {
+        self.normals[m]
     }
     /// How much less the tangential part of what a marker asks for has to change g: β/(1 + β); and its normal.
     #[inline]
@@ -93,7 +104,7 @@ mod tests {
     fn one(n: Vector, diffused: f64, implicit: Vector) -> Slip {
         let mut slip = Slip::default();
         slip.turn(std::iter::once(n));
-        slip.begin(Some(ViscousStep { diffused, implicit }), Kernel::Yang, 0.1);
+        slip.begin(Some(ViscousStep { diffused, implicit }), Kernel::Yang, 0.1, 1.0);
         slip
     }
 
@@ -143,7 +154,7 @@ mod tests {
         assert_eq!(slip.answer(0, missing), -0.4 * Vector::z());
         slip.given[0] = slip.answer(0, missing);
         assert_eq!(slip.of(0), Vector::zeros());
-        slip.begin(None, Kernel::Yang, 0.1);
+        slip.begin(None, Kernel::Yang, 0.1, 1.0);
         assert_eq!(slip.answer(0, missing), missing);
     }
 }

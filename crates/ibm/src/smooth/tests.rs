@@ -64,6 +64,7 @@ fn any_shape_has_markers() {
         bodies.twists[0].angular.z = 0.5;
         let mut velocity = Collocated::new(lattice(dim, [0.1; 3], 3.0), |_| [0.0; 3]);
         let mut forcing = SmoothForcing::new(1.0).with_passes(passes);
+        forcing.begin(Some(ViscousStep { diffused: 2e-3, implicit: Vector::zeros() }));
         forcing.place(&velocity, &bodies).unwrap();
         forcing.force(&mut velocity, &bodies);
         (forcing.reaction(BodyId(0)), forcing.slip(&velocity, &bodies))
@@ -73,7 +74,7 @@ fn any_shape_has_markers() {
     let (found, slip) = forced(2, Box::new(Plain(ball(2))), 3);
     assert!((found.force - even.force).norm() < 0.01 * even.force.norm(), "{even:?} {found:?}");
     assert!((found.torque.z / even.torque.z - 1.0).abs() < 0.02, "{even:?} {found:?}");
-    assert!(slip < 2.0 * smooth, "{slip} {smooth}");
+    assert!(slip < 7e-3 && smooth < 4e-3, "{slip} {smooth}");
     let solids: [fn() -> Box<dyn Solid>; 2] =
         [|| Box::new(Plain(Ball { dim: 3, radius: 0.5 })), || Box::new(Brick([0.5, 0.3, 0.4]))];
     for solid in solids {
@@ -103,10 +104,11 @@ fn passes_converge_at_a_wall() {
 /// b − M·v = Σ √w (1 − y P_t) √w (û − U − Ω×r), w = (1−χ) ρ A h/c, and its moment, for every v; y = β/(1 + β).
 #[test]
 fn the_layer_foresees_what_the_markers_outside_take() {
-    for step in [None, Some(ViscousStep { diffused: 2e-4, implicit: Vector::new(0.5, 0.0, 0.0) })] {
+    // The last one sharpens more than the kernel blurs: β < 0.
+    let implicit = Vector::new(0.5, 0.0, 0.0);
+    for step in [None, Some(2e-4), Some(5e-2)].map(|s| s.map(|diffused| ViscousStep { diffused, implicit })) {
         let (bodies, velocity, mut forcing) = scene(|x| [x[1].sin(), x[0].cos(), 0.0]);
-        if let Some(step) = step {
-            forcing = SmoothForcing::new(2.0).with_surface_markers();
+        if step.is_some() {
             forcing.begin(step);
             forcing.place(&velocity, &bodies).unwrap();
         }
@@ -127,7 +129,7 @@ fn the_layer_foresees_what_the_markers_outside_take() {
             let root = Vector::new(weights[0][m], weights[1][m], 0.0).map(|w| (w * markers.masses[m]).sqrt());
             let off = Vector::new(found[0][m], found[1][m], 0.0) - twist.at(arm);
             let off = root.component_mul(&off);
-            let taken = markers.slip.as_ref().map_or(off, |slip| slip.answer(m, off));
+            let taken = markers.slip.answer(m, off);
             sum += Wrench::at(root.component_mul(&taken), arm);
         }
         let known = [sum.force.x, sum.force.y, 0.0, 0.0, 0.0, sum.torque.z];

@@ -289,3 +289,39 @@ fn what_is_symmetric_stays_symmetric() {
         assert!(u.iter().fold(0.0, |most: f64, u| most.max(*u)) > 0.9, "{kernel:?}");
     }
 }
+
+/// s of a disc whose gap to another one, across a periodic side, or to a side of the box is so many cells: 1 from three on, 0 below two.
+#[test]
+fn markers_stand_deeper_where_another_surface_is_near() {
+    let h = 0.05;
+    let step = Some(ViscousStep { diffused: 0.2 * h * h, implicit: Vector::zeros() });
+    let axes = [true, false].map(|periodic| Nodes::uniform(0.5 * h, h, 60, periodic));
+    let velocity = Collocated::new(Lattice::new(axes, 0, [1, 60]), |_| [0.0; 3]);
+    let mut bodies = Balls::new(2, 0.5, vec![[0.3, 1.5, 0.0], [1.7, 1.5, 0.0]]);
+    let mut forcing = SmoothForcing::new(1.0);
+    let mut shares = |at: [f64; 2]| {
+        bodies.poses[1] = Pose::at([at[0], at[1], 0.0]);
+        forcing.begin(step);
+        forcing.place(&velocity, &bodies).unwrap();
+        [0, 1].map(|b| forcing.bodies[b].share)
+    };
+    // The first disc stays where it is, and follows what comes near and goes.
+    let (far, period) = ([1.7, 1.5], 3.0);
+    for (gap, known) in [(1.9, 0.0), (2.0, 0.0), (2.25, 0.25), (2.75, 0.75), (3.0, 1.0), (3.5, 1.0)] {
+        let close = |found: f64| (found - known).abs() < 0.03;
+        let found = shares([1.3 + gap * h, 1.5]);
+        assert!(found.into_iter().all(close), "{gap}: {found:?}");
+        assert_eq!(shares(far), [1.0, 1.0]);
+        let found = shares([0.3 + period - 1.0 - gap * h, 1.5]);
+        assert!(found.into_iter().all(close), "across the side, {gap}: {found:?}");
+        for side in [0.5 + gap * h, 2.5 - gap * h] {
+            let found = shares([1.8, side]);
+            assert!(found[0] == 1.0 && close(found[1]), "{gap} from the side: {found:?}");
+        }
+    }
+    // Without a viscosity nothing is made up for.
+    shares(far);
+    forcing.begin(None);
+    forcing.place(&velocity, &bodies).unwrap();
+    assert_eq!([0, 1].map(|b| forcing.bodies[b].share), [0.0, 0.0]);
+}

@@ -4,7 +4,7 @@
 //! The speed is held against what was measured (E1, E4), over the whole fall and, apart, where the gap to the floor is below two cells: what the
 //! fluid does there is not resolved but modelled (`Lubricated`); `--no-lubrication` leaves that out, and the sphere bounces.
 //!
-//! Found with 12 cells per diameter: E4 1.6 % below the measured largest speed; with markers on the surface E4 1.1 % and E1 4.3 %, of which the limit of fine grids leaves 4.1 % (docs/results.md).
+//! Found with 12 cells per diameter: E4 1.1 % and E1 4.3 % below the measured largest speed; of the latter the limit of fine grids leaves 4.1 % (docs/results.md).
 //!
 //! Sample runs:
 //! ```text

@@ -315,17 +315,17 @@ impl Forcing for SmoothForcing {
     fn force(&mut self, velocity: &mut dyn VelocityField, bodies: &dyn Kinematics) {
         let Self { density, passes, bodies: all, values, .. } = self;
         let dim = velocity.dim();
-        if all.iter().any(|markers| markers.slip.any()) {
-            let lattices = [0, 1, 2].map(|c| velocity.lattice(c.min(dim - 1)).clone());
-            return in_turn(all, *passes, |b, markers| {
+        let lattices = [0, 1, 2].map(|c| velocity.lattice(c.min(dim - 1)).clone());
+        in_turn(all, *passes, |b, markers| {
+            if markers.slip.any() {
                 markers.pass_with_slip((velocity, &lattices), (bodies, b), *density, values);
-            });
-        }
-        for (c, values) in values.iter_mut().enumerate().take(dim) {
-            let lattice = velocity.lattice(c).clone();
-            let u = velocity.component_mut(c);
-            in_turn(all, *passes, |b, markers| markers.pass(c, (&lattice, u), (bodies, b), *density, values));
-        }
+                return;
+            }
+            for (c, values) in values.iter_mut().enumerate().take(dim) {
+                let u = velocity.component_mut(c);
+                markers.pass(c, (&lattices[c], u), (bodies, b), *density, values);
+            }
+        });
     }
 
     fn hidden_dissipation(&self) -> f64 {

@@ -30,6 +30,8 @@ pub(super) struct Slip {
     normals: Vec<Vector>,
     /// β.
     ratios: Vec<f64>,
+    /// Is any β other than zero?
+    any: bool,
     /// g so far in the step under way \[m/s\].
     pub(super) given: Vec<Vector>,
 }
@@ -50,6 +52,7 @@ impl Slip {
         self.ratios.clear();
         let Some(ViscousStep { diffused, implicit }) = step else {
             self.ratios.resize(self.normals.len(), 0.0);
+            self.any = false;
             return;
         };
         let (retraction, overlap) = (kernel.retraction(), kernel.self_overlap());
@@ -61,10 +64,11 @@ impl Slip {
             let blurred = if reach > 0.0 { reach * per_reach } else { 0.0 };
             (blurred - implicit.dot(&squares)).max(LEAST)
         }));
+        self.any = self.ratios.iter().any(|ratio| *ratio != 0.0);
     }
     /// Does anything slip?
     pub(super) fn any(&self) -> bool {
-        self.ratios.iter().any(|ratio| *ratio != 0.0)
+        self.any
     }
     /// The normal of marker `m`.
     #[inline]

@@ -128,6 +128,11 @@ impl Spodiann {
     pub fn ranks(&self) -> Vec<usize> {
         self.frames.iter().map(|f| f.modes.ncols()).collect()
     }
+    /// Where its fields are.
+    #[must_use]
+    pub fn grid(&self) -> &Grid {
+        self.interpolator.grid()
+    }
     /// φ^k, rows × r_k.
     #[must_use]
     pub fn modes(&self, frame: usize) -> MatRef<'_, f64> {

@@ -100,8 +100,8 @@ mod tests {
             combine(&columns, Some(&mean), c.as_ref(), &mut fields);
             for (j, field) in fields.chunks_exact(rows).enumerate() {
                 let (mut alone, mut coarse) = (vec![0.0; rows], vec![0.0; rows]);
-                combine(&columns, Some(&mean), c.get(.., j..=j), &mut alone);
-                combine(&shorts, Some(&mean), c.get(.., j..=j), &mut coarse);
+                combine(&columns, Some(&mean), c.get(.., j..j + 1), &mut alone);
+                combine(&shorts, Some(&mean), c.get(.., j..j + 1), &mut coarse);
                 assert_eq!(field, &alone);
                 for i in 0..rows {
                     let terms = (0..rank).map(|k| c[(k, j)] * modes[k][i]);

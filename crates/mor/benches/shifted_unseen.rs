@@ -172,15 +172,20 @@ fn run(case: &Case, kind: &str, seen: &Mat<f64>, noise: Noise) {
         let op = GridFrames::new(case.grid, Interpolation::Spectral, &case.shifts, case.clean.nrows())
             .expect("frames");
         match d {
-            Ok(d) => println!(
-                "{:44} {kind:20} {} {:10} error {:.2e} {:4} steps {seconds:6.2} s {:.2} GB",
-                case.what,
-                if found { "found" } else { "given" },
-                format!("{:?}", d.ranks()),
-                d.relative_error(&op, case.clean.as_ref()),
-                d.history.len(),
-                peak_memory()
-            ),
+            Ok(d) => {
+                println!(
+                    "{:44} {kind:20} {} {:10} error {:.2e} {:4} steps {seconds:6.2} s {:.2} GB",
+                    case.what,
+                    if found { "found" } else { "given" },
+                    format!("{:?}", d.ranks()),
+                    d.relative_error(&op, case.clean.as_ref()),
+                    d.history.len(),
+                    peak_memory()
+                );
+                if std::env::var_os("OFFSETS").is_some() {
+                    println!("{:?} in cells, {:?}", d.offsets, d.stopped);
+                }
+            }
             Err(why) => println!("{:44} {kind:20} {why}", case.what),
         }
     }

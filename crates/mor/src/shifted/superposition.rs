@@ -111,12 +111,16 @@ impl Superposition {
                     let (sum, of_frame) = row.split_at_mut(2 * mx);
                     sum.fill(0.0);
                     for (k, (_, c)) in frames.iter().enumerate() {
+                        let mode = |i: usize| &self.spectra[k][2 * mx * (i * rows + r)..][..2 * mx];
+                        let of_row = phases[k][1][r % my] * phases[k][2][r / my % mz] * scale;
+                        if let [c] = c[..] {
+                            add_turned(of_row * c, &along_x[k], mode(0), sum);
+                            continue;
+                        }
                         of_frame.fill(0.0);
                         for (i, c) in c.iter().enumerate() {
-                            let mode = &self.spectra[k][2 * mx * (i * rows + r)..][..2 * mx];
-                            of_frame.iter_mut().zip(mode).for_each(|(f, m)| *f += c * m);
+                            of_frame.iter_mut().zip(mode(i)).for_each(|(f, m)| *f += c * m);
                         }
-                        let of_row = phases[k][1][r % my] * phases[k][2][r / my % mz] * scale;
                         add_turned(of_row, &along_x[k], of_frame, sum);
                     }
                     let (re, im) = sum.split_at(mx);
@@ -166,32 +170,51 @@ impl Superposition {
             let pairs = (first..n_lines.min(first + 2 * LINES)).step_by(2);
             let used = n * pairs.len();
             for (l, line) in pairs.clone().zip(lines.chunks_exact_mut(n)) {
-                let a = start(l, count);
-                let b = (l + 1 < n_lines).then(|| start(l + 1, count));
-                let pair =
-                    |m: usize| [waves[a + m * inner], b.map_or(Complex::default(), |b| waves[b + m * inner])];
-                let [a, b] = pair(0);
-                line[0] = Complex::new(a.re, b.re);
-                for m in 1..n.div_ceil(2) {
-                    // A + iB, and A̅ + iB̅ of the negative wave.
-                    let [a, b] = pair(m);
-                    line[m] = Complex::new(a.re - b.im, a.im + b.re);
-                    line[n - m] = Complex::new(a.re + b.im, b.re - a.im);
-                }
-                if n.is_multiple_of(2) {
-                    let [a, b] = pair(n / 2);
-                    line[n / 2] = Complex::new(a.re, b.re);
+                let (a, b) = (start(l, count), (l + 1 < n_lines).then(|| start(l + 1, count)));
+                let whole = |first: Option<usize>| first.map_or(&[][..], |first| &waves[first..][..count]);
+                if inner == 1 {
+                    join(whole(Some(a)), whole(b), line);
+                } else {
+                    let every = |first: usize| (0..count).map(|m| waves[first + m * inner]).collect();
+                    let [a, b] = [Some(a), b].map(|first| first.map_or(Vec::new(), every));
+                    join(&a, &b, line);
                 }
             }
             self.inverse[0].process_with_scratch(&mut lines[..used], scratch);
             for (l, line) in pairs.zip(lines.chunks_exact(n)) {
-                let (a, b) = (start(l, n), (l + 1 < n_lines).then(|| start(l + 1, n)));
-                line.iter().enumerate().for_each(|(i, z)| out[a + i * inner] = z.re);
-                if let Some(b) = b {
-                    line.iter().enumerate().for_each(|(i, z)| out[b + i * inner] = z.im);
+                let mut part = |l: usize, of: fn(&Complex<f64>) -> f64| {
+                    let out = &mut out[start(l, n)..];
+                    if inner == 1 {
+                        out.iter_mut().zip(line).for_each(|(x, z)| *x = of(z));
+                    } else {
+                        out.iter_mut().step_by(inner).zip(line).for_each(|(x, z)| *x = of(z));
+                    }
+                };
+                part(l, |z| z.re);
+                if l + 1 < n_lines {
+                    part(l + 1, |z| z.im);
                 }
             }
         }
+    }
+}
+
+/// The coefficients of A + iB from those of the real lines A and B, or of A alone, without those of negative waves.
+fn join(a: &[Complex<f64>], b: &[Complex<f64>], line: &mut [Complex<f64>]) {
+    let (n, none) = (line.len(), Complex::default());
+    let Some((first, rest)) = line.split_first_mut() else { return };
+    *first = Complex::new(a[0].re, b.first().unwrap_or(&none).re);
+    let (pairs, middle) = ((n - 1) / 2, n / 2);
+    let (positive, negative) = rest.split_at_mut(pairs);
+    let b_rest = b.iter().skip(1).chain(std::iter::repeat(&none));
+    // A + iB, and A̅ + iB̅ of the negative wave.
+    let to = positive.iter_mut().zip(negative.iter_mut().rev());
+    for ((to, opposite), (a, b)) in to.zip(a[1..].iter().zip(b_rest)) {
+        *to = Complex::new(a.re - b.im, a.im + b.re);
+        *opposite = Complex::new(a.re + b.im, b.re - a.im);
+    }
+    if n.is_multiple_of(2) {
+        negative[0] = Complex::new(a[middle].re, b.get(middle).unwrap_or(&none).re);
     }
 }
 

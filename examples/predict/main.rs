@@ -1,8 +1,8 @@
 //! Fields from a saved reduced model (PODIANN or sPODIANN), at any times and parameters.
 //!
 //! ```text
-//! cargo run --release --example predict -- out/reduced_discs/models/lambda.model --at 0.05 --at 0.1
-//! cargo run --release --example predict -- velocity.model --at 1.5,1.05,0.6 --cells 150,300 --write npy,vti
+//! cargo run --release --example predict -- out/parameter_study/lambda.model --at 1.5,1.05,0.6 --write png
+//! cargo run --release --example predict -- out/parameter_study/velocity.model --at 1.5,1.05,0.6 --cells 150,300 --write npy,vti
 //! ```
 //!
 //! `--at` takes what the model was made of, in that order: time, then parameters. A model with frames of reference knows its grid; of one without `--cells` tells it, if pictures or
@@ -15,6 +15,7 @@ use mor::interpolation::Record;
 use mor::models::{ModelError, Podiann, Spodiann};
 use mor::shifted::Grid;
 use std::path::PathBuf;
+use std::process::ExitCode;
 
 /// Fields from a saved reduced model.
 #[derive(Clone, Debug, Parser)]
@@ -129,10 +130,19 @@ fn point(text: &str, inputs: usize) -> Outcome<Vec<f64>> {
         .into())
 }
 
-fn main() -> Outcome<()> {
-    let cli = Cli::parse();
-    let model = Model::load(&cli)?;
-    let grid = model.grid(&cli)?;
+fn main() -> ExitCode {
+    match run(&Cli::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(why) => {
+            eprintln!("{why}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(cli: &Cli) -> Outcome<()> {
+    let model = Model::load(cli)?;
+    let grid = model.grid(cli)?;
     let points: Vec<Vec<f64>> = cli.at.iter().map(|at| point(at, model.inputs())).collect::<Outcome<_>>()?;
     let mut fields = vec![vec![0.0; model.rows()]; points.len()];
     for ((x, field), at) in points.iter().zip(&mut fields).zip(&cli.at) {

@@ -72,7 +72,7 @@ fn discs(rng: &mut Pcg64, drift: f64, size: Size) -> Case {
     let n = match size {
         Size::Any => rng.random_range(150..300),
         Size::Full => 601,
-        Size::Small => 200,
+        Size::Small => std::env::var("N").ok().and_then(|n| n.parse().ok()).unwrap_or(200),
     };
     let [nx, ny] = cells.map(|n| n as f64);
     let radius = if size == Size::Small { 7.0 } else { rng.random_range(5.0..0.12 * nx) };

@@ -1,7 +1,7 @@
 //! Shifted POD on cases that nobody tuned it to: places, speeds and sizes by random numbers. `cargo bench -p mor --bench shifted_unseen [-- KIND … [SEEDS]]`.
 //!
 //! Kinds: `waves` (two or three pulses on a line), `discs` (two discs of a tanh edge that fall side by side), `drift` (that move sideways, too), `near` (frames that
-//! hardly move against one another), `small` (discs on few cells). Each clean and noisy, with ranks given and found; one line per run: error against the clean field in Frobenius' norm.
+//! hardly move against one another), `small` (discs on 48 × 64 cells; `N=400` in the environment: so many snapshots, 200 unless told). `OFFSETS=1` tells where frames were centred. Each clean and noisy, with ranks given and found; one line per run: error against the clean field in Frobenius' norm.
 use cpu_time::ProcessTime;
 use interfaces::Vector;
 use mor::Mat;

@@ -145,12 +145,18 @@ fn run(cli: &Cli, stop: &AtomicBool) -> Outcome<Ending> {
     table.matrix(&header, (0..VALUES).map(by_run).collect());
     table.section("costs").row("modes and functions of all runs", number(fit_cpu), "CPU s");
     table.row("all 25 left out", number(left_out_cpu), "CPU s");
-    for (name, cost) in
-        ["places of both discs at a time", "λ at a time", "velocity at a time"].iter().zip(costs)
-    {
+    let steps = runs[0].fallen.times.len() as f64;
+    let names = [
+        "places of both discs at a time",
+        "λ at a time",
+        "velocity at a time",
+        "λ, each of all times together",
+        "velocity, each of all times together",
+    ];
+    for (name, cost) in names.iter().zip([costs[0], costs[1], costs[2], costs[3] / steps, costs[4] / steps]) {
         table.row(name, format!("{} ({:.0} times as quick as a run)", number(1e6 * cost), full / cost), "µs");
     }
-    let whole = (cli.intervals + 1) as f64 * (costs[1] + costs[2]);
+    let whole = costs[3] + costs[4];
     table.row(
         "λ and velocity at all times of a run",
         format!("{} ({:.0} times as quick as a run)", number(1e3 * whole), full / whole),

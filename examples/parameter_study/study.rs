@@ -98,7 +98,7 @@ impl Models {
         let data = joined(|f| &f.velocity);
         let snapshots = MatRef::from_column_major_slice(&data, data.len() / all, all);
         let pod = Pod::new(snapshots, &PodParams::of_rank(sizes.plain))?;
-        let velocity = Podiann::new(points.as_ref(), &pod, Some(&method))?;
+        let velocity = Podiann::new(points.as_ref(), &pod, Some(&method))?.in_single_precision();
         Ok(Self { lambda, velocity })
     }
 
@@ -126,22 +126,27 @@ impl Models {
         Ok([lambda, velocity])
     }
 
-    /// CPU seconds of the places, of λ and of the velocity at one time.
-    pub(crate) fn costs(&self, run: &Run) -> Outcome<[f64; 3]> {
-        const TIMES: usize = 50;
-        let (mut lambda, mut velocity) = (vec![0.0; self.lambda.rows()], vec![0.0; self.velocity.rows()]);
-        let x = |i: usize| run.point(i % run.fallen.times.len());
-        let mut costs = [0.0; 3];
-        let watch = Stopwatch::start();
-        (0..TIMES).try_for_each(|i| self.lambda.motions(&x(i)).map(drop))?;
-        costs[0] = watch.elapsed().cpu / TIMES as f64;
-        let watch = Stopwatch::start();
-        (0..TIMES).try_for_each(|i| self.lambda.predict(&x(i), &mut lambda))?;
-        costs[1] = watch.elapsed().cpu / TIMES as f64;
-        let watch = Stopwatch::start();
-        (0..TIMES).try_for_each(|i| self.velocity.predict(&x(i), &mut velocity))?;
-        costs[2] = watch.elapsed().cpu / TIMES as f64;
-        Ok(costs)
+    /// CPU seconds of the places, of λ and of the velocity (in single precision) at one time, and of either at all times of a run together.
+    pub(crate) fn costs(&self, run: &Run) -> Outcome<[f64; 5]> {
+        const TIMES: usize = 100;
+        let points = run.points();
+        let all = run.fallen.times.len();
+        let (mut lambda, mut velocity) =
+            (vec![0.0; self.lambda.rows() * all], vec![0.0; self.velocity.rows() * all]);
+        let one = |i: usize| points.subcols(i % all, 1);
+        let cost = |times: usize, f: &mut dyn FnMut(usize) -> Outcome<()>| -> Outcome<f64> {
+            let watch = Stopwatch::start();
+            (0..times).try_for_each(f)?;
+            Ok(watch.elapsed().cpu / times as f64)
+        };
+        let (first, second) = (self.lambda.rows(), self.velocity.rows());
+        Ok([
+            cost(TIMES, &mut |i| Ok(self.lambda.motions(&run.point(i % all)).map(drop)?))?,
+            cost(TIMES, &mut |i| Ok(self.lambda.predict_many(one(i), &mut lambda[..first])?))?,
+            cost(TIMES, &mut |i| Ok(self.velocity.predict_many(one(i), &mut velocity[..second])?))?,
+            cost(TIMES, &mut |_| Ok(self.lambda.predict_many(points.as_ref(), &mut lambda)?))?,
+            cost(TIMES, &mut |_| Ok(self.velocity.predict_many(points.as_ref(), &mut velocity)?))?,
+        ])
     }
 
     pub(crate) fn save(&self, out: &Path) -> Outcome<()> {

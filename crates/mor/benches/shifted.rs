@@ -40,7 +40,12 @@ fn crossing_waves(frames: usize) -> Case {
 
 /// Two discs with a tanh edge one cell wide that fall side by side at different, growing speeds; `drift` cells sideways
 /// as well, from centres `offset` cells aside from those of cells.
-fn two_discs([nx, ny]: [usize; 2], n: usize, d: f64, drift: f64, offset: f64) -> Case {
+fn two_discs(cells: [usize; 2], n: usize, d: f64, drift: f64, offset: f64) -> Case {
+    discs(2, cells, n, d, drift, offset)
+}
+
+/// The first `count` of them.
+fn discs(count: usize, [nx, ny]: [usize; 2], n: usize, d: f64, drift: f64, offset: f64) -> Case {
     let cells = [nx, ny];
     let [nx, ny] = cells.map(|n| n as f64);
     let way = [320.0, 180.0].map(|w| w * nx / 300.0);
@@ -57,10 +62,10 @@ fn two_discs([nx, ny]: [usize; 2], n: usize, d: f64, drift: f64, offset: f64) ->
             r.y -= ny * (r.y / ny).round();
             0.5 - 0.5 * (r.norm() - d / 2.0).tanh()
         };
-        disc(0) + disc(1)
+        (0..count).map(disc).sum::<f64>()
     };
     Case {
-        motions: Motions::by(2, n, |k, j| Motion::translation(moved(k, j))),
+        motions: Motions::by(count, n, |k, j| Motion::translation(moved(k, j))),
         snapshots: Mat::from_fn(cells[0] * cells[1], n, field),
         grid,
     }
@@ -131,6 +136,8 @@ fn main() {
         ("discs_between_cells", &|| two_discs(FULL, 601, 15.0, 0.0, 0.5), &[&[1, 1], &[3, 3], &[4, 4]]),
         ("discs_centred", &|| on_cells(two_discs(FULL, 601, 15.0, 0.0, 0.5)), &[&[1, 1], &[3, 3]]),
         ("discs_drifting", &|| two_discs(FULL, 601, 15.0, 40.0, 0.0), &[&[1, 1], &[3, 3], &[5, 5]]),
+        ("disc_alone", &|| discs(1, FULL, 601, 15.0, 0.0, 0.0), &[&[1], &[3]]),
+        ("disc_alone_drifting", &|| discs(1, FULL, 601, 15.0, 40.0, 0.0), &[&[1], &[5], &[9]]),
         ("spheres", &|| two_spheres(40, 100), &[&[1, 1], &[3, 3]]),
         ("discs_noisy", &|| noisy(two_discs(FULL, 601, 15.0, 0.0, 0.0), 0.05), &[&[1, 1], &[3, 3]]),
     ];

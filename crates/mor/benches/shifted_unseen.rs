@@ -1,7 +1,7 @@
 //! Shifted POD on cases that nobody tuned it to: places, speeds and sizes by random numbers. `cargo bench -p mor --bench shifted_unseen [-- KIND … [SEEDS]]`.
 //!
 //! Kinds: `waves` (two or three pulses on a line), `discs` (two discs of a tanh edge that fall side by side), `drift` (that move sideways, too), `near` (frames that
-//! hardly move against one another). Each clean and noisy, with ranks given and found; one line per run: error against the clean field in Frobenius' norm.
+//! hardly move against one another), `small` (discs on 48 × 64 cells; `N=400` in the environment: so many snapshots, 200 unless told). `OFFSETS=1` tells where frames were centred. Each clean and noisy, with ranks given and found; one line per run: error against the clean field in Frobenius' norm.
 use cpu_time::ProcessTime;
 use interfaces::Vector;
 use mor::Mat;
@@ -53,13 +53,29 @@ fn waves(rng: &mut Pcg64) -> Case {
     }
 }
 
+/// How large a set of discs is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Size {
+    Any,
+    Full,
+    /// 48 × 64 cells, 200 snapshots, radius 7.
+    Small,
+}
+
 /// `drift` in cells.
-fn discs(rng: &mut Pcg64, drift: f64, full: bool) -> Case {
-    let cells =
-        if full { [150, 300] } else { [2 * rng.random_range(40..60_usize), 2 * rng.random_range(60..100)] };
-    let n = if full { 601 } else { rng.random_range(150..300) };
+fn discs(rng: &mut Pcg64, drift: f64, size: Size) -> Case {
+    let cells = match size {
+        Size::Any => [2 * rng.random_range(40..60_usize), 2 * rng.random_range(60..100)],
+        Size::Full => [150, 300],
+        Size::Small => [48, 64],
+    };
+    let n = match size {
+        Size::Any => rng.random_range(150..300),
+        Size::Full => 601,
+        Size::Small => std::env::var("N").ok().and_then(|n| n.parse().ok()).unwrap_or(200),
+    };
     let [nx, ny] = cells.map(|n| n as f64);
-    let radius = rng.random_range(5.0..0.12 * nx);
+    let radius = if size == Size::Small { 7.0 } else { rng.random_range(5.0..0.12 * nx) };
     let starts = [0.25, 0.75].map(|x| [x * nx + rng.random_range(-1.0..1.0), rng.random_range(0.0..ny)]);
     let ways: [[f64; 3]; 2] = [(); 2].map(|()| {
         [rng.random_range(0.3..1.2) * ny, rng.random_range(0.0..1.0), drift * rng.random_range(-1.0..1.0)]
@@ -156,15 +172,20 @@ fn run(case: &Case, kind: &str, seen: &Mat<f64>, noise: Noise) {
         let op = GridFrames::new(case.grid, Interpolation::Spectral, &case.shifts, case.clean.nrows())
             .expect("frames");
         match d {
-            Ok(d) => println!(
-                "{:44} {kind:20} {} {:10} error {:.2e} {:4} steps {seconds:6.2} s {:.2} GB",
-                case.what,
-                if found { "found" } else { "given" },
-                format!("{:?}", d.ranks()),
-                d.relative_error(&op, case.clean.as_ref()),
-                d.history.len(),
-                peak_memory()
-            ),
+            Ok(d) => {
+                println!(
+                    "{:44} {kind:20} {} {:10} error {:.2e} {:4} steps {seconds:6.2} s {:.2} GB",
+                    case.what,
+                    if found { "found" } else { "given" },
+                    format!("{:?}", d.ranks()),
+                    d.relative_error(&op, case.clean.as_ref()),
+                    d.history.len(),
+                    peak_memory()
+                );
+                if std::env::var_os("OFFSETS").is_some() {
+                    println!("{:?} in cells, {:?}", d.offsets, d.stopped);
+                }
+            }
             Err(why) => println!("{:44} {kind:20} {why}", case.what),
         }
     }
@@ -174,17 +195,18 @@ fn main() {
     let asked: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
     let seeds = asked.iter().find_map(|a| a.parse().ok()).unwrap_or(4_u64);
     let kinds: Vec<&str> = asked.iter().map(String::as_str).filter(|a| a.parse::<u64>().is_err()).collect();
-    for kind in ["waves", "discs", "drift", "near", "full"] {
-        if !(kinds.contains(&kind) || kinds.is_empty() && kind != "full") {
+    for kind in ["waves", "discs", "drift", "near", "full", "small"] {
+        if !(kinds.contains(&kind) || kinds.is_empty() && !["full", "small"].contains(&kind)) {
             continue;
         }
         for seed in 0..seeds {
             let mut rng = Pcg64::seed_from_u64(100 + seed);
             let case = match kind {
                 "waves" => waves(&mut rng),
-                "discs" => discs(&mut rng, 0.0, false),
-                "drift" => discs(&mut rng, 15.0, false),
-                "full" => discs(&mut rng, 0.0, true),
+                "discs" => discs(&mut rng, 0.0, Size::Any),
+                "drift" => discs(&mut rng, 15.0, Size::Any),
+                "full" => discs(&mut rng, 0.0, Size::Full),
+                "small" => discs(&mut rng, 0.0, Size::Small),
                 _ => near(&mut rng),
             };
             let c = &case.clean;

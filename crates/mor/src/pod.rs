@@ -14,6 +14,7 @@
 //! # Ok::<(), mor::pod::PodError>(())
 //! ```
 mod blocks;
+mod combination;
 mod error;
 mod factors;
 mod modes;
@@ -22,6 +23,7 @@ mod streaming;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use combination::combine;
 pub use error::PodError;
 pub use modes::Pod;
 pub use params::{PodParams, Rank, SvdMethod};

@@ -24,6 +24,7 @@ mod robust;
 mod shifted_pod;
 mod spline;
 mod stencil;
+mod superposition;
 mod tangent;
 #[cfg(test)]
 mod tests;
@@ -45,3 +46,4 @@ pub use proximal::Proximal;
 pub use residual::Observer;
 pub use shifted_pod::{Noise, Ranks, ShiftedPod};
 pub use stencil::Interpolation;
+pub(crate) use superposition::{Superposition, Workspace};

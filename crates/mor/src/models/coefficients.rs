@@ -4,6 +4,7 @@ use crate::interpolation::{
     Degree, Folds, Interpolator, Method, Record, RecordError, Samples, SplineParams, VaryingParams, best_of,
     candidates, cross_validate, load,
 };
+use crate::{Mat, MatRef};
 
 /// A function, and a second one, whose distance from it tells where the samples are too few.
 pub(super) struct Coefficients {
@@ -88,6 +89,10 @@ impl Coefficients {
     }
     pub(super) fn predict(&self, x: &[f64], out: &mut [f64]) -> Result<(), ModelError> {
         Ok(self.first.predict(x, out)?)
+    }
+    /// At points that are columns, as columns.
+    pub(super) fn predict_all(&self, points: MatRef<'_, f64>) -> Result<Mat<f64>, ModelError> {
+        Ok(self.first.predict_all(points)?)
     }
     /// What the error may be at x: the root mean square one, or larger by as much as the two functions are farther apart than they usually are.
     pub(super) fn doubt(&self, x: &[f64]) -> Result<f64, ModelError> {

@@ -65,6 +65,12 @@ impl Paths {
         Ok(numbers.chunks_exact(PER_FRAME).zip(&self.centres).map(of).collect())
     }
 
+    /// The axes along which a frame moves; None if one turns.
+    pub(super) fn axes(&self) -> Option<Vec<usize>> {
+        let numbers = || self.moving.iter().map(|row| row % PER_FRAME);
+        numbers().all(|n| n < 3).then(|| (0..3).filter(|axis| numbers().any(|n| n == *axis)).collect())
+    }
+
     pub(super) fn record(&self) -> Record {
         let record = Record::new("paths")
             .with("centres", self.centres.iter().flat_map(|c| [c.x, c.y, c.z]))

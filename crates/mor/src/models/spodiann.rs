@@ -5,9 +5,10 @@ use super::modes::write_modes;
 use super::paths::Paths;
 use super::{Assessment, ModelError};
 use crate::interpolation::{Method, Record, RecordError, Samples};
+use crate::pod::combine;
 use crate::shifted::{
     Decomposition, FrameOperators, Grid, GridFrames, Interpolation, Interpolator, Motion, Motions,
-    ShiftedError, Shifts,
+    ShiftedError, Shifts, Superposition, Workspace,
 };
 use crate::{Mat, MatRef};
 use interfaces::{Point, Vector};
@@ -34,6 +35,8 @@ pub struct Spodiann {
     interpolation: Interpolation,
     interpolator: Interpolator,
     frames: Vec<Carried>,
+    /// If all frames only move along periodic axes, by [`Interpolation::Spectral`].
+    superposition: Option<Superposition>,
     /// Of the decomposition; in the paths already.
     offsets: Vec<Vector>,
     paths: Paths,
@@ -93,6 +96,7 @@ impl Spodiann {
         Ok(Self {
             interpolation,
             interpolator: Interpolator::new(grid, interpolation),
+            superposition: superposition(&grid, interpolation, &paths, &carried),
             frames: carried,
             offsets: decomposition.offsets.clone(),
             paths,
@@ -124,6 +128,11 @@ impl Spodiann {
     pub fn ranks(&self) -> Vec<usize> {
         self.frames.iter().map(|f| f.modes.ncols()).collect()
     }
+    /// Where its fields are.
+    #[must_use]
+    pub fn grid(&self) -> &Grid {
+        self.interpolator.grid()
+    }
     /// φ^k, rows × r_k.
     #[must_use]
     pub fn modes(&self, frame: usize) -> MatRef<'_, f64> {
@@ -152,18 +161,48 @@ impl Spodiann {
     /// # Errors
     /// [`ModelError::Shape`], [`ModelError::Interpolation`]; [`ModelError::Shifted`] if a frame leaves the grid's plane.
     pub fn predict(&self, x: &[f64], out: &mut [f64]) -> Result<(), ModelError> {
-        ModelError::same("rows", self.rows, out.len())?;
+        self.predict_many(MatRef::from_column_major_slice(x, x.len(), 1), out)
+    }
+
+    /// The fields at points that are columns (inputs × n), one after the other. Each is the same bit for bit as by [`predict`](Self::predict).
+    ///
+    /// # Errors
+    /// As [`predict`](Self::predict).
+    pub fn predict_many(&self, points: MatRef<'_, f64>, fields: &mut [f64]) -> Result<(), ModelError> {
+        ModelError::same("inputs", self.inputs, points.nrows())?;
+        ModelError::same("rows of all fields", self.rows * points.ncols(), fields.len())?;
+        let mut work = Workspace::default();
+        for (j, out) in fields.chunks_exact_mut(self.rows).enumerate() {
+            let x: Vec<f64> = points.col(j).iter().copied().collect();
+            let motions = self.motions(&x)?;
+            let mut carried = Vec::with_capacity(motions.len());
+            for (frame, motion) in self.frames.iter().zip(&motions) {
+                let mut c = vec![0.0; frame.modes.ncols()];
+                if let Some(function) = &frame.coefficients {
+                    function.predict(&frame.inputs(&x, motion, self.interpolator.grid()), &mut c)?;
+                }
+                carried.push((motion.displacement.into(), c));
+            }
+            match &self.superposition {
+                Some(sum) => sum.field(&carried, &mut work, out),
+                None => self.one_by_one(&motions, &carried, out)?,
+            }
+        }
+        Ok(())
+    }
+
+    /// The sum of what frames carry, each of them carried along on its own.
+    fn one_by_one(
+        &self,
+        motions: &[Motion],
+        carried: &[([f64; 3], Vec<f64>)],
+        out: &mut [f64],
+    ) -> Result<(), ModelError> {
         out.fill(0.0);
         let mut field = vec![0.0; self.rows];
-        for (frame, motion) in self.frames.iter().zip(self.motions(x)?) {
-            let Some(function) = &frame.coefficients else { continue };
-            let mut c = vec![0.0; function.outputs()];
-            function.predict(&frame.inputs(x, &motion, self.interpolator.grid()), &mut c)?;
-            field.fill(0.0);
-            for (i, c) in c.iter().enumerate() {
-                field.iter_mut().zip(frame.modes.col_as_slice(i)).for_each(|(f, mode)| *f += c * mode);
-            }
-            let moved = self.carry(&motion, &field)?;
+        for ((frame, motion), (_, c)) in self.frames.iter().zip(motions).zip(carried) {
+            combine(&frame.columns(), None, MatRef::from_column_major_slice(c, c.len(), 1), &mut field);
+            let moved = self.carry(motion, &field)?;
             out.iter_mut().zip(moved).for_each(|(out, f)| *out += f);
         }
         Ok(())
@@ -299,12 +338,15 @@ impl Spodiann {
         }
         let offsets = record.numbers_of("offsets", 3 * frames)?;
         let frame = |k: usize| Carried::from_record(&record.record(&format!("frame {k}"))?, rows);
+        let frames = (0..frames).map(frame).collect::<Result<Vec<_>, _>>()?;
+        let paths = Paths::from_record(&record.record("paths")?)?;
         Ok(Self {
+            superposition: superposition(&grid, interpolation, &paths, &frames),
             interpolation,
             interpolator: Interpolator::new(grid, interpolation),
-            frames: (0..frames).map(frame).collect::<Result<_, _>>()?,
+            frames,
             offsets: offsets.as_chunks::<3>().0.iter().map(|c| Vector::from(*c)).collect(),
-            paths: Paths::from_record(&record.record("paths")?)?,
+            paths,
             inputs,
             rows,
             projection_error,
@@ -325,7 +367,24 @@ impl Spodiann {
     }
 }
 
+/// Where one inverse transform does for all frames.
+fn superposition(
+    grid: &Grid,
+    interpolation: Interpolation,
+    paths: &Paths,
+    frames: &[Carried],
+) -> Option<Superposition> {
+    let axes = paths.axes().filter(|_| interpolation == Interpolation::Spectral)?;
+    let rows = frames.first()?.modes.nrows();
+    Superposition::new(grid, axes, rows, frames.iter().map(Carried::columns))
+}
+
 impl Carried {
+    /// The modes.
+    fn columns(&self) -> Vec<&[f64]> {
+        (0..self.modes.ncols()).map(|i| self.modes.col_as_slice(i)).collect()
+    }
+
     fn fit(
         points: MatRef<'_, f64>,
         frame: &crate::shifted::Frame,

@@ -1,5 +1,6 @@
 //! Modes and their coefficients.
 use super::blocks::{Blocks, Data};
+use super::combination::combine;
 use super::factors::{Factors, factors, needs_gram};
 use super::{PodError, PodParams};
 use crate::snapshots::SnapshotSource;
@@ -26,9 +27,6 @@ pub struct Pod {
 
 /// What is less than so many units in the last place of the snapshots' norm is round-off.
 pub(super) const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
-
-/// Rows of a field that are put together at a time.
-const BLOCK: usize = 1024;
 
 impl Pod {
     /// Of snapshots (n × m).
@@ -126,17 +124,19 @@ impl Pod {
     pub fn reconstruct(&self, coefficients: &[f64], out: &mut [f64]) -> Result<(), PodError> {
         PodError::same("coefficients", self.rank(), coefficients.len())?;
         PodError::same("rows of the field", self.rows(), out.len())?;
-        match &self.mean {
-            Some(mean) => out.copy_from_slice(mean),
-            None => out.fill(0.0),
-        }
-        // A block stays in the cache while all modes are added to it.
-        for (number, block) in out.chunks_mut(BLOCK).enumerate() {
-            for (k, c) in coefficients.iter().enumerate() {
-                let mode = &self.modes.col_as_slice(k)[number * BLOCK..];
-                block.iter_mut().zip(mode).for_each(|(x, mode)| *x += c * mode);
-            }
-        }
+        let c = MatRef::from_column_major_slice(coefficients, coefficients.len(), 1);
+        self.reconstruct_all(c, out)
+    }
+    /// x̄ + Φ c_j for coefficients as columns, into fields one after the other: the modes are read once for all of them, and a field is the same bit for bit as by
+    /// [`reconstruct`](Self::reconstruct).
+    ///
+    /// # Errors
+    /// [`PodError::Shape`].
+    pub fn reconstruct_all(&self, coefficients: MatRef<'_, f64>, fields: &mut [f64]) -> Result<(), PodError> {
+        PodError::same("coefficients", self.rank(), coefficients.nrows())?;
+        PodError::same("rows of all fields", self.rows() * coefficients.ncols(), fields.len())?;
+        let modes: Vec<&[f64]> = (0..self.rank()).map(|k| self.modes.col_as_slice(k)).collect();
+        combine(&modes, self.mean.as_deref(), coefficients, fields);
         Ok(())
     }
     /// ‖X − P X‖/‖X‖ of snapshots, seen or not, P the projection on the modes (and the mean).

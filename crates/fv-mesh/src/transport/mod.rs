@@ -252,7 +252,8 @@ impl<const D: usize> CellTransport<D> {
         }
     }
 
-    pub(crate) fn grid(&self) -> &CartesianGrid<D> {
+    /// The grid.
+    pub fn grid(&self) -> &CartesianGrid<D> {
         self.ops.grid()
     }
     /// `field` = `values` and zero gradient across the sides.

@@ -5,10 +5,23 @@ use example_support::sliding_plate::{Couette, Lower};
 use turb::{Inflow, Law, Realizable, Sst, StandardKEpsilon, Wilcox};
 
 pub(crate) fn sliding_plate() -> Outcome<()> {
-    println!("\nTurbulent plane Couette flow: the lower wall is a plate in the box, against a side of the box; 40 cells across");
+    println!(
+        "\nTurbulent plane Couette flow: the lower wall is a plate in the box, against a side of the box; 40 cells across"
+    );
     println!(
         "{:>16} {:>7} {:>6} {:>6} {:>6} | {:>9} {:>9} | {:>8} {:>8} {:>8} {:>8} | {:>7}",
-        "model", "nu", "y+", "at", "drift", "friction", "upper", "u 0.1", "u 0.5", "k 0.2", "nu_t 0.5", "CPU s"
+        "model",
+        "nu",
+        "y+",
+        "at",
+        "drift",
+        "friction",
+        "upper",
+        "u 0.1",
+        "u 0.5",
+        "k 0.2",
+        "nu_t 0.5",
+        "CPU s"
     );
     for viscosity in [1e-6, 1e-5, 1e-4] {
         of_model("k-omega SST", Sst::default(), viscosity)?;

@@ -8,9 +8,9 @@ use interfaces::{Bodies, Checkpoint, Closure, RestartError, SolveError};
 ///
 /// | cells | k | ω or ε | ν_t of the momentum |
 /// |---|---|---|---|
-/// | centre in a body | 0 | the largest of all | on the wall, up to 2½ cells deep |
-/// | up to 1 cell outside | own equation, production by the wall functions | by the wall functions | on the wall: (ν + ν_t) u_t/y is the friction |
-/// | 1 to 2 cells outside | steadily from the former to the latter | alike | alike |
+/// | centre in a body | 0 | the largest of all | up to 2½ cells deep that on the wall |
+/// | up to 1½ cells outside | own equation, production by the wall functions | by the wall functions | on the wall: (ν + ν_t) u_t/y is the friction |
+/// | 1½ to 2½ cells outside | steadily from the former to the latter | alike | alike |
 /// | others | own equation | own equation | the model's |
 ///
 /// after Isoz et al. (2023), section 3, with a steady passage, since the velocity is forced smoothly ([`ibm::NearWalls`]). Nothing diffuses from

@@ -152,7 +152,9 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
             self.filmed.clear();
             self.filmed.extend_from_slice(eddy);
             for &(cell, row, share) in &self.film {
-                self.filmed[cell] += share * (on_walls[rows + row] - eddy[cell]);
+                // Layers behind one another.
+                let (wall, own) = (viscosity + on_walls[rows + row], viscosity + eddy[cell]);
+                self.filmed[cell] = wall * own / (share * own + (1.0 - share) * wall) - viscosity;
             }
             eddy = &self.filmed;
         }
@@ -186,8 +188,9 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
     ) -> Result<(), FlowError> {
         let (n, viscosity, time) = (self.transport.grid().n_cells(), flow.fluid().viscosity, flow.time());
         let failed = |source| FlowError::Closure { time, source };
-        if let Some(&(cell, row, share)) =
-            film.iter().find(|(cell, row, share)| *cell >= n || *row >= rows.len() || !(0.0..=1.0).contains(share))
+        if let Some(&(cell, row, share)) = film
+            .iter()
+            .find(|(cell, row, share)| *cell >= n || *row >= rows.len() || !(0.0..=1.0).contains(share))
         {
             let (what, range) = ("the share of a film", "in 0 … 1, in a cell of the flow, of a row");
             let value = if row < rows.len() { share } else { row as f64 };

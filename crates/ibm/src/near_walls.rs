@@ -7,16 +7,19 @@ use interfaces::{Aabb, Bodies, BodyId, Lattice, Point, Pose, Vector, VelocityFie
 /// What a turbulence model has to know of bodies that move through the cells of a flow whose velocity a forcing with a smooth kernel makes
 /// follow them ([`SmoothForcing`](crate::SmoothForcing)): made anew from their signed distances whenever one moved.
 ///
-/// Such a velocity falls to that of the body over about a cell, along a line and not by the logarithmic law. So the cells whose centre is up to
-/// two cells from a surface have a row ([`WallRow`]), with
+/// Such a velocity falls to that of the body over one or two cells, along a line and not by the logarithmic law. So the wall's friction is that of
+/// the velocity seen 1½ cells from the surface, in a layer so thick the momentum has the ν_t with which a line has this friction, and the
+/// slope of the velocity says nothing up to where a difference over two cells no longer meets that layer. The cells whose centre is up to
+/// 2½ cells from a surface have a row ([`WallRow`]), with
 ///
 /// * their own distance y; of cells that the surface cuts, that of the middle of what is fluid of them, ½(y + ½h), h the cell's edge;
-/// * [`seen`](WallRow::seen), the tangential velocity one cell from the surface, from which the wall's friction follows;
-/// * [`free`](WallRow::free), the share of the model's own equations, from 0 up to one cell to 1 at two;
+/// * [`seen`](WallRow::seen), the tangential velocity 1½ cells from the surface;
+/// * [`free`](WallRow::free), the share of the model's own equations, 0 up to 1½ cells and 1 from 2½ on;
 /// * the share V/h max(1 − |y/h − 1|, 0) of the surface, which counts every part of it once, in cells about one cell away.
 ///
-/// All of these change steadily as a body moves through the cells. `film` lists the cells in which the momentum has the ν_t of the
-/// wall, from two and a half cells inside to one cell outside. A cell beside several bodies has the row of the nearest.
+/// All of these change steadily as a body moves through the cells. [`film`](Self::film) lists the cells in which the momentum has the ν_t of the
+/// wall: those in the body up to 2½ cells deep, for what the kernel blurs, and those of rows, less and less beyond 1½ cells. A cell beside several
+/// bodies has the row of the nearest.
 #[derive(Clone, Debug, Default)]
 pub struct NearWalls {
     lattice: Option<Lattice>,
@@ -70,9 +73,9 @@ struct Batch {
 const BLOCK: isize = 4;
 /// How far the film reaches into the solid, and rows into the fluid; in cells.
 const INSIDE: f64 = 2.5;
-const OUTSIDE: f64 = 2.0;
+const OUTSIDE: f64 = SEEN + 1.0;
 /// Where the flow is seen, in cells from the surface: the kernels' forces are all but spent there.
-const SEEN: f64 = 1.0;
+const SEEN: f64 = 1.5;
 /// Where the film of a cell in the solid is looked up, in cells from the surface.
 const LOOK_UP: f64 = 0.75;
 
@@ -137,7 +140,7 @@ impl NearWalls {
         self.distance.values()
     }
 
-    /// Fills k \[m²/s²\] of the rows: at the cells themselves, and one cell from the surface, of the cells there with fluid.
+    /// Fills k \[m²/s²\] of the rows: at the cells themselves, and where the flow is seen, of the cells there with fluid.
     pub fn fill_k(&mut self, k: &[f64]) {
         let Some(lattice) = &self.lattice else { return };
         for (row, wall) in self.rows.iter_mut().zip(&self.walls) {
@@ -257,14 +260,12 @@ impl NearWalls {
             let surface = bodies.pose(body).position + foot;
             let y = if from < 0.5 { 0.5 * (near.distance + 0.5 * h) } else { near.distance };
             slots[near.cell] = u32::try_from(rows.len() + 1).unwrap_or(0);
-            if from < SEEN + 0.5 {
-                film.push((near.cell, rows.len(), (SEEN + 0.5 - from).min(1.0)));
-            }
+            film.push((near.cell, rows.len(), (OUTSIDE - from).min(1.0)));
             rows.push(WallRow {
                 cell: near.cell,
                 y,
                 area: lattice.volume(lattice.node(near.cell)) / h * (1.0 - (from - 1.0).abs()).max(0.0),
-                free: (from - 1.0).clamp(0.0, 1.0),
+                free: (from - SEEN).clamp(0.0, 1.0),
                 seen: Some(WallPoint { y: seen, ..WallPoint::default() }),
                 ..WallRow::default()
             });
@@ -294,8 +295,7 @@ fn frame(lattice: &Lattice, bodies: &dyn Bodies, near: &Found) -> Option<(Vector
     let (body, node) = (BodyId(near.body), lattice.node(near.cell));
     let pose = bodies.pose(body);
     let widest = lattice.widths(node)[..lattice.dim].iter().copied().fold(0.0, f64::max);
-    let normal =
-        pose.orientation * bodies.solid(body).normal(pose.to_body(pose.position + near.arm), widest);
+    let normal = pose.orientation * bodies.solid(body).normal(pose.to_body(pose.position + near.arm), widest);
     let h = cell_edge(lattice, node, normal);
     (h > 0.0).then_some((normal, h))
 }

@@ -1,7 +1,7 @@
 //! Turbulent plane Couette flow whose lower wall is a side of the box, or a plate that slides in the box.
 use crate::Outcome;
 use crate::moved_body::MovedScene;
-use coupling::{FlowSolver, Walled};
+use coupling::Walled;
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Hooked, Hooks, Modelled, Projection, Side, TransportParams};
 use ibm::SmoothForcing;
 use interfaces::{Aabb, Closure, Point, Solid, SurfaceElement, Twist, Vector};
@@ -155,18 +155,15 @@ impl Couette {
                 .fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
             friction / area
         };
-        let first = if lower == Lower::Side { 0 } else { UNDER };
-        let column = |list: &[f64]| (first..cells).map(|j| list[8 * j]).collect::<Vec<f64>>();
         let y: Vec<f64> = grid.axis(1).faces().windows(2).map(|f| 0.5 * (f[0] + f[1])).collect();
         let first_fluid = y.iter().position(|y| *y > 0.0).unwrap_or(0);
         let u: Vec<f64> = flow.centred_velocity(0).map(|u| u - drift).collect();
-        let skip = first_fluid - first;
-        let above = |list: Vec<f64>| list[skip..].to_vec();
+        let column = |list: &[f64]| (first_fluid..cells).map(|j| list[8 * j]).collect::<Vec<f64>>();
         Ok(CouetteProfile {
-            u: above(column(&u)),
-            k: above(column(model.closure.k())),
-            scale: above(column(model.closure.scale())),
-            nu_t: above(column(model.closure.nu_t())),
+            u: column(&u),
+            k: column(model.closure.k()),
+            scale: column(model.closure.scale()),
+            nu_t: column(model.closure.nu_t()),
             y: y[first_fluid..].to_vec(),
             friction: [on_plate.unwrap_or_else(|| on_side(false)), on_side(true)],
             floored: model.closure.floored(),

@@ -86,6 +86,8 @@ struct Work {
 
 /// The least value of k \[m²/s²\] and of ω or ε.
 const FLOOR: f64 = 1e-30;
+/// k in solids: so little that it is none, and enough not to be counted as set after a solve.
+const NOTHING: f64 = 2.0 * FLOOR;
 /// ν_t over √k and the mixing length: C_μ^¼.
 const MIXING: f64 = 0.547_722_557_505_166_1;
 
@@ -398,7 +400,7 @@ impl<L: Law> Closure for TwoEquation<L> {
         solid.iter().for_each(|&cell| self.scale[cell] = FLOOR);
         let most = self.scale.iter().copied().fold(FLOOR, f64::max);
         for &cell in solid {
-            (self.k[cell], self.scale[cell], self.eddy[cell]) = (FLOOR, most, 0.0);
+            (self.k[cell], self.scale[cell], self.eddy[cell]) = (NOTHING, most, 0.0);
         }
     }
     fn see_walls(&mut self, walls: &[WallRow], nu: f64) -> Result<(), SolveError> {

@@ -124,9 +124,7 @@ impl WallLayer {
                 let shear = match f.shear {
                     WallShear::Mean if row.seen.is_none() => row.shear,
                     // That on the line to where the flow is seen is not the mean over any cell.
-                    _ => {
-                        row.shear.map(|mean| share * f.log_shear(row.y, k) + (1.0 - share) * mean)
-                    }
+                    _ => row.shear.map(|mean| share * f.log_shear(row.y, k) + (1.0 - share) * mean),
                 };
                 w.shear = w.shear.zip(shear).map(|(sum, shear)| sum + part * shear);
                 w.free += part * row.free;

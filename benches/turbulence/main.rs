@@ -1,11 +1,13 @@
-//! Turbulence models in flows whose walls are sides of the box: against body-fitted runs of others, direct numerical simulation, and
+//! Turbulence models in flows whose walls are sides of the box, or bodies that move in it: against body-fitted runs of others, direct numerical simulation, and
 //! measurements; what they cost, and what they bear. On one thread: `cargo bench --bench turbulence`, or with the names of cases after `--`.
 //! Pictures go to `out/turbulence`.
 mod channel;
+mod couette;
 mod eddies_in_channel;
 mod large_eddies;
 mod plate;
 mod robust;
+mod shaken;
 mod step;
 
 use example_support::{Outcome, run_cases};
@@ -20,5 +22,7 @@ fn main() -> Outcome<()> {
         ("robust", robust::bad_starts),
         ("tgv", large_eddies::taylor_green),
         ("les", eddies_in_channel::channel),
+        ("couette", couette::sliding_plate),
+        ("shaken", shaken::swinging_cylinder),
     ])
 }

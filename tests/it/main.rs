@@ -9,6 +9,7 @@ mod immersed_scalar;
 mod immersed_stress;
 mod meshes;
 mod moving;
+mod moving_walls;
 mod physics;
 mod population;
 mod preset;

@@ -26,8 +26,9 @@ fn command(scene: &str, set: &[&str], out: &Path) -> Command {
 
 /// Runs `scene` as a whole, then kills it again and again while it runs and lets it go on: the results are the same, bit for bit, and so are the tables.
 fn killed(scene: &str, set: &[&str]) {
-    let folder =
-        |name: &str| std::env::temp_dir().join(format!("siltflow-{name}-{scene}-{}", std::process::id()));
+    let folder = |name: &str| {
+        std::env::temp_dir().join(format!("siltflow-{name}-{scene}-{}-{}", set.len(), std::process::id()))
+    };
     let (whole, pieces) = (folder("whole"), folder("pieces"));
     for folder in [&whole, &pieces] {
         let _ = std::fs::remove_dir_all(folder);
@@ -111,6 +112,23 @@ fn a_cylinder_that_swings_and_is_killed_goes_on() {
     killed(
         "oscillating_cylinder",
         &["grid.x.fine=0.1", "grid.y.fine=0.1", "time.dt=0.025", "time.end=10", "forces.start=5"],
+    );
+}
+
+#[test]
+fn a_turbulent_cylinder_that_swings_and_is_killed_goes_on() {
+    killed(
+        "oscillating_cylinder",
+        &[
+            "grid.x.fine=0.1",
+            "grid.y.fine=0.1",
+            "fluid.nu=1e-4",
+            "turbulence=\"sst\"",
+            "output.field=\"k\"",
+            "time.dt=0.02",
+            "time.end=4",
+            "forces.start=2",
+        ],
     );
 }
 

@@ -4,7 +4,7 @@ use fv_mesh::{
     ScalarTransport, Sides, Velocity,
 };
 use ibm::ViscousStep;
-use interfaces::{Checkpoint, Vector};
+use interfaces::{Bodies, Checkpoint, Vector};
 
 /// An algorithm for incompressible flow whose step has parts, so that bodies can act in between: `predict`, then as many
 /// [`rounds`](Self::rounds) of forcing and `project` as it asks for, then `finish`.
@@ -68,6 +68,16 @@ pub trait FlowSolver<const D: usize>: Checkpoint {
     fn courant(&self, dt: f64) -> f64;
     /// The longest step \[s\] with Courant number ≤ `courant` that is stable.
     fn stable_dt(&self, courant: f64) -> f64;
+    /// Tells what acts on the flow where bodies are that it sees as walls: before a step, and when they have moved in it. Flows that carry
+    /// no turbulence model have nothing to do.
+    ///
+    /// # Errors
+    /// [`FlowError::Closure`].
+    #[inline(always)]
+    fn follow_walls(&mut self, bodies: &dyn Bodies) -> Result<(), FlowError> {
+        let _ = bodies;
+        Ok(())
+    }
     /// What viscosity does in the step under way, of `dt` \[s\]; `None` where forces on walls do not follow from the fluid's own viscosity alone: beside models for turbulence, or where diffusion sees the
     /// forcing.
     fn viscous_step(&self, _dt: f64) -> Option<ViscousStep> {
@@ -176,6 +186,9 @@ where
     forward!(Hooked);
     fn project(&mut self, dt: f64) -> Result<(), FlowError> {
         Hooked::project(self, dt)
+    }
+    fn follow_walls(&mut self, bodies: &dyn Bodies) -> Result<(), FlowError> {
+        Hooked::follow_walls(self, bodies)
     }
     fn viscous_limit(&self) -> f64 {
         self.flow.viscous_limit()

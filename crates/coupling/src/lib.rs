@@ -44,6 +44,7 @@ mod serials;
 mod simulation;
 mod snapshots;
 mod strategy;
+mod walled;
 
 pub use checkpoint::{CheckpointError, load, previous, save};
 pub use error::CouplingError;
@@ -58,3 +59,4 @@ pub use run::{Evolving, Observer, RunSummary, Schedule, StepInfo, run};
 pub use simulation::{Immersed, Module, Simulation, Timings, WeightBalance};
 pub use snapshots::{BodyPaths, Quantity, SnapshotFeed};
 pub use strategy::{Exchange, Explicit, Iterated, OneSolve, Strategy};
+pub use walled::Walled;

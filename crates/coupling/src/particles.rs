@@ -327,10 +327,11 @@ where
         self.check_inside(flow)?;
         self.forcing.begin(flow.viscous_step(dt));
         timings.measure(Module::SolidFraction, || self.forcing.place(flow.velocity(), &self.bodies))?;
-        S::exchange(self, flow, dt, timings)
+        S::exchange(self, flow, dt, timings)?;
+        Ok(timings.measure(Module::SolidFraction, || flow.follow_walls(&self.bodies))?)
     }
 
-    fn begin(&mut self, flow: &A) -> Result<(), CouplingError> {
+    fn begin(&mut self, flow: &mut A) -> Result<(), CouplingError> {
         let (n, started) = (self.bodies.n_bodies(), self.serials.len());
         if started > n {
             return Err(CouplingError::Renumbered { before: started, now: n });
@@ -341,17 +342,17 @@ where
             self.renumber(&numbers);
         }
         let (n, started) = (self.bodies.n_bodies(), self.serials.len());
-        if started == n {
-            return Ok(());
+        if started < n {
+            self.fit(flow)?;
+            self.states.resize(n, State::default());
+            self.forcing.place(flow.velocity(), &self.bodies)?;
+            for (b, s) in self.states.iter_mut().enumerate().skip(started) {
+                let internal = self.forcing.internal_momentum(flow.velocity(), &self.bodies, BodyId(b));
+                s.internal = [six(internal); 2];
+            }
+            self.serials.count(n);
         }
-        self.fit(flow)?;
-        self.states.resize(n, State::default());
-        self.forcing.place(flow.velocity(), &self.bodies)?;
-        for (b, s) in self.states.iter_mut().enumerate().skip(started) {
-            s.internal = [six(self.forcing.internal_momentum(flow.velocity(), &self.bodies, BodyId(b))); 2];
-        }
-        self.serials.count(n);
-        Ok(())
+        Ok(flow.follow_walls(&self.bodies)?)
     }
 
     fn check(&self, flow: &A) -> Result<(), CouplingError> {

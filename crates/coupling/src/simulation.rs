@@ -25,7 +25,7 @@ pub trait Immersed<const D: usize, A = Projection<D>>: Checkpoint {
     ///
     /// # Errors
     /// [`CouplingError`] when this cannot be put on the flow's grid.
-    fn begin(&mut self, _flow: &A) -> Result<(), CouplingError> {
+    fn begin(&mut self, _flow: &mut A) -> Result<(), CouplingError> {
         Ok(())
     }
 
@@ -176,7 +176,7 @@ impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Simulation<D, P, A> {
 
 impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Evolving for Simulation<D, P, A> {
     fn begin(&mut self) -> Result<(), CouplingError> {
-        self.particles.begin(&self.flow)
+        self.particles.begin(&mut self.flow)
     }
     fn step(&mut self, dt: f64) -> Result<(), CouplingError> {
         Simulation::step(self, dt)

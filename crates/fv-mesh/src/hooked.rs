@@ -3,7 +3,7 @@ use crate::{
     BodyForce, CartesianGrid, ClosureSlot, Field, FlowError, FlowStatistics, Fluid, Hooks, Projection,
     ScalarTransport, Sides, Velocity,
 };
-use interfaces::{Checkpoint, RestartError, Vector};
+use interfaces::{Bodies, Checkpoint, RestartError, Vector};
 
 /// A [`Projection`] and its [`Hooks`] as one, whose step has the parts of the flow's own, so that something else can act in between, as
 /// bodies do: [`Projection::advance_with`] is `predict`, forcing, `project`, `finish` of this.
@@ -57,6 +57,13 @@ where
     /// See there.
     pub fn project(&mut self, dt: f64) -> Result<(), FlowError> {
         self.flow.project(dt)
+    }
+    /// Tells the closure where bodies are that it sees as walls, before a step and when they have moved in it.
+    ///
+    /// # Errors
+    /// What the closure answers.
+    pub fn follow_walls(&mut self, bodies: &dyn Bodies) -> Result<(), FlowError> {
+        self.hooks.closure.follow(&self.flow, bodies)
     }
     /// Ends a step of `dt`; the closure follows the flow.
     ///

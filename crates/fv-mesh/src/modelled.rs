@@ -3,7 +3,7 @@ use crate::diffusion::stiffness_of_cells;
 use crate::metrics::Metrics;
 use crate::transport::{CellTransport, WallFaces};
 use crate::{CartesianGrid, EddyStress, Field, FlowError, Projection, Sides, TransportParams, Velocity};
-use interfaces::{Checkpoint, Closure, RestartError, SolveError, WallRow};
+use interfaces::{Bodies, Checkpoint, Closure, RestartError, SolveError, WallRow};
 
 /// The largest Σ ν_t/h² over the axes, of cells (x fastest) or on walls \[1/s\].
 fn rate<const D: usize>(stiffness: &[Vec<f64>; D], eddy: &[f64], on_walls: &[f64]) -> f64 {
@@ -40,6 +40,15 @@ pub trait ClosureSlot<const D: usize> {
     fn is_absent(&self) -> bool {
         false
     }
+    /// Before a step, and when bodies in the flow have moved in it: for models that see them as walls. Unless told otherwise it is nothing.
+    ///
+    /// # Errors
+    /// [`FlowError::Closure`].
+    #[inline(always)]
+    fn follow(&mut self, flow: &Projection<D>, bodies: &dyn Bodies) -> Result<(), FlowError> {
+        let _ = (flow, bodies);
+        Ok(())
+    }
 }
 
 impl<const D: usize> ClosureSlot<D> for () {
@@ -75,6 +84,9 @@ impl<const D: usize, C: ClosureSlot<D>> ClosureSlot<D> for Option<C> {
     fn is_absent(&self) -> bool {
         self.as_ref().is_none_or(C::is_absent)
     }
+    fn follow(&mut self, flow: &Projection<D>, bodies: &dyn Bodies) -> Result<(), FlowError> {
+        self.as_mut().map_or(Ok(()), |model| model.follow(flow, bodies))
+    }
 }
 
 /// A [`Closure`], the equations it may ask for on a flow's cells, and the walls of the box as it sees them.
@@ -91,6 +103,12 @@ pub struct Modelled<const D: usize, C> {
     pub(crate) stress: Option<EddyStress<D>>,
     /// The rows of the box's walls, then those of immersed ones.
     rows: Vec<WallRow>,
+    /// Cells in which the momentum has ν_t of an immersed wall: cell, row among the immersed ones, share.
+    film: Vec<(usize, usize, f64)>,
+    /// ν_t of every cell as the momentum has it, where there is a film.
+    filmed: Vec<f64>,
+    /// Is the centre of a cell in a solid? Empty if none is.
+    solid: Vec<bool>,
 }
 
 impl<const D: usize, C: Closure> Modelled<D, C> {
@@ -112,6 +130,9 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
             stiffness: std::array::from_fn(|a| stiffness_of_cells(&metrics.axes[a], grid.cells()[a])),
             stress: None,
             rows: Vec::new(),
+            film: Vec::new(),
+            filmed: Vec::new(),
+            solid: Vec::new(),
         })
     }
     /// The equations on the flow's cells.
@@ -129,7 +150,7 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
 
     /// Makes the stress of what the model says now. Is there any?
     pub(crate) fn refresh(&mut self, viscosity: f64, time: f64) -> Result<bool, FlowError> {
-        let Some(eddy) = self.closure.eddy_viscosity() else { return Ok(false) };
+        let Some(mut eddy) = self.closure.eddy_viscosity() else { return Ok(false) };
         let (grid, on_walls) = (self.transport.grid(), self.closure.wall_viscosity());
         let failed = |what, expected, found| {
             Err(FlowError::Closure { time, source: SolveError::Length { what, expected, found } })
@@ -138,6 +159,16 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
             return failed("the eddy viscosity", grid.n_cells(), eddy.len());
         }
         let rows = self.walls.rows().len();
+        if !self.film.is_empty() && on_walls.len() == self.rows.len() {
+            self.filmed.clear();
+            self.filmed.extend_from_slice(eddy);
+            for &(cell, row, share) in &self.film {
+                // Layers behind one another.
+                let (wall, own) = (viscosity + on_walls[rows + row], viscosity + eddy[cell]);
+                self.filmed[cell] = wall * own / (share * own + (1.0 - share) * wall) - viscosity;
+            }
+            eddy = &self.filmed;
+        }
         let on_walls =
             if on_walls.len() == self.rows.len() { &on_walls[..rows.min(on_walls.len())] } else { on_walls };
         if !on_walls.is_empty() && on_walls.len() != rows {
@@ -155,6 +186,84 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
         Ok(true)
     }
 
+    /// Bodies that a forcing moves are somewhere else, with these `rows` beside them, which have k. `film` lists cells in which the momentum
+    /// has ν_t of a wall: cell, row, and the share in 0 … 1.
+    ///
+    /// # Errors
+    /// [`FlowError::Closure`] for rows, cells and shares that make no sense.
+    pub fn see_walls(
+        &mut self,
+        flow: &Projection<D>,
+        rows: &[WallRow],
+        film: &[(usize, usize, f64)],
+    ) -> Result<(), FlowError> {
+        let (n, viscosity, time) = (self.transport.grid().n_cells(), flow.fluid().viscosity, flow.time());
+        let failed = |source| FlowError::Closure { time, source };
+        if let Some(&(cell, row, share)) = film
+            .iter()
+            .find(|(cell, row, share)| *cell >= n || *row >= rows.len() || !(0.0..=1.0).contains(share))
+        {
+            let (what, range) = ("the share of a film", "in 0 … 1, in a cell of the flow, of a row");
+            let value = if row < rows.len() { share } else { row as f64 };
+            return Err(failed(SolveError::Value { what, cell: Some(cell), value, range }));
+        }
+        self.film.clear();
+        self.film.extend_from_slice(film);
+        self.list_rows(flow.velocity(), rows, viscosity);
+        self.closure.see_walls(&self.rows, viscosity).map_err(failed)
+    }
+
+    /// Cells `solid` have their centre in a solid from now on. What has come out of one takes its state from the cells beside it that
+    /// have not.
+    ///
+    /// # Errors
+    /// [`FlowError::Closure`] for a cell that is none.
+    pub fn immerse(&mut self, solid: &[usize], time: f64) -> Result<(), FlowError> {
+        let grid = self.transport.grid();
+        let n = grid.n_cells();
+        if let Some(&cell) = solid.iter().find(|&&cell| cell >= n) {
+            let (what, range) = ("the number of a cell in a solid", "a cell of the flow");
+            let source = SolveError::Value { what, cell: Some(cell), value: cell as f64, range };
+            return Err(FlowError::Closure { time, source });
+        }
+        let mut now = vec![false; n];
+        solid.iter().for_each(|&cell| now[cell] = true);
+        let came_out = |cell: usize| self.solid.get(cell) == Some(&true) && !now[cell];
+        let fresh: Vec<_> = (0..self.solid.len())
+            .filter(|&cell| came_out(cell))
+            .map(|cell| {
+                let mut from = self.transport.around(cell);
+                from.retain(|&c| !now[c] && !self.solid[c]);
+                (cell, from)
+            })
+            .collect();
+        self.closure.immerse(solid, &fresh);
+        if now != self.solid {
+            self.wall_off(now);
+        }
+        Ok(())
+    }
+
+    /// Brings the model up to date with the flow after a step of `dt` \[s\]; `immersed` are the rows beside bodies that a forcing moves.
+    ///
+    /// # Errors
+    /// [`FlowError::Closure`].
+    pub fn correct_beside(
+        &mut self,
+        flow: &Projection<D>,
+        immersed: &[WallRow],
+        dt: f64,
+    ) -> Result<(), FlowError> {
+        self.update(flow.velocity(), immersed, flow.fluid().viscosity, flow.time(), Some(dt))
+    }
+
+    /// The rows of the box's walls, and immersed ones.
+    fn list_rows(&mut self, velocity: &Velocity<D>, immersed: &[WallRow], viscosity: f64) {
+        let rows = self.walls.fill(velocity, self.closure.kinetic_energy(), viscosity);
+        self.rows.clear();
+        self.rows.extend(rows.iter().chain(immersed));
+    }
+
     /// Brings the model up to date with `velocity`.
     pub(crate) fn update(
         &mut self,
@@ -164,9 +273,7 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
         time: f64,
         dt: Option<f64>,
     ) -> Result<(), FlowError> {
-        let rows = self.walls.fill(velocity, self.closure.kinetic_energy(), viscosity);
-        self.rows.clear();
-        self.rows.extend(rows.iter().chain(immersed));
+        self.list_rows(velocity, immersed, viscosity);
         let mut cells = self.transport.on(velocity)?;
         let corrected = self.closure.correct(&mut cells, &self.rows, viscosity, dt);
         corrected.map_err(|source| FlowError::Closure { time, source })
@@ -179,7 +286,7 @@ impl<const D: usize, C: Closure> ClosureSlot<D> for Modelled<D, C> {
         Ok(self.stress.as_ref().filter(|_| given))
     }
     fn correct(&mut self, flow: &Projection<D>, dt: f64) -> Result<(), FlowError> {
-        self.update(flow.velocity(), &[], flow.fluid().viscosity, flow.time(), Some(dt))
+        self.correct_beside(flow, &[], dt)
     }
     fn fastest(&self) -> f64 {
         let eddy = self.closure.eddy_viscosity().unwrap_or_default();
@@ -187,12 +294,29 @@ impl<const D: usize, C: Closure> ClosureSlot<D> for Modelled<D, C> {
     }
 }
 
-/// The model's state.
+impl<const D: usize, C> Modelled<D, C> {
+    /// Takes cells in solids out of the equations.
+    fn wall_off(&mut self, solid: Vec<bool>) {
+        let dry = solid.iter().enumerate().filter(|(_, solid)| **solid);
+        self.transport.set_walls(dry.map(|(cell, _)| (cell, Vec::new())).collect());
+        self.solid = solid;
+    }
+}
+
+/// The model's state, and the cells in solids that it knows of.
 impl<const D: usize, C: Checkpoint> Checkpoint for Modelled<D, C> {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         self.closure.save(sink);
+        if !self.solid.is_empty() {
+            sink("solid", &self.solid.iter().map(|solid| f64::from(*solid)).collect::<Vec<_>>());
+        }
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
-        self.closure.restore(source)
+        self.closure.restore(source)?;
+        if source("solid").is_some() {
+            let saved = RestartError::take(source, "solid", self.transport.grid().n_cells())?;
+            self.wall_off(saved.iter().map(|solid| *solid > 0.5).collect());
+        }
+        Ok(())
     }
 }

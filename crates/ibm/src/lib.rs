@@ -17,7 +17,7 @@
 //! [`SmoothFilm`] tells what the flow leaves of thin films between bodies to a model of lubrication.
 //!
 //! Turbulence models get the distance from bodies and walls from [`WallDistance`], and what wall functions need beside bodies
-//! from [`WallRows`].
+//! from [`WallRows`]; beside bodies that a smooth forcing moves, all of it from [`NearWalls`].
 //!
 //! The crate works on any [`interfaces::VelocityField`] and any [`interfaces::Bodies`].
 //!
@@ -58,6 +58,7 @@ mod fraction;
 mod hfdib;
 mod immersed_scalar;
 mod kernel;
+mod near_walls;
 mod neighbour;
 mod pockets;
 mod polynomial;
@@ -86,6 +87,7 @@ pub use fraction::{cell_fraction, plane_fraction};
 pub use hfdib::Hfdib;
 pub use immersed_scalar::ImmersedScalar;
 pub use kernel::{Kernel, WIDEST};
+pub use near_walls::NearWalls;
 pub use pockets::{Pocket, Pockets};
 pub use profile::{Given, Profile, Weights};
 pub use reconstruction::{FluidPoint, Reconstruction, SurfaceCell};

@@ -90,6 +90,23 @@ pub trait Closure: Send {
     fn wall_viscosity(&self) -> &[f64] {
         &[]
     }
+    /// Does it want to be told of walls inside the flow? If not, [`immerse`](Self::immerse) and [`see_walls`](Self::see_walls) need not be called.
+    fn wants_walls(&self) -> bool {
+        false
+    }
+    /// Walls inside the flow are somewhere else: cells `solid` have their centre in one now, those of `fresh` have come out of one, and
+    /// take their state from the cells given with each.
+    fn immerse(&mut self, solid: &[usize], fresh: &[(usize, Vec<usize>)]) {
+        let _ = (solid, fresh);
+    }
+    /// Brings [`wall_viscosity`](Self::wall_viscosity) up to date with these rows and their k, all else being as it is.
+    ///
+    /// # Errors
+    /// [`SolveError::Value`] for rows that make no sense.
+    fn see_walls(&mut self, walls: &[WallRow], nu: f64) -> Result<(), SolveError> {
+        let _ = (walls, nu);
+        Ok(())
+    }
     /// How far the model's own equations were from being met by what the last call found: their largest relative residual.
     fn residual(&self) -> f64 {
         0.0
@@ -134,6 +151,15 @@ impl<C: Closure + ?Sized> Closure for Box<C> {
     }
     fn wall_viscosity(&self) -> &[f64] {
         (**self).wall_viscosity()
+    }
+    fn wants_walls(&self) -> bool {
+        (**self).wants_walls()
+    }
+    fn immerse(&mut self, solid: &[usize], fresh: &[(usize, Vec<usize>)]) {
+        (**self).immerse(solid, fresh);
+    }
+    fn see_walls(&mut self, walls: &[WallRow], nu: f64) -> Result<(), SolveError> {
+        (**self).see_walls(walls, nu)
     }
     fn residual(&self) -> f64 {
         (**self).residual()

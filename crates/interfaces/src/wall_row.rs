@@ -24,6 +24,11 @@ pub struct WallRow {
     pub tangent: Vector,
     /// What is seen at P₁ and P₂, farther out on the normal; `None` where there is no room for them.
     pub points: [Option<WallPoint>; 2],
+    /// Where the wall's friction (ν + ν_t) u_t/y is taken from, and k for its ν_t, instead of from the centre: for walls beside which the
+    /// velocity of the centre is not to be trusted.
+    pub seen: Option<WallPoint>,
+    /// Share of the model's own equations in the cell, in 0 … 1: with 0 the wall functions say all.
+    pub free: f64,
 }
 
 /// The flow at a point on the normal of a wall.

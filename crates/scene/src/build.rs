@@ -291,6 +291,9 @@ impl Setup {
             "switched off"
         };
         let turbulence = match &self.turbulence {
+            Some(t) if any && self.walls_move() => {
+                format!("{}, beside bodies wherever they are", t.model.name())
+            }
             Some(t) => t.model.name().to_owned(),
             None if !fluid => "no fluid".into(),
             None => "no `turbulence`: the flow is resolved, or laminar".into(),

@@ -1,6 +1,7 @@
 //! The flow of a scene and what acts on it.
 use crate::build::BuildError;
-use crate::setup::{ModelChoice, ScalarSetup, ScaleChoice, Setup};
+use crate::setup::{ForcingChoice, ModelChoice, ScalarSetup, ScaleChoice, Setup};
+use coupling::Walled;
 use fv_mesh::{
     BodyForce, Boussinesq, CartesianGrid, Field, FlowError, Hooked, Hooks, Modelled, Projection, Scalar,
     ScalarTransport, Sides, TransportParams, Velocity,
@@ -13,7 +14,8 @@ use turb::{
 };
 
 /// The flow, whatever acts on it: what a scene does not ask for is `None` or empty.
-pub(crate) type Physics<const D: usize> = Hooked<D, Option<Lift>, Option<Model<D>>, Scalars<D>>;
+pub(crate) type Physics<const D: usize> =
+    Hooked<D, Option<Lift>, Option<Walled<D, Box<dyn SavedClosure>>>, Scalars<D>>;
 /// A turbulence model, chosen at run time.
 pub(crate) type Model<const D: usize> = Modelled<D, Box<dyn SavedClosure>>;
 
@@ -127,7 +129,12 @@ impl Setup {
             let (expansion, reference) = s.buoyancy?;
             Some(Lift { scalar, law: Boussinesq { expansion, reference, gravity: self.gravity } })
         });
-        let model = self.model(flow.grid(), flow.sides(), TransportParams::default())?;
+        let mut model = self.model(flow.grid(), flow.sides(), TransportParams::default())?;
+        // The others follow the bodies by themselves.
+        if let Some(model) = model.as_mut().filter(|_| !self.walls_move()) {
+            self.stand_beside(model, flow.sides())?;
+        }
+        let model = model.map(Walled::new);
         let hooks = Hooks { body_force: lift, forcing: (), closure: model, scalars };
         Ok(Hooked::new(flow, hooks))
     }
@@ -205,15 +212,29 @@ impl Setup {
                 Box::new(Wale::new(WaleConstants { c_w: c.unwrap_or(usual.c_w) }, n)?)
             }
         };
-        let mut model = Modelled::new(closure, grid, sides, params)?;
+        Ok(Some(Modelled::new(closure, grid, sides, params)?))
+    }
+
+    /// Does the turbulence model see the bodies as walls wherever they are?
+    pub(crate) fn walls_move(&self) -> bool {
+        self.turbulence.as_ref().is_some_and(|t| t.model.averages())
+            && self.bodies.forcing() != ForcingChoice::CutLinks
+    }
+
+    /// Tells the model how far from the bodies, as they are at the start, the cells are.
+    pub(crate) fn stand_beside<const D: usize>(
+        &self,
+        model: &mut Model<D>,
+        sides: &Sides<D>,
+    ) -> Result<(), BuildError> {
         let bodies = self.still();
         if bodies.n_bodies() > 0 {
             let mut distance = WallDistance::new();
-            distance.update(&grid.lattice(None, sides), &bodies)?;
+            distance.update(&model.transport().grid().lattice(None, sides), &bodies)?;
             let ours = model.transport_mut().wall_distance_mut();
             ours.iter_mut().zip(distance.values()).for_each(|(d, b)| *d = d.min(*b));
         }
-        Ok(Some(model))
+        Ok(())
     }
 
     /// The fastest of what sides, initial flow and bodies bring \[m/s\]; 1 without any.

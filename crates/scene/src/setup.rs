@@ -220,15 +220,6 @@ impl Setup {
                 );
             }
         }
-        if let Some(t) = &self.turbulence
-            && t.model.averages()
-            && self.bodies.any_moves()
-        {
-            return Err(root.fail(
-                "turbulence",
-                "models of two equations do not see bodies that move yet; take \"wale\" (in space), or hold the bodies",
-            ));
-        }
         if let Some(s) = self.scalars.iter().find(|s| s.bodies.is_some())
             && (self.bodies.any_moves() || self.bodies.list.is_empty())
         {

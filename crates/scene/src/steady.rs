@@ -63,7 +63,10 @@ impl Setup {
         if let Some(force) = &self.force {
             flow.set_force(std::array::from_fn(|a| force[a].at(&[self.end])));
         }
-        let model = self.model(flow.grid(), flow.sides(), TransportParams::steady())?;
+        let mut model = self.model(flow.grid(), flow.sides(), TransportParams::steady())?;
+        if let Some(model) = &mut model {
+            self.stand_beside(model, flow.sides())?;
+        }
         Ok(Steady { flow, model, loads: Vec::new(), time: self.end })
     }
 }

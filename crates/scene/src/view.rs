@@ -97,7 +97,7 @@ pub(crate) struct Other<'a> {
 }
 
 /// What a turbulence model has to show.
-fn of_model<const D: usize>(model: &Option<Model<D>>) -> Vec<Other<'_>> {
+fn of_model<const D: usize>(model: Option<&Model<D>>) -> Vec<Other<'_>> {
     let Some(Model { closure, .. }) = model else { return Vec::new() };
     fn field<'a>(name: &'a str, unit: &'a str, values: &'a [f64]) -> Other<'a> {
         Other { name, unit, values: Box::new(values.iter().copied()) }
@@ -172,10 +172,10 @@ impl<const D: usize> Flow<D> for Physics<D> {
         let scalars = self.hooks.scalars.iter();
         let scalars =
             scalars.map(|(name, unit, field)| Other { name, unit, values: Box::new(field.values()) });
-        scalars.chain(of_model(&self.hooks.closure)).collect()
+        scalars.chain(of_model(self.hooks.closure.as_ref().map(|walled| &walled.model))).collect()
     }
     fn y_plus(&self) -> Option<YPlus> {
-        self.hooks.closure.as_ref()?.closure.y_plus()
+        self.hooks.closure.as_ref()?.model.closure.y_plus()
     }
 }
 
@@ -210,7 +210,7 @@ impl<const D: usize> Flow<D> for Steady<D> {
         &self.loads
     }
     fn others(&self) -> Vec<Other<'_>> {
-        of_model(&self.model)
+        of_model(self.model.as_ref())
     }
     fn y_plus(&self) -> Option<YPlus> {
         self.model.as_ref()?.closure.y_plus()

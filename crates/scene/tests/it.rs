@@ -494,6 +494,53 @@ fn a_wall_in_a_steady_channel_has_friction() {
     assert!(run.result["y_plus"]["mean"].as_f64().unwrap() > 10.0);
 }
 
+/// A disc that swings across a turbulent stream: models of two equations see it, by the unsteady algorithm only.
+#[test]
+fn a_model_of_two_equations_sees_a_body_that_moves() {
+    let text = r#"
+        turbulence = { model = "sst", intensity = 0.05, viscosity_ratio = 10.0 }
+        [grid]
+        cells = [60, 40]
+        size = [6.0, 4.0]
+        [sides]
+        x_min = { type = "inlet", velocity = [1.0, 0.0] }
+        x_max = { type = "pressure" }
+        y = "symmetry"
+        [fluid]
+        density = 1.0
+        nu = 1e-4
+        [initial]
+        velocity = [1.0, 0.0]
+        [[bodies]]
+        name = "cylinder"
+        shape = { type = "disc", radius = 0.5 }
+        position = [2.0, 2.0]
+        motion = { type = "prescribed", shift = [0.0, "0.3*sin(3*t)"] }
+        [forces]
+        velocity = 1.0
+        area = 1.0
+        [time]
+        end = 0.5
+        [output]
+        field = "k"
+    "#;
+    let out = folder("swings");
+    let scene = Scene::parse("swings.toml", text, &[]).unwrap();
+    let plan = scene.plan().unwrap().to_string();
+    assert!(plan.contains("beside bodies wherever they are"), "{plan}");
+    let run = scene.run(&quiet(&out), &AtomicBool::new(false)).unwrap();
+    std::fs::remove_dir_all(&out).unwrap();
+    assert_eq!(run.ending, Ending::Done);
+    assert!(run.result["y_plus"]["mean"].as_f64().unwrap() > 5.0, "{}", run.result["y_plus"]);
+    for (more, told) in [
+        ("flow.algorithm=\"simple\"", "a steady flow has no bodies that move"),
+        ("flow.algorithm=\"piso\"", "turbulence models go with \"projection\""),
+    ] {
+        let found = problems(text, more);
+        assert!(found.contains(told), "{more}: {found}");
+    }
+}
+
 /// A disk that is full when the results are written: an error that says so, and a state from which the run goes on as if nothing had been.
 #[cfg(target_os = "linux")]
 #[test]

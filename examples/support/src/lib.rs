@@ -23,6 +23,7 @@ pub mod scene;
 pub mod settling_sphere;
 pub mod sheared_body;
 pub mod sinking_discs;
+pub mod sliding_plate;
 pub mod sphere_stream;
 pub mod startup_theory;
 pub mod suspension;

@@ -2,6 +2,7 @@
 use crate::Outcome;
 use crate::axes::gathered;
 use crate::prescribed_bodies::{PrescribedBodies, forced_step};
+use coupling::FlowSolver;
 use dem::{Disc, Sphere};
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Side};
 use ibm::Forcing;
@@ -11,19 +12,19 @@ use std::f64::consts::TAU;
 const BODY: BodyId = BodyId(0);
 
 /// A flow with a body that moves in it as it is told.
-pub struct MovedScene<const D: usize> {
+pub struct MovedScene<const D: usize, A = Projection<D>> {
     /// The flow.
-    pub flow: Projection<D>,
+    pub flow: A,
     body: PrescribedBodies,
     forcing: Box<dyn Forcing>,
     /// Mass of the fluid that the body displaces \[kg\].
     displaced: f64,
 }
 
-impl<const D: usize> MovedScene<D> {
+impl<const D: usize, A: FlowSolver<D>> MovedScene<D, A> {
     /// With a `solid` of this `volume` that starts at `at` with this `twist`.
     pub fn new(
-        flow: Projection<D>,
+        flow: A,
         forcing: Box<dyn Forcing>,
         (solid, volume): (impl Solid + 'static, f64),
         at: Point,
@@ -87,18 +88,35 @@ impl Noise {
     }
 }
 
-/// A cylinder of diameter 1 that swings along x as −A sin(2πt/T) in fluid at rest, largest speed 1: Re 100 and a Keulegan–Carpenter
-/// number of 5 (Dütsch, Durst, Becker & Lienhart 1998, J. Fluid Mech. 360, 249), in a box of 40 × 30.
-pub struct Swinging {
-    scene: MovedScene<2>,
+/// A cylinder of diameter 1 that swings along x as −A sin(2πt/T) in fluid at rest, largest speed 1, with a Keulegan–Carpenter number of 5, in a
+/// box of 40 × 30: without more, at Re 100 (Dütsch, Durst, Becker & Lienhart 1998, J. Fluid Mech. 360, 249).
+pub struct Swinging<A = Projection<2>> {
+    scene: MovedScene<2, A>,
     middle: [f64; 2],
     steps: usize,
     made: usize,
 }
 
+/// Lengths of the box of [`Swinging`].
+const SWINGING_BOX: [f64; 2] = [40.0, 30.0];
+
 impl Swinging {
     /// Time of a swing.
     pub const PERIOD: f64 = 5.0;
+
+    /// The fluid at rest, of this viscosity, with so many cells per diameter, moved by `shift` cells against the cylinder's middle place.
+    ///
+    /// # Errors
+    /// Those of the grid.
+    pub fn still(per_diameter: usize, shift: [f64; 2], viscosity: f64) -> Outcome<Projection<2>> {
+        let h = 1.0 / per_diameter as f64;
+        let [length, height] = SWINGING_BOX;
+        let x = gathered(length, h, [length / 2.0 - 2.0, length / 2.0 + 2.0], 1.05, shift[0])?;
+        let y = gathered(height, h, [height / 2.0 - 1.2, height / 2.0 + 1.2], 1.05, shift[1])?;
+        let fluid = Fluid { density: 1.0, viscosity };
+        Ok(Projection::new(CartesianGrid::from_axes([x, y])?, Side::WALL.everywhere(), fluid)?
+            .with_diffusion(Diffusion::Explicit))
+    }
 
     /// With so many cells per diameter, moved by `shift` cells against the cylinder's middle place, and steps per swing.
     ///
@@ -110,18 +128,39 @@ impl Swinging {
         shift: [f64; 2],
         forcing: Box<dyn Forcing>,
     ) -> Outcome<Self> {
-        let h = 1.0 / per_diameter as f64;
-        let [length, height] = [40.0, 30.0];
-        let x = gathered(length, h, [length / 2.0 - 2.0, length / 2.0 + 2.0], 1.05, shift[0])?;
-        let y = gathered(height, h, [height / 2.0 - 1.2, height / 2.0 + 1.2], 1.05, shift[1])?;
-        let fluid = Fluid { density: 1.0, viscosity: 0.01 };
-        let flow = Projection::new(CartesianGrid::from_axes([x, y])?, Side::WALL.everywhere(), fluid)?
-            .with_diffusion(Diffusion::Explicit);
-        let middle = [0.5 * length, 0.5 * height];
+        Self::within(Self::still(per_diameter, shift, 0.01)?, steps, forcing)
+    }
+}
+
+impl<A: FlowSolver<2>> Swinging<A> {
+    /// In this flow, in the box of [`Swinging::still`].
+    ///
+    /// # Errors
+    /// Those of forcing and body.
+    pub fn within(flow: A, steps: usize, forcing: Box<dyn Forcing>) -> Outcome<Self> {
+        let middle = SWINGING_BOX.map(|length| 0.5 * length);
         let start = Twist { linear: -Vector::x(), ..Twist::default() };
         let disc = (Disc::new(0.5)?, 0.125 * TAU);
         let scene = MovedScene::new(flow, forcing, disc, Point::new(middle[0], middle[1], 0.0), start);
         Ok(Self { scene, middle, steps, made: 0 })
+    }
+    /// The flow.
+    pub fn flow(&self) -> &A {
+        &self.scene.flow
+    }
+
+    /// One step: the force along x over ρU²D.
+    ///
+    /// # Errors
+    /// Those of flow and forcing.
+    pub fn step(&mut self) -> Outcome<f64> {
+        let amplitude = Swinging::PERIOD / TAU;
+        let dt = Swinging::PERIOD / self.steps as f64;
+        self.made += 1;
+        let phase = TAU * self.made as f64 / self.steps as f64;
+        let x = self.middle[0] - amplitude * phase.sin();
+        let twist = Twist { linear: Vector::new(-phase.cos(), 0.0, 0.0), ..Twist::default() };
+        Ok(self.scene.step(dt, Point::new(x, self.middle[1], 0.0), twist)?.force.x)
     }
 
     /// The forces along x of the next swing, step by step, over ρU²D.
@@ -129,17 +168,7 @@ impl Swinging {
     /// # Errors
     /// Those of flow and forcing.
     pub fn swing(&mut self) -> Outcome<Vec<f64>> {
-        let amplitude = Self::PERIOD / TAU;
-        let dt = Self::PERIOD / self.steps as f64;
-        (0..self.steps)
-            .map(|_| {
-                self.made += 1;
-                let phase = TAU * self.made as f64 / self.steps as f64;
-                let x = self.middle[0] - amplitude * phase.sin();
-                let twist = Twist { linear: Vector::new(-phase.cos(), 0.0, 0.0), ..Twist::default() };
-                Ok(self.scene.step(dt, Point::new(x, self.middle[1], 0.0), twist)?.force.x)
-            })
-            .collect()
+        (0..self.steps).map(|_| self.step()).collect()
     }
 }
 

@@ -1,7 +1,6 @@
 //! Bodies that are where they are told to be and move as they are told.
 use crate::Outcome;
 use coupling::FlowSolver;
-use fv_mesh::Projection;
 use ibm::Forcing;
 use interfaces::{
     Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Point, Pose, Rotation, Solid, SurfaceElement, Twist,
@@ -45,8 +44,8 @@ impl PrescribedBodies {
 ///
 /// # Errors
 /// Those of flow and forcing.
-pub fn forced_step<const D: usize>(
-    flow: &mut Projection<D>,
+pub fn forced_step<const D: usize, A: FlowSolver<D>>(
+    flow: &mut A,
     forcing: &mut dyn Forcing,
     bodies: &PrescribedBodies,
     dt: f64,
@@ -58,6 +57,7 @@ pub fn forced_step<const D: usize>(
         forcing.force(flow.velocity_mut(), bodies);
         flow.project(dt)?;
     }
+    flow.follow_walls(bodies)?;
     Ok(flow.finish(dt)?)
 }
 

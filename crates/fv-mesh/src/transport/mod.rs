@@ -163,6 +163,9 @@ impl<const D: usize> CellTransport<D> {
         let (grid, periodic) = (self.ops.grid(), self.ops.metrics().periodic);
         let (n, s) = (grid.cells(), grid.stride());
         self.closed.clear();
+        if dry.is_empty() {
+            self.carrier = None;
+        }
         for &(cell, _) in &dry {
             let (at, place) = (grid.cell(cell), grid.place(grid.cell(cell)));
             for a in 0..D {
@@ -176,8 +179,29 @@ impl<const D: usize> CellTransport<D> {
                 }
             }
         }
-        self.carrier = None;
         self.dry = dry;
+    }
+
+    /// The cells around cell `c`, those that share a corner with it.
+    pub(crate) fn around(&self, c: usize) -> Vec<usize> {
+        let (grid, periodic) = (self.ops.grid(), self.ops.metrics().periodic);
+        let (n, at) = (grid.cells(), grid.cell(c));
+        let mut found = Vec::with_capacity(26);
+        for turn in 0..3_usize.pow(D as u32) {
+            let mut rest = turn;
+            let beside: [Option<usize>; D] = std::array::from_fn(|a| {
+                let i = (at[a] + n[a] + rest % 3) - 1;
+                rest /= 3;
+                (periodic[a] || (n[a]..2 * n[a]).contains(&i)).then_some(i % n[a])
+            });
+            if beside.iter().all(Option::is_some) {
+                let cell = grid.index(beside.map(Option::unwrap_or_default));
+                if cell != c && !found.contains(&cell) {
+                    found.push(cell);
+                }
+            }
+        }
+        found
     }
 
     /// Takes the velocity as it is where something passes: not through faces of cells without fluid.
@@ -228,7 +252,8 @@ impl<const D: usize> CellTransport<D> {
         }
     }
 
-    pub(crate) fn grid(&self) -> &CartesianGrid<D> {
+    /// The grid.
+    pub fn grid(&self) -> &CartesianGrid<D> {
         self.ops.grid()
     }
     /// `field` = `values` and zero gradient across the sides.
@@ -241,6 +266,10 @@ impl<const D: usize> CellTransport<D> {
         self.sides.wrap(field.data_mut());
     }
 
+    /// The distance of every cell from the nearest wall \[m\].
+    pub fn wall_distance(&self) -> &[f64] {
+        &self.wall_distance
+    }
     /// The distance of every cell from the nearest wall, to lower where bodies are nearer than the walls of the box.
     pub fn wall_distance_mut(&mut self) -> &mut [f64] {
         &mut self.wall_distance

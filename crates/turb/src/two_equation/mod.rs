@@ -86,6 +86,8 @@ struct Work {
 
 /// The least value of k \[m²/s²\] and of ω or ε.
 const FLOOR: f64 = 1e-30;
+/// k in solids: so little that it is none, and enough not to be counted as set after a solve.
+const NOTHING: f64 = 2.0 * FLOOR;
 /// ν_t over √k and the mixing length: C_μ^¼.
 const MIXING: f64 = 0.547_722_557_505_166_1;
 
@@ -263,7 +265,8 @@ impl<L: Law> TwoEquation<L> {
         }
         for w in &self.layer.cells {
             if let Some(shear) = w.shear {
-                self.work.strain[w.cell] = shear;
+                let strain = &mut self.work.strain[w.cell];
+                *strain = mix(w.free, shear, *strain);
             }
         }
         if L::AUXILIARY {
@@ -280,7 +283,9 @@ impl<L: Law> TwoEquation<L> {
             for w in self.layer.cells.iter().filter(|_| L::GRADIENT) {
                 if let Some(shear) = w.shear {
                     let local = self.local(w.cell, distance[w.cell], nu);
-                    self.work.auxiliary[w.cell] = self.law.auxiliary(&local, Invariants::shear(shear));
+                    let beside = self.law.auxiliary(&local, Invariants::shear(shear));
+                    let auxiliary = &mut self.work.auxiliary[w.cell];
+                    *auxiliary = mix(w.free, beside, *auxiliary);
                 }
             }
         }
@@ -302,7 +307,8 @@ impl<L: Law> TwoEquation<L> {
         self.pins.clear();
         self.pins.extend_from_slice(&self.layer.pins);
         self.pins.extend_from_slice(&self.given[1]);
-        let equation = Equation { pinned: &self.pins, ..equation(&terms, inlet, relax, dt) };
+        let blend = &self.layer.blends;
+        let equation = Equation { pinned: &self.pins, blend, ..equation(&terms, inlet, relax, dt) };
         let solved = tolerant(flow.solve(&equation, &mut self.scale), dt);
         self.work.terms = terms;
         self.floored += floor(&mut self.scale);
@@ -324,7 +330,8 @@ impl<L: Law> TwoEquation<L> {
         for w in &self.layer.cells {
             let local = self.local(w.cell, distance[w.cell], nu);
             let resolved = local.eddy * local.strain * local.strain;
-            let mut of_cell = self.law.k_terms(&local, w.production + (1.0 - w.share) * resolved);
+            let produced = w.production + (1.0 - w.share) * resolved;
+            let mut of_cell = self.law.k_terms(&local, mix(w.free, produced, resolved));
             of_cell.sink += w.conductance / flow.cell_volume(w.cell);
             of_cell.put(&mut terms, w.cell);
         }
@@ -340,6 +347,11 @@ impl<L: Law> TwoEquation<L> {
 fn equation(terms: &[Vec<f64>; 3], inlet: f64, relax: f64, dt: Option<f64>) -> Equation<'_> {
     let [diffusivity, source, sink] = terms;
     Equation { diffusivity, source, sink, pinned: &[], blend: &[], inlet, wall: None, dt, relax }
+}
+
+/// `beside` a wall, `own` of the model: (1 − free) of the first and the rest of the second.
+fn mix(free: f64, beside: f64, own: f64) -> f64 {
+    if free > 0.0 { beside + free.min(1.0) * (own - beside) } else { beside }
 }
 
 /// A steady iteration need not be exact.
@@ -373,6 +385,26 @@ impl<L: Law> Closure for TwoEquation<L> {
     }
     fn wall_viscosity(&self) -> &[f64] {
         &self.layer.viscosity
+    }
+    fn wants_walls(&self) -> bool {
+        true
+    }
+    /// In solids k is the least one and ω or ε the largest of any cell (Isoz et al. 2023, section 3); what has come out of one is the mean
+    /// of the cells around.
+    fn immerse(&mut self, solid: &[usize], fresh: &[(usize, Vec<usize>)]) {
+        for list in [&mut self.k, &mut self.scale, &mut self.eddy] {
+            for (cell, from) in fresh.iter().filter(|(_, from)| !from.is_empty()) {
+                list[*cell] = from.iter().map(|&c| list[c]).sum::<f64>() / from.len() as f64;
+            }
+        }
+        solid.iter().for_each(|&cell| self.scale[cell] = FLOOR);
+        let most = self.scale.iter().copied().fold(FLOOR, f64::max);
+        for &cell in solid {
+            (self.k[cell], self.scale[cell], self.eddy[cell]) = (NOTHING, most, 0.0);
+        }
+    }
+    fn see_walls(&mut self, walls: &[WallRow], nu: f64) -> Result<(), SolveError> {
+        self.layer.see(walls, &self.k, nu)
     }
     fn residual(&self) -> f64 {
         f64::max(self.solves[0].initial_residual, self.solves[1].initial_residual)

@@ -1,5 +1,6 @@
 use super::*;
 use crate::testing::Uniform;
+use interfaces::WallPoint;
 use proptest::prelude::*;
 
 const INFLOW: Inflow = Inflow { k: 2.0, omega: 3.0 };
@@ -128,6 +129,56 @@ fn rows_get_wall_functions() {
     assert!((statistics.mean / y_plus - 1.0).abs() < 1e-12 && statistics.rows == 3);
     let bad = layer.update(&[WallRow { cell: 9, y, ..WallRow::default() }], &[k; 3], nu, Scale::Omega);
     assert!(matches!(bad, Err(SolveError::Value { .. })));
+}
+
+/// A row that sees the flow elsewhere has the friction of there; half of the model's own equations go half in.
+#[test]
+fn rows_may_see_the_flow_elsewhere() {
+    let f = WallFunctions::default();
+    let (nu, u_tau) = (1e-5, 0.4);
+    let (y, far) = (40.0 * nu / u_tau, 120.0 * nu / u_tau);
+    let (u_far, k) = (u_tau * f.u_plus(120.0), u_tau * u_tau / 0.3);
+    let seen = Some(WallPoint { y: far, u_t: u_far, k });
+    let row = WallRow {
+        cell: 0,
+        y,
+        area: 1.0,
+        u_t: u_far * y / far,
+        shear: Some(u_far / far),
+        seen,
+        ..WallRow::default()
+    };
+    let rows = [row, WallRow { cell: 1, free: 0.25, ..row }];
+    let mut layer = WallLayer::new(f);
+    layer.see(&rows, &[k; 2], nu).unwrap();
+    assert!(((nu + layer.viscosity[0]) * u_far / far / (u_tau * u_tau) - 1.0).abs() < 1e-12);
+    layer.update(&rows, &[k; 2], nu, Scale::Omega).unwrap();
+    // Known before the update, so that the production is right at once.
+    assert!((layer.cells[0].production / f.production(y, k, u_tau * u_tau) - 1.0).abs() < 1e-9);
+    // The slope of the logarithmic law at the cell, not that of the line.
+    assert!((layer.cells[0].shear.unwrap() / f.log_shear(y, k) - 1.0).abs() < 1e-6);
+    assert_eq!((layer.pins.len(), layer.blends.len()), (1, 1));
+    let (cell, weight, value) = layer.blends[0];
+    assert!((cell, weight) == (1, 0.75) && value == layer.pins[0].1);
+    // Other rows: ν_t on the wall is theirs, not none.
+    layer.see(&rows[1..], &[k; 2], nu).unwrap();
+    assert!(layer.viscosity.len() == 1 && layer.viscosity[0] > nu);
+    assert!((layer.y_plus(&rows[1..], nu).mean / 120.0 - 1.0).abs() < 1e-9);
+}
+
+/// Cells in solids, and such as have come out of one.
+#[test]
+fn cells_in_solids_hold_nothing_and_are_filled_when_they_come_out() {
+    let mut model = KOmegaSst::new(Sst::default(), 4, INFLOW).unwrap();
+    model.set(&[1.0, 2.0, 3.0, 4.0], &[10.0, 20.0, 30.0, 40.0]).unwrap();
+    assert!(model.wants_walls() && !().wants_walls());
+    model.immerse(&[3, 1], &[]);
+    assert!(model.k()[1] < 1e-29 && model.scale()[1] == 30.0 && model.nu_t()[3] == 0.0);
+    model.immerse(&[3], &[(1, vec![0, 2])]);
+    assert_eq!((model.k()[1], model.scale()[1], model.nu_t()[1]), (2.0, 20.0, 0.1));
+    // With nothing around that tells, it stays what it is.
+    model.immerse(&[], &[(3, vec![])]);
+    assert!(model.k()[3] < 1e-29);
 }
 
 #[test]

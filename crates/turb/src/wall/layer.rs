@@ -13,6 +13,8 @@ pub(crate) struct WallLayer {
     pub(crate) cells: Vec<WallCell>,
     /// Cells and the value of ω or ε there.
     pub(crate) pins: Vec<(usize, f64)>,
+    /// The same, with the weight in between, of cells that the wall functions have a part of only.
+    pub(crate) blends: Vec<(usize, f64, f64)>,
     /// ν_t on the wall of every row \[m²/s\].
     pub(crate) viscosity: Vec<f64>,
     /// Is `viscosity` that of a saved state, whose rows are still to come?
@@ -34,6 +36,8 @@ pub(crate) struct WallCell {
     pub(crate) conductance: f64,
     /// |∂u_t/∂n| \[1/s\].
     pub(crate) shear: Option<f64>,
+    /// Share of the model's own equations.
+    pub(crate) free: f64,
 }
 
 impl WallLayer {
@@ -44,6 +48,7 @@ impl WallLayer {
             order: Vec::new(),
             cells: Vec::new(),
             pins: Vec::new(),
+            blends: Vec::new(),
             viscosity: Vec::new(),
             restored: false,
         }
@@ -95,18 +100,19 @@ impl WallLayer {
         scale: Scale,
     ) -> Result<(), SolveError> {
         self.sort(rows, k.len())?;
-        let Self { functions: f, laminar, order, cells, pins, viscosity, .. } = self;
+        let Self { functions: f, laminar, order, cells, pins, blends, viscosity, .. } = self;
         pins.clear();
+        blends.clear();
         for w in cells.iter_mut() {
             let own = &order[w.first..][..w.rows];
             let (k, area) = (k[w.cell], own.iter().map(|&r| rows[r].area).sum::<f64>());
             let mut value = 0.0;
-            (w.share, w.production, w.conductance, w.shear) = (0.0, 0.0, 0.0, Some(0.0));
+            (w.share, w.production, w.conductance, w.shear, w.free) = (0.0, 0.0, 0.0, Some(0.0), 0.0);
             for &r in own {
                 let row = &rows[r];
                 let part = if area > 0.0 { row.area / area } else { 1.0 / own.len() as f64 };
                 let share = share(f.y_star(row.y, k, nu), *laminar);
-                let friction = (nu + viscosity[r]) * row.u_t / row.y;
+                let friction = friction(row, nu + viscosity[r]);
                 value += part
                     * match scale {
                         Scale::Omega => f.omega(row.y, k, nu),
@@ -116,14 +122,18 @@ impl WallLayer {
                 w.production += part * share * f.production(row.y, k, friction);
                 w.conductance += (1.0 - share) * row.area * nu / row.y;
                 let shear = match f.shear {
-                    WallShear::Mean => row.shear,
-                    WallShear::Logarithmic => {
-                        row.shear.map(|mean| share * f.log_shear(row.y, k) + (1.0 - share) * mean)
-                    }
+                    WallShear::Mean if row.seen.is_none() => row.shear,
+                    // That on the line to where the flow is seen is not the mean over any cell.
+                    _ => row.shear.map(|mean| share * f.log_shear(row.y, k) + (1.0 - share) * mean),
                 };
                 w.shear = w.shear.zip(shear).map(|(sum, shear)| sum + part * shear);
+                w.free += part * row.free;
             }
-            pins.push((w.cell, value));
+            if w.free > 0.0 {
+                blends.push((w.cell, 1.0 - w.free.min(1.0), value));
+            } else {
+                pins.push((w.cell, value));
+            }
         }
         Ok(())
     }
@@ -131,16 +141,30 @@ impl WallLayer {
     /// Brings ν_t on the walls up to date with k.
     pub(crate) fn refresh(&mut self, rows: &[WallRow], k: &[f64], nu: f64) {
         for (viscosity, row) in self.viscosity.iter_mut().zip(rows) {
-            let y_star = self.functions.y_star(row.y, k[row.cell], nu);
+            let (y, k) = row.seen.map_or((row.y, k[row.cell]), |seen| (seen.y, seen.k));
+            let y_star = self.functions.y_star(y, k, nu);
             *viscosity = nu * self.functions.ratio_above(y_star, self.laminar);
         }
+    }
+
+    /// The same of rows that may be others than before.
+    pub(crate) fn see(&mut self, rows: &[WallRow], k: &[f64], nu: f64) -> Result<(), SolveError> {
+        self.sort(rows, k.len())?;
+        self.refresh(rows, k, nu);
+        Ok(())
     }
 
     /// y+ of the rows.
     pub(crate) fn y_plus(&self, rows: &[WallRow], nu: f64) -> YPlus {
         YPlus::of(rows.iter().zip(&self.viscosity).map(|(row, nu_t)| {
-            let friction = (nu + nu_t) * row.u_t / row.y;
-            (row.y * friction.sqrt() / nu, row.area)
+            let y = row.seen.map_or(row.y, |seen| seen.y);
+            (y * friction(row, nu + nu_t).sqrt() / nu, row.area)
         }))
     }
+}
+
+/// τ_w/ρ \[m²/s²\] with the viscosity on the wall.
+fn friction(row: &WallRow, viscosity: f64) -> f64 {
+    let (y, u_t) = row.seen.map_or((row.y, row.u_t), |seen| (seen.y, seen.u_t));
+    viscosity * u_t / y
 }

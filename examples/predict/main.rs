@@ -62,17 +62,17 @@ impl std::fmt::Display for Kind {
 
 /// Either kind of model.
 enum Model {
-    Still(Podiann),
-    Moving(Spodiann),
+    Still(Box<Podiann>),
+    Moving(Box<Spodiann>),
 }
 
 impl Model {
     fn load(cli: &Cli) -> Outcome<Self> {
         let record = Record::load(&cli.model)?;
         Ok(match record.kind() {
-            "PODIANN" => Self::Still(Podiann::from_record(&record)?),
+            "PODIANN" => Self::Still(Box::new(Podiann::from_record(&record)?)),
             // Which says what else it is.
-            _ => Self::Moving(Spodiann::from_record(&record)?),
+            _ => Self::Moving(Box::new(Spodiann::from_record(&record)?)),
         })
     }
     fn inputs(&self) -> usize {

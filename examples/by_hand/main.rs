@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     while flow.time() < 0.2 {
         // From rest in small steps: a body that is let go is accelerated like √t.
         let dt = flow.stable_dt(0.2) * (0.05 * 1.15_f64.powi(flow.steps() as i32)).min(1.0);
-        discs.begin(&flow)?;
+        discs.begin(&mut flow)?;
         flow.predict(dt, [0.0, 0.0])?;
         discs.couple(&mut flow, dt, &mut timings)?;
         flow.finish(dt)?;

@@ -15,7 +15,8 @@ use interfaces::{Aabb, Bodies, BodyId, Lattice, Point, Pose, Vector, VelocityFie
 /// * their own distance y; of cells that the surface cuts, that of the middle of what is fluid of them, ½(y + ½h), h the cell's edge;
 /// * [`seen`](WallRow::seen), the tangential velocity 1½ cells from the surface;
 /// * [`free`](WallRow::free), the share of the model's own equations, 0 up to 1½ cells and 1 from 2½ on;
-/// * the share V/h max(1 − |y/h − 1|, 0) of the surface, which counts every part of it once, in cells about one cell away.
+/// * the share V/h max(1 − |y/h − 1|, 0) of the surface, in cells about one cell away: all together as much as
+///   the parallel surface there, which is 1 + h/R times that of a cylinder.
 ///
 /// All of these change steadily as a body moves through the cells. [`film`](Self::film) lists the cells in which the momentum has the ν_t of the
 /// wall: those in the body up to 2½ cells deep, for what the kernel blurs, and those of rows, less and less beyond 1½ cells. A cell beside several

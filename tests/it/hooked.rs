@@ -1,11 +1,11 @@
 //! Bodies in a flow with a turbulence model, a scalar and buoyancy.
-use siltflow::coupling::{Particles, Simulation, WeightBalance};
+use siltflow::coupling::{FlowSolver, Particles, Simulation, WeightBalance};
 use siltflow::dem::{Material, RigidBodies, Sphere};
 use siltflow::flow::{
     Boussinesq, CartesianGrid, Fluid, Hooked, Hooks, Modelled, Projection, Scalar, ScalarSide, Side,
     TransportParams,
 };
-use siltflow::ibm::SmoothForcing;
+use siltflow::ibm::{SmoothForcing, ViscousStep};
 use siltflow::interfaces::{BodyId, Checkpoint, Closure, Freedom, Kinematics, Periods, Pose, Twist, Vector};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -102,4 +102,23 @@ fn parts_make_a_whole_step() {
         flow.advance_with(dt, &mut hooks).unwrap();
     }
     assert_same(&saved(&parts), &saved(&Hooked::new(flow, hooks)));
+}
+
+/// Forces on a body's surface are told to follow from ν only where they do: not beside a model, which has a ν_t of its own.
+#[test]
+fn the_viscosity_is_told_where_there_is_no_model() {
+    let flow = || {
+        let grid = CartesianGrid::new([8; 3], [0.1; 3]).unwrap();
+        Projection::new(grid, Side::WALL.everywhere(), AIR).unwrap()
+    };
+    let model = || {
+        let (of, closure) = (flow(), Smagorinsky::new(SmagorinskyConstants::default(), 512).unwrap());
+        Modelled::new(closure, of.grid(), of.sides(), TransportParams::default()).unwrap()
+    };
+    let told = |step: Option<ViscousStep>| step.is_some_and(|s| (s.diffused - 1.5e-9).abs() < 1e-18);
+    assert!(told(flow().viscous_step(1e-4)));
+    assert!(told(Hooked::new(flow(), Hooks::none()).viscous_step(1e-4)));
+    let with = |model| Hooked::new(flow(), Hooks::none().with_closure(model)).viscous_step(1e-4);
+    assert!(told(with(None)));
+    assert_eq!(with(Some(model())), None);
 }

@@ -10,24 +10,21 @@ pub(crate) struct Crowd {
     pub(crate) alone: Vec<bool>,
     /// Boxes that meet, both ways round, sorted.
     pairs: Vec<[usize; 2]>,
+    /// Those that met when this was last found.
+    met: Vec<[usize; 2]>,
     /// Lower and upper end of each box along one axis, sorted.
     spans: Vec<(f64, f64, usize)>,
 }
 
 impl Crowd {
-    /// Finds the boxes that are `alone` in a space with these periods (zero where it does not repeat). A box longer than half a
-    /// period is taken to meet all.
-    pub(crate) fn find_alone(&mut self, periods: Vector) {
-        let Self { boxes, alone, pairs, spans } = self;
+    /// Finds which boxes meet in a space with these periods (zero where it does not repeat), and those that are `alone`: none, if one is longer than half a period.
+    pub(crate) fn find(&mut self, periods: Vector) {
+        std::mem::swap(&mut self.pairs, &mut self.met);
+        let Self { boxes, alone, pairs, spans, .. } = self;
         let long = |b: &Aabb| (0..3).any(|a| periods[a] > 0.0 && b.extent()[a] > 0.5 * periods[a]);
         alone.clear();
         alone.resize(boxes.len(), boxes.len() < 2 || !boxes.iter().any(long));
         pairs.clear();
-        if !alone.contains(&true) {
-            let others = |k: usize| (0..boxes.len()).filter(move |&other| other != k);
-            pairs.extend((0..boxes.len()).flat_map(|k| others(k).map(move |other| [k, other])));
-            return;
-        }
         // Sweeps along the axis on which they spread farthest.
         let middle = |b: &Aabb, a: usize| 0.5 * (b.min[a] + b.max[a]);
         let spread = |a: usize| {
@@ -43,10 +40,11 @@ impl Crowd {
             let turn = if period > 0.0 { -period * (middle(b, axis) / period).floor() } else { 0.0 };
             let (low, high) = (b.min[axis] + turn, b.max[axis] + turn);
             spans.push((low, high, k));
-            // As it repeats beyond the last one.
+            // As it repeats beyond either end.
             if period > 0.0 && low < 0.0 {
                 spans.push((low + period, high + period, k));
-            } else if period > 0.0 && high >= period {
+            }
+            if period > 0.0 && high >= period {
                 spans.push((low - period, high - period, k));
             }
         }
@@ -70,11 +68,26 @@ impl Crowd {
         pairs.dedup();
     }
 
-    /// The boxes that box `k` meets, or may meet if any is long.
+    /// The boxes that box `k` meets.
     pub(crate) fn others(&self, k: usize) -> impl Iterator<Item = BodyId> {
-        let first = self.pairs.partition_point(|pair| pair[0] < k);
-        self.pairs[first..].iter().take_while(move |pair| pair[0] == k).map(|pair| BodyId(pair[1]))
+        of(&self.pairs, k)
     }
+
+    /// Is there one that `moves` among those that box `k` meets, or met before?
+    pub(crate) fn stirs(&self, k: usize, moves: &[bool]) -> bool {
+        of(&self.pairs, k).chain(of(&self.met, k)).any(|b| moves[b.0])
+    }
+
+    /// The boxes go by other numbers from now on.
+    pub(crate) fn renumber(&mut self) {
+        (self.pairs.clear(), self.met.clear());
+    }
+}
+
+/// Those that `k` meets.
+fn of(pairs: &[[usize; 2]], k: usize) -> impl Iterator<Item = BodyId> {
+    let first = pairs.partition_point(|pair| pair[0] < k);
+    pairs[first..].iter().take_while(move |pair| pair[0] == k).map(|pair| BodyId(pair[1]))
 }
 
 #[cfg(test)]
@@ -87,13 +100,13 @@ mod tests {
         /// As each pair tells, over its nearest images.
         #[test]
         fn those_alone_meet_no_other(
-            places in proptest::collection::vec((-3.0..6.0_f64, -3.0..6.0_f64, 0.1..0.9_f64), 1..12), flat: bool,
+            places in proptest::collection::vec((-3.0..6.0_f64, -3.0..6.0_f64, 0.1..2.8_f64), 1..12), flat: bool,
         ) {
             let periods = Vector::new(3.0, if flat { 0.0 } else { 4.0 }, 0.0);
             let half = |size: f64| Vector::new(0.5 * size, 0.3 * size, 0.0);
             let boxes: Vec<_> = places.iter().map(|&(x, y, size)| Aabb::around(Point::new(x, y, 0.0), half(size))).collect();
             let mut crowd = Crowd { boxes, ..Crowd::default() };
-            crowd.find_alone(periods);
+            crowd.find(periods);
             let Crowd { boxes, alone, .. } = &crowd;
             for (k, a) in boxes.iter().enumerate() {
                 let meets = |b: &Aabb| (0..2).all(|axis| {
@@ -105,10 +118,28 @@ mod tests {
                 });
                 let met = |&other: &usize| other != k && meets(&boxes[other]);
                 let met: Vec<_> = (0..boxes.len()).filter(met).map(BodyId).collect();
-                prop_assert_eq!(alone[k], met.is_empty(), "{}", k);
+                let long = boxes.iter().any(|b| b.extent().x > 1.5);
+                prop_assert_eq!(alone[k], met.is_empty() && (!long || boxes.len() == 1), "{}", k);
                 prop_assert_eq!(crowd.others(k).collect::<Vec<_>>(), met, "{}", k);
             }
         }
+    }
+
+    /// Those that meet one that moves, or met it before it did.
+    #[test]
+    fn what_moves_stirs_those_around() {
+        let at = |x: f64| Aabb::around(Point::new(x, 0.0, 0.0), Vector::repeat(0.5));
+        let mut crowd = Crowd { boxes: [0.0, 0.9, 5.0, 9.0].map(at).into(), ..Crowd::default() };
+        crowd.find(Vector::zeros());
+        crowd.boxes[1] = at(8.2);
+        crowd.find(Vector::zeros());
+        let stirred = |crowd: &Crowd| [0, 2, 3].map(|k| crowd.stirs(k, &[false, true, false, false]));
+        assert_eq!(stirred(&crowd), [true, false, true]);
+        crowd.find(Vector::zeros());
+        assert_eq!(stirred(&crowd), [false, false, true]);
+        assert!([0, 2, 3].iter().all(|&k| !crowd.stirs(k, &[false; 4])));
+        crowd.renumber();
+        assert_eq!(stirred(&crowd), [false; 3]);
     }
 
     #[test]
@@ -116,10 +147,9 @@ mod tests {
         let boxes =
             [0.2, 5.0].map(|half| Aabb::around(Point::new(1.0, 20.0 * half, 0.0), Vector::repeat(half)));
         let mut crowd = Crowd { boxes: boxes.into(), ..Crowd::default() };
-        crowd.find_alone(Vector::new(10.5, 0.0, 0.0));
+        crowd.find(Vector::new(10.5, 0.0, 0.0));
         assert_eq!(crowd.alone, [false, false]);
-        assert_eq!(crowd.others(1).collect::<Vec<_>>(), [BodyId(0)]);
-        crowd.find_alone(Vector::zeros());
+        crowd.find(Vector::zeros());
         assert_eq!(crowd.alone, [true, true]);
     }
 }

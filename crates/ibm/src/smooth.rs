@@ -42,8 +42,10 @@ pub struct SmoothForcing {
     inside: [SolidFraction; 3],
     bodies: Vec<Markers>,
     crowd: Crowd,
-    /// Bodies moved since the crowd was looked at.
-    moved: bool,
+    /// Bodies were taken away or added since the crowd was looked at.
+    renumbered: bool,
+    /// Those that have moved.
+    moves: Vec<bool>,
     clearance: Clearance,
     /// Places of the markers of a body.
     places: Vec<Point>,
@@ -67,7 +69,8 @@ impl SmoothForcing {
             inside: Default::default(),
             bodies: Vec::new(),
             crowd: Crowd::default(),
-            moved: false,
+            renumbered: false,
+            moves: Vec::new(),
             clearance: Clearance::default(),
             places: Vec::new(),
             values: Default::default(),
@@ -135,6 +138,9 @@ impl SmoothForcing {
         } else {
             0.0
         };
+        if !turned && markers.share == share && markers.pose == Some(pose) {
+            return Ok(());
+        }
         if turned || markers.share != share {
             markers.stand(share, self.density * h / kernel.self_overlap(), dim);
         }
@@ -144,8 +150,8 @@ impl SmoothForcing {
         Ok(())
     }
 
-    /// Finds the bodies whose markers reach where no others do.
-    fn find_alone(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies) {
+    /// Finds the bodies whose markers reach where others do.
+    fn find_crowd(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies) {
         let axes = &velocity.lattice(0).axes;
         let reach = self.kernel(velocity.dim()).reach() + 1.0;
         self.crowd.boxes.clear();
@@ -158,7 +164,7 @@ impl SmoothForcing {
             }
             bounds
         }));
-        self.crowd.find_alone(Vector::from_fn(|a, _| axes[a].period().unwrap_or(0.0)));
+        self.crowd.find(Vector::from_fn(|a, _| axes[a].period().unwrap_or(0.0)));
     }
 
     /// 1 − χ of the markers of body `b`, χ = E λ: the shares of their fluid outside the body.
@@ -214,7 +220,7 @@ const LEAST_CELLS: f64 = 4.0;
 
 impl Forcing for SmoothForcing {
     fn place(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies) -> Result<(), IbmError> {
-        self.moved |= self.bodies.len() != bodies.n_bodies();
+        self.renumbered |= self.bodies.len() != bodies.n_bodies();
         self.bodies.resize_with(bodies.n_bodies(), Markers::default);
         for (c, inside) in self.inside.iter_mut().enumerate().take(velocity.dim()) {
             if inside.resize(velocity.lattice(c), bodies.n_bodies()) {
@@ -222,17 +228,18 @@ impl Forcing for SmoothForcing {
                 self.bodies.fill_with(Markers::default);
             }
         }
-        let unmoved = |b: usize, markers: &Markers| markers.pose == Some(bodies.pose(BodyId(b)));
-        self.moved |= !self.bodies.iter().enumerate().all(|(b, markers)| unmoved(b, markers));
-        if self.moved {
-            self.find_alone(velocity, bodies);
+        self.moves.clear();
+        let moves = |(b, markers): (usize, &Markers)| markers.pose != Some(bodies.pose(BodyId(b)));
+        self.moves.extend(self.bodies.iter().enumerate().map(moves));
+        let any = self.renumbered || self.moves.contains(&true);
+        if any {
+            self.find_crowd(velocity, bodies);
         }
         let dim = velocity.dim();
         for b in 0..bodies.n_bodies() {
-            let (markers, alone) = (&self.bodies[b], self.crowd.alone[b]);
-            // Those near others stand where these let them.
-            let near = self.moved && !(alone && markers.alone);
-            if near || !unmoved(b, markers) || markers.known != self.step.is_some() {
+            // Where a body's markers stand depends on what is near, too.
+            let stirred = any && (self.renumbered || self.crowd.stirs(b, &self.moves));
+            if self.moves[b] || stirred || self.bodies[b].known != self.step.is_some() {
                 for c in 0..dim {
                     check(velocity.lattice(c), bodies, BodyId(b))?;
                 }
@@ -240,18 +247,19 @@ impl Forcing for SmoothForcing {
             }
             let (kernel, step, markers) = (self.kernel(dim), self.step, &mut self.bodies[b]);
             markers.pose = Some(bodies.pose(BodyId(b)));
-            (markers.alone, markers.known) = (alone, step.is_some());
+            (markers.alone, markers.known) = (self.crowd.alone[b], step.is_some());
             markers.reaction = Wrench::default();
             markers.slip.begin(step, kernel, markers.cell.powf(1.0 / dim as f64), markers.share);
         }
-        self.moved = false;
+        self.renumbered = false;
         Ok(())
     }
 
     fn renumber(&mut self, numbers: &Renumbering) {
         numbers.apply(&mut self.bodies);
         self.inside.iter_mut().for_each(|inside| inside.renumber(numbers));
-        self.moved = true;
+        self.crowd.renumber();
+        self.renumbered = true;
     }
 
     fn density(&self) -> f64 {

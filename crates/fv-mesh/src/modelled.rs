@@ -107,8 +107,8 @@ pub struct Modelled<const D: usize, C> {
     film: Vec<(usize, usize, f64)>,
     /// ν_t of every cell as the momentum has it, where there is a film.
     filmed: Vec<f64>,
-    /// Is the centre of a cell in a solid? Empty if none is.
-    solid: Vec<bool>,
+    /// Cells with their centre in a solid, ascending.
+    solid: Vec<usize>,
 }
 
 impl<const D: usize, C: Closure> Modelled<D, C> {
@@ -213,34 +213,35 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
         self.closure.see_walls(&self.rows, viscosity).map_err(failed)
     }
 
-    /// Cells `solid` have their centre in a solid from now on. What has come out of one takes its state from the cells beside it that
+    /// Cells `solid`, in ascending order, have their centre in a solid from now on. What has come out of one takes its state from the cells beside it that
     /// have not.
     ///
     /// # Errors
-    /// [`FlowError::Closure`] for a cell that is none.
+    /// [`FlowError::Closure`] for a cell that is none, or out of order.
     pub fn immerse(&mut self, solid: &[usize], time: f64) -> Result<(), FlowError> {
-        let grid = self.transport.grid();
-        let n = grid.n_cells();
-        if let Some(&cell) = solid.iter().find(|&&cell| cell >= n) {
-            let (what, range) = ("the number of a cell in a solid", "a cell of the flow");
+        if solid == self.solid {
+            self.closure.immerse(solid, &[]);
+            return Ok(());
+        }
+        let n = self.transport.grid().n_cells();
+        let wrong = (0..solid.len()).find(|&i| solid[i] >= n || i > 0 && solid[i] <= solid[i - 1]);
+        if let Some(cell) = wrong.map(|i| solid[i]) {
+            let (what, range) =
+                ("the number of a cell in a solid", "a cell of the flow, beyond the one before it");
             let source = SolveError::Value { what, cell: Some(cell), value: cell as f64, range };
             return Err(FlowError::Closure { time, source });
         }
-        let mut now = vec![false; n];
-        solid.iter().for_each(|&cell| now[cell] = true);
-        let came_out = |cell: usize| self.solid.get(cell) == Some(&true) && !now[cell];
-        let fresh: Vec<_> = (0..self.solid.len())
-            .filter(|&cell| came_out(cell))
-            .map(|cell| {
+        let holds = |cells: &[usize], cell: usize| cells.binary_search(&cell).is_ok();
+        let came_out = self.solid.iter().filter(|&&cell| !holds(solid, cell));
+        let fresh: Vec<_> = came_out
+            .map(|&cell| {
                 let mut from = self.transport.around(cell);
-                from.retain(|&c| !now[c] && !self.solid[c]);
+                from.retain(|&c| !holds(solid, c) && !holds(&self.solid, c));
                 (cell, from)
             })
             .collect();
         self.closure.immerse(solid, &fresh);
-        if now != self.solid {
-            self.wall_off(now);
-        }
+        self.wall_off(solid.to_vec());
         Ok(())
     }
 
@@ -296,9 +297,8 @@ impl<const D: usize, C: Closure> ClosureSlot<D> for Modelled<D, C> {
 
 impl<const D: usize, C> Modelled<D, C> {
     /// Takes cells in solids out of the equations.
-    fn wall_off(&mut self, solid: Vec<bool>) {
-        let dry = solid.iter().enumerate().filter(|(_, solid)| **solid);
-        self.transport.set_walls(dry.map(|(cell, _)| (cell, Vec::new())).collect());
+    fn wall_off(&mut self, solid: Vec<usize>) {
+        self.transport.set_walls(solid.iter().map(|&cell| (cell, Vec::new())).collect());
         self.solid = solid;
     }
 }
@@ -308,14 +308,19 @@ impl<const D: usize, C: Checkpoint> Checkpoint for Modelled<D, C> {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         self.closure.save(sink);
         if !self.solid.is_empty() {
-            sink("solid", &self.solid.iter().map(|solid| f64::from(*solid)).collect::<Vec<_>>());
+            sink("solid", &self.solid.iter().map(|&cell| cell as f64).collect::<Vec<_>>());
         }
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         self.closure.restore(source)?;
-        if source("solid").is_some() {
-            let saved = RestartError::take(source, "solid", self.transport.grid().n_cells())?;
-            self.wall_off(saved.iter().map(|solid| *solid > 0.5).collect());
+        let n = self.transport.grid().n_cells();
+        let solid: Vec<usize> =
+            source("solid").unwrap_or_default().iter().map(|&cell| cell as usize).collect();
+        if solid.last().is_some_and(|&last| last >= n) || !solid.is_sorted() {
+            return Err(RestartError::Differs("solid".into()));
+        }
+        if solid != self.solid {
+            self.wall_off(solid);
         }
         Ok(())
     }

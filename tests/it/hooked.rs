@@ -1,4 +1,5 @@
 //! Bodies in a flow with a turbulence model, a scalar and buoyancy.
+use crate::state::{assert_same, saved};
 use siltflow::coupling::{FlowSolver, Particles, Simulation, WeightBalance};
 use siltflow::dem::{Material, RigidBodies, Sphere};
 use siltflow::flow::{
@@ -7,7 +8,6 @@ use siltflow::flow::{
 };
 use siltflow::ibm::{SmoothForcing, ViscousStep};
 use siltflow::interfaces::{BodyId, Checkpoint, Closure, Freedom, Kinematics, Periods, Pose, Twist, Vector};
-use std::collections::HashMap;
 use std::sync::Arc;
 use turb::{Inflow, KOmegaSst, Smagorinsky, SmagorinskyConstants, Sst};
 
@@ -37,23 +37,6 @@ fn build<C: Closure + Checkpoint>(
     bodies.add(ball, material, Pose::at([0.05; 3]), Twist::default(), Freedom::FREE).unwrap();
     let particles = Particles::new(bodies, SmoothForcing::new(AIR.density), AIR.density, Vector::zeros());
     Simulation::new(Hooked::new(flow, hooks), particles, WeightBalance::None).unwrap()
-}
-
-type State = HashMap<String, Vec<f64>>;
-
-fn saved(of: &impl Checkpoint) -> State {
-    let mut state = State::new();
-    of.save(&mut |name, values| drop(state.insert(name.into(), values.to_vec())));
-    state
-}
-
-/// To the bit.
-fn assert_same(a: &State, b: &State) {
-    assert_eq!(a.len(), b.len());
-    for (name, a) in a {
-        let bits = |v: &[f64]| v.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-        assert!(bits(a) == bits(&b[name]), "{name} differs");
-    }
 }
 
 /// Seven steps, each as long as is stable.

@@ -18,6 +18,7 @@ mod restart;
 mod scenes;
 mod skipping;
 mod snapshots;
+mod state;
 mod steady_walls;
 mod strategies;
 mod stretched;

@@ -1,4 +1,5 @@
 //! Turbulence models beside bodies that move. `cargo bench --bench turbulence -- couette shaken` has more models, cells and Reynolds numbers.
+use crate::state::{assert_same, saved};
 use example_support::moved_body::{Noise, Swinging};
 use example_support::prescribed_bodies::{PrescribedBodies, forced_step};
 use example_support::sliding_plate::{Couette, Lower, TurbulentFlow, with_model};
@@ -11,7 +12,6 @@ use siltflow::ibm::SmoothForcing;
 use siltflow::interfaces::{
     BodyId, Checkpoint, Closure, Freedom, Kinematics, Periods, Pose, Twist, Vector, WallRow,
 };
-use std::collections::HashMap;
 use std::sync::Arc;
 use turb::{Inflow, KOmegaSst, Smagorinsky, SmagorinskyConstants, Sst, StandardKEpsilon};
 
@@ -30,23 +30,6 @@ fn flow(periodic: bool) -> Projection<2> {
 
 fn start() -> Inflow {
     Inflow::from_viscosity_ratio(1.0, 0.05, 20.0, NU).unwrap()
-}
-
-type State = HashMap<String, Vec<f64>>;
-
-fn saved(of: &impl Checkpoint) -> State {
-    let mut state = State::new();
-    of.save(&mut |name, values| drop(state.insert(name.into(), values.to_vec())));
-    state
-}
-
-/// To the bit.
-fn assert_same(a: &State, b: &State) {
-    assert_eq!(a.len(), b.len());
-    for (name, a) in a {
-        let bits = |v: &[f64]| v.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-        assert!(bits(a) == bits(&b[name]), "{name} differs");
-    }
 }
 
 /// A plate that slides through the box, its surface anywhere between the faces of the grid and seen from another frame, is the wall that a side

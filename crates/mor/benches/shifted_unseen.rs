@@ -1,7 +1,7 @@
 //! Shifted POD on cases that nobody tuned it to: places, speeds and sizes by random numbers. `cargo bench -p mor --bench shifted_unseen [-- KIND … [SEEDS]]`.
 //!
 //! Kinds: `waves` (two or three pulses on a line), `discs` (two discs of a tanh edge that fall side by side), `drift` (that move sideways, too), `near` (frames that
-//! hardly move against one another), `small` (discs on 48 × 64 cells; `N=400` in the environment: so many snapshots, 200 unless told). `OFFSETS=1` tells where frames were centred. Each clean and noisy, with ranks given and found; one line per run: error against the clean field in Frobenius' norm.
+//! hardly move against one another), `small` (discs on 48 × 64 cells; `N=400` in the environment: so many snapshots, 200 unless told). Each clean and noisy, with ranks given and found; one line per run: error against the clean field in Frobenius' norm.
 use cpu_time::ProcessTime;
 use interfaces::Vector;
 use mor::Mat;
@@ -172,20 +172,15 @@ fn run(case: &Case, kind: &str, seen: &Mat<f64>, noise: Noise) {
         let op = GridFrames::new(case.grid, Interpolation::Spectral, &case.shifts, case.clean.nrows())
             .expect("frames");
         match d {
-            Ok(d) => {
-                println!(
-                    "{:44} {kind:20} {} {:10} error {:.2e} {:4} steps {seconds:6.2} s {:.2} GB",
-                    case.what,
-                    if found { "found" } else { "given" },
-                    format!("{:?}", d.ranks()),
-                    d.relative_error(&op, case.clean.as_ref()),
-                    d.history.len(),
-                    peak_memory()
-                );
-                if std::env::var_os("OFFSETS").is_some() {
-                    println!("{:?} in cells, {:?}", d.offsets, d.stopped);
-                }
-            }
+            Ok(d) => println!(
+                "{:44} {kind:20} {} {:10} error {:.2e} {:4} steps {seconds:6.2} s {:.2} GB",
+                case.what,
+                if found { "found" } else { "given" },
+                format!("{:?}", d.ranks()),
+                d.relative_error(&op, case.clean.as_ref()),
+                d.history.len(),
+                peak_memory()
+            ),
             Err(why) => println!("{:44} {kind:20} {why}", case.what),
         }
     }

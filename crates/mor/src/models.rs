@@ -2,6 +2,7 @@
 //!
 //! [`Podiann`]: the modes of a [`Pod`](crate::pod::Pod), with functions for their coefficients. [`Spodiann`]: modes that frames of reference carry along, with functions for their coefficients and for the frames' paths.
 mod assessment;
+mod carried;
 mod coefficients;
 mod error;
 mod modes;

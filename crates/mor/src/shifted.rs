@@ -14,6 +14,7 @@ mod frames;
 mod gather;
 mod grid;
 mod interpolator;
+mod lines;
 mod motion;
 mod multi_frame;
 mod operators;

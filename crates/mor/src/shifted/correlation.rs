@@ -1,7 +1,7 @@
 //! Speeds of several movers by phase correlation.
 use super::Grid;
 use super::estimate::{Basis, Paths};
-use super::waves::transform;
+use super::lines::Lines;
 use monomorphic::{Mat, MatRef, Qr, fourier_transforms};
 use rustfft::num_complex::Complex;
 
@@ -91,7 +91,8 @@ impl<'a> Correlations<'a> {
         let spectra = (0..snapshots.ncols()).map(|j| {
             let mut z: Vec<_> = (0..n).map(|i| Complex::from(snapshots[(component * n + i, j)])).collect();
             for &a in axes {
-                transform(&mut z, cells[a], cells[..a].iter().product(), &*fourier_transforms(cells[a])[0]);
+                let forward = &*fourier_transforms(cells[a])[0];
+                Lines::default().transform(forward, cells[..a].iter().product(), &mut z);
             }
             z
         });
@@ -113,7 +114,7 @@ impl<'a> Correlations<'a> {
         sum[0] = Complex::default();
         for &a in self.axes {
             let inverse = &fourier_transforms(self.cells[a])[1];
-            transform(&mut sum, self.cells[a], self.cells[..a].iter().product(), &**inverse);
+            Lines::default().transform(&**inverse, self.cells[..a].iter().product(), &mut sum);
         }
         sum.iter().map(|z| z.re).collect()
     }

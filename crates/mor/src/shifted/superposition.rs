@@ -1,13 +1,14 @@
 //! What several frames carry, as one field.
 use super::Grid;
+use super::lines::Lines;
 use super::stencil::phase;
 use monomorphic::fourier_transforms;
 use rustfft::Fft;
 use rustfft::num_complex::Complex;
 use std::sync::Arc;
 
-/// Lines that are transformed at a time.
-const LINES: usize = 8;
+/// Pairs of real lines that are transformed at a time.
+const PAIRS: usize = 8;
 
 /// Σ_k T^{s_k} Σ_i c_i^k φ_i^k of frames that only move along periodic axes, with modes kept as their Fourier coefficients along these axes: as a shift multiplies those by
 /// phases, the sum needs one inverse transform for all frames and modes.
@@ -29,8 +30,7 @@ pub(crate) struct Superposition {
 #[derive(Default)]
 pub(crate) struct Workspace {
     waves: Vec<Complex<f64>>,
-    lines: Vec<Complex<f64>>,
-    scratch: Vec<Complex<f64>>,
+    lines: Lines,
     row: Vec<f64>,
 }
 
@@ -63,10 +63,10 @@ impl Superposition {
     /// Rows along x, real parts before imaginary parts.
     fn spectrum(&self, forward: &[Arc<dyn Fft<f64>>], mode: &[f64]) -> Vec<f64> {
         let mut waves: Vec<Complex<f64>> = mode.iter().map(|m| Complex::new(*m, 0.0)).collect();
-        let mut work = Workspace::default();
+        let mut lines = Lines::default();
         for (&a, transform) in self.moving.iter().zip(forward) {
             let inner = self.cells[..a].iter().product();
-            along(transform, inner, &mut waves, &mut work.lines, &mut work.scratch);
+            lines.transform(&**transform, inner, &mut waves);
         }
         let [nx, ny, nz] = self.cells;
         let [mx, my, mz] = self.counts;
@@ -85,7 +85,7 @@ impl Superposition {
         self.waves(frames, work);
         for (&a, transform) in self.moving.iter().zip(&self.inverse).skip(1) {
             let inner = self.counts[..a].iter().product();
-            along(transform, inner, &mut work.waves, &mut work.lines, &mut work.scratch);
+            work.lines.transform(&**transform, inner, &mut work.waves);
         }
         self.real(work, out);
     }
@@ -162,12 +162,11 @@ impl Superposition {
         // Along the axes before nothing moves: they have as many coefficients as cells.
         let inner: usize = self.cells[..axis].iter().product();
         let n_lines = out.len() / n;
-        let Workspace { waves, lines, scratch, .. } = work;
-        lines.resize(n * LINES, Complex::default());
-        scratch.resize(self.inverse[0].get_inplace_scratch_len(), Complex::default());
+        let Workspace { waves, lines, .. } = work;
+        let (lines, scratch) = lines.blank(&*self.inverse[0], PAIRS);
         let start = |l: usize, n: usize| l / inner * n * inner + l % inner;
-        for first in (0..n_lines).step_by(2 * LINES) {
-            let pairs = (first..n_lines.min(first + 2 * LINES)).step_by(2);
+        for first in (0..n_lines).step_by(2 * PAIRS) {
+            let pairs = (first..n_lines.min(first + 2 * PAIRS)).step_by(2);
             let used = n * pairs.len();
             for (l, line) in pairs.clone().zip(lines.chunks_exact_mut(n)) {
                 let (a, b) = (start(l, count), (l + 1 < n_lines).then(|| start(l + 1, count)));
@@ -229,36 +228,6 @@ fn add_turned(factor: Complex<f64>, [fr, fi]: &[Vec<f64>; 2], values: &[f64], su
         let (pr, pi) = (factor.re * fr[i] - factor.im * fi[i], factor.re * fi[i] + factor.im * fr[i]);
         sr[i] += pr * vr[i] - pi * vi[i];
         si[i] += pr * vi[i] + pi * vr[i];
-    }
-}
-
-/// Transforms blocks of n × `inner` values along n, some lines at a time.
-fn along(
-    transform: &Arc<dyn Fft<f64>>,
-    inner: usize,
-    data: &mut [Complex<f64>],
-    lines: &mut Vec<Complex<f64>>,
-    scratch: &mut Vec<Complex<f64>>,
-) {
-    let n = transform.len();
-    scratch.resize(transform.get_inplace_scratch_len(), Complex::default());
-    if inner == 1 {
-        transform.process_with_scratch(data, scratch);
-        return;
-    }
-    lines.resize(n * LINES, Complex::default());
-    for block in data.chunks_exact_mut(n * inner) {
-        for first in (0..inner).step_by(LINES) {
-            let width = LINES.min(inner - first);
-            let lines = &mut lines[..n * width];
-            for (i, row) in block.chunks_exact(inner).enumerate() {
-                row[first..first + width].iter().enumerate().for_each(|(l, z)| lines[l * n + i] = *z);
-            }
-            transform.process_with_scratch(lines, scratch);
-            for (i, row) in block.chunks_exact_mut(inner).enumerate() {
-                row[first..first + width].iter_mut().enumerate().for_each(|(l, z)| *z = lines[l * n + i]);
-            }
-        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Frames that only move, in the space of wave vectors.
 use super::dense::columns;
+use super::lines::Lines;
 use super::stencil::phase;
 use super::{FrameOperators, Grid, Shifts};
 use monomorphic::{Mat, MatMut, MatRef, fourier_transforms};
@@ -111,10 +112,11 @@ impl Waves {
         let mut waves = Mat::zeros(2 * m * self.n_components, fields.ncols());
         columns(&mut waves).into_par_iter().enumerate().for_each(|(j, out)| {
             let column: Vec<f64> = fields.col(j).iter().copied().collect();
+            let mut lines = Lines::default();
             for (field, out) in column.chunks_exact(n).zip(out.chunks_exact_mut(2 * m)) {
                 let mut z = self.halved(field);
                 for (&a, [forward, _]) in self.moving.iter().zip(&self.transforms).skip(1) {
-                    transform(&mut z, self.counts[a], self.counts[..a].iter().product(), &**forward);
+                    lines.transform(&**forward, self.counts[..a].iter().product(), &mut z);
                 }
                 out.chunks_exact_mut(2).zip(&z).for_each(|(out, z)| (out[0], out[1]) = (z.re, z.im));
             }
@@ -128,10 +130,11 @@ impl Waves {
         let mut fields = Mat::zeros(n * self.n_components, waves.ncols());
         columns(&mut fields).into_par_iter().enumerate().for_each(|(j, out)| {
             let column: Vec<f64> = waves.col(j).iter().copied().collect();
+            let mut lines = Lines::default();
             for (field, waves) in out.chunks_exact_mut(n).zip(column.chunks_exact(2 * m)) {
                 let mut z: Vec<_> = waves.chunks_exact(2).map(|w| Complex::new(w[0], w[1])).collect();
                 for (&a, [_, inverse]) in self.moving.iter().zip(&self.transforms).skip(1) {
-                    transform(&mut z, self.counts[a], self.counts[..a].iter().product(), &**inverse);
+                    lines.transform(&**inverse, self.counts[..a].iter().product(), &mut z);
                 }
                 self.whole(&z, field);
             }
@@ -230,19 +233,6 @@ impl Waves {
                 }
             }
         });
-    }
-}
-
-/// Transforms blocks of `n` × `inner` values along `n`.
-pub(super) fn transform(z: &mut [Complex<f64>], n: usize, inner: usize, transform: &dyn Fft<f64>) {
-    let mut scratch = vec![Complex::default(); transform.get_inplace_scratch_len()];
-    let mut line = vec![Complex::default(); n];
-    for block in z.chunks_exact_mut(n * inner) {
-        for i in 0..inner {
-            line.iter_mut().zip(block[i..].iter().step_by(inner)).for_each(|(to, from)| *to = *from);
-            transform.process_with_scratch(&mut line, &mut scratch);
-            block[i..].iter_mut().step_by(inner).zip(&line).for_each(|(to, from)| *to = *from);
-        }
     }
 }
 

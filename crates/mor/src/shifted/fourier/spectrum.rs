@@ -1,6 +1,7 @@
 //! Snapshots by wave vectors.
 use super::compression::compress;
 use super::phases::Phases;
+use crate::shifted::lines::Lines;
 use crate::shifted::{Grid, ShiftedError, Shifts};
 use crate::{Mat, MatRef};
 use monomorphic::{add_product, fourier_transforms};
@@ -54,24 +55,10 @@ struct Layout {
 impl Layout {
     /// Transforms all fields along all axes on which something moves, orthogonally.
     fn transform(&self, inverse: bool, fields: &mut [Complex<f64>]) {
+        let mut lines = Lines::default();
         for (axis, transforms) in &self.moving {
-            let (n, inner) = (self.cells[*axis], self.cells[..*axis].iter().product::<usize>());
-            let transform = &transforms[usize::from(inverse)];
-            let mut scratch = vec![Complex::default(); transform.get_inplace_scratch_len()];
-            if inner == 1 {
-                transform.process_with_scratch(fields, &mut scratch);
-            } else {
-                let mut lines = vec![Complex::default(); n * inner];
-                for block in fields.chunks_exact_mut(n * inner) {
-                    for (l, line) in lines.chunks_exact_mut(n).enumerate() {
-                        line.iter_mut().enumerate().for_each(|(i, z)| *z = block[i * inner + l]);
-                    }
-                    transform.process_with_scratch(&mut lines, &mut scratch);
-                    for (l, line) in lines.chunks_exact(n).enumerate() {
-                        line.iter().enumerate().for_each(|(i, z)| block[i * inner + l] = *z);
-                    }
-                }
-            }
+            let inner = self.cells[..*axis].iter().product();
+            lines.transform(&*transforms[usize::from(inverse)], inner, fields);
         }
         let n: usize = self.moving.iter().map(|(a, _)| self.cells[*a]).product();
         let factor = (n as f64).sqrt().recip();

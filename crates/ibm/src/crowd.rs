@@ -80,7 +80,8 @@ impl Crowd {
 
     /// The boxes go by other numbers from now on.
     pub(crate) fn renumber(&mut self) {
-        (self.pairs.clear(), self.met.clear());
+        self.pairs.clear();
+        self.met.clear();
     }
 }
 

@@ -18,6 +18,7 @@ use example_support::Outcome;
 use example_support::coupled::{Motion, Plan, RunOptions, run};
 use example_support::granular::{Ending, main_of};
 use example_support::sinking_discs::{FLUID_DENSITY, SinkingDiscs};
+use siltflow::dem::{Chen, ContactLaw};
 use siltflow::ibm::SmoothForcing;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
@@ -35,33 +36,40 @@ struct Cli {
     /// Coefficient of friction between the discs.
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     friction: f64,
+    /// Cells over which the discs and the walls repel one another (Uhlmann's: two); 0: they just collide.
+    #[arg(long, default_value_t = 2.0, allow_negative_numbers = true)]
+    repulsion: f64,
     #[command(flatten)]
     run: RunOptions,
 }
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    main_of(cli.run.threads, |stop| sink(&cli, stop))
-}
-
-fn sink(cli: &Cli, stop: &AtomicBool) -> Outcome<Ending> {
-    let (scene, end) = match cli.bodies {
-        1 => (SinkingDiscs::single(cli.cells_per_diameter), 0.9),
-        _ => (SinkingDiscs::drafting(cli.cells_per_diameter), 0.3),
+    let scene = match cli.bodies {
+        1 => SinkingDiscs::single(cli.cells_per_diameter),
+        _ => SinkingDiscs::drafting(cli.cells_per_diameter),
     };
     let scene = SinkingDiscs { friction: cli.friction, ..scene };
+    main_of(cli.run.threads, |stop| match cli.repulsion {
+        0.0 => sink(&cli, &scene, Chen::default(), stop),
+        cells => sink(&cli, &scene, scene.repulsive(cells)?, stop),
+    })
+}
+
+fn sink<L: ContactLaw>(cli: &Cli, scene: &SinkingDiscs, law: L, stop: &AtomicBool) -> Outcome<Ending> {
+    let end = if cli.bodies == 1 { 0.9 } else { 0.3 };
     let mut forcing = SmoothForcing::new(FLUID_DENSITY);
     if let Some(kernel) = cli.run.kernel {
         forcing = forcing.with_kernel(kernel);
     }
-    let mut fall = scene.build(forcing)?;
+    let setup = format!("{scene:?} {law:?}");
+    let mut fall = scene.build(forcing, law)?;
     let out = cli.run.out.clone().unwrap_or_else(|| "out/drafting_kissing_tumbling".into());
-    let plan =
-        Plan { end: cli.run.end.unwrap_or(end), out: &out, setup: &format!("{scene:?}"), view: scene.view() };
+    let plan = Plan { end: cli.run.end.unwrap_or(end), out: &out, setup: &setup, view: scene.view() };
     let record = run(&mut fall, &cli.run, &plan, Motion::default(), stop)?;
     match cli.bodies {
-        1 => report::one(&scene, &record, &plan, cli.run.no_images)?,
-        _ => report::two(&scene, &record, &plan, cli.run.no_images)?,
+        1 => report::one(scene, &record, &plan, cli.run.no_images)?,
+        _ => report::two(scene, &record, &plan, cli.run.no_images)?,
     }
     Ok(record.ending)
 }

@@ -6,6 +6,7 @@ use example_support::reference_curve::{Distance, at, passes, read};
 use example_support::sinking_discs::{BOX, DIAMETER, SinkingDiscs};
 use example_support::table::{Table, grouped, number, write_json};
 use serde_json::json;
+use siltflow::dem::ContactLaw;
 
 /// Over one of Uhlmann's curves: what it is, unit, ours in that unit, and the points of the trailing and the leading disc.
 struct Quantity {
@@ -114,7 +115,12 @@ fn head(title: &str, scene: &SinkingDiscs, record: &Record) -> Table {
 }
 
 /// Two discs, beside Uhlmann's.
-pub(crate) fn two(scene: &SinkingDiscs, record: &Record, plan: &Plan<'_, 2>, no_images: bool) -> Outcome<()> {
+pub(crate) fn two<L: ContactLaw>(
+    scene: &SinkingDiscs,
+    record: &Record,
+    plan: &Plan<'_, 2, L>,
+    no_images: bool,
+) -> Outcome<()> {
     let mut t = head("Drafting, kissing, tumbling", scene, record);
     let [trailing, leading] = [0, 1].map(|b| record.motion.bodies.get(b).map_or(&[][..], Vec::as_slice));
     let apart = separation([trailing, leading]);
@@ -203,7 +209,12 @@ pub(crate) fn two(scene: &SinkingDiscs, record: &Record, plan: &Plan<'_, 2>, no_
 const PUBLISHED_REYNOLDS: [f64; 2] = [17.15, 17.42];
 
 /// One disc.
-pub(crate) fn one(scene: &SinkingDiscs, record: &Record, plan: &Plan<'_, 2>, no_images: bool) -> Outcome<()> {
+pub(crate) fn one<L: ContactLaw>(
+    scene: &SinkingDiscs,
+    record: &Record,
+    plan: &Plan<'_, 2, L>,
+    no_images: bool,
+) -> Outcome<()> {
     let mut t = head("A disc that sinks", scene, record);
     let states = record.motion.bodies.first().map_or(&[][..], Vec::as_slice);
     let fastest = states.iter().max_by(|a, b| a.velocity[1].abs().total_cmp(&b.velocity[1].abs()));
@@ -243,9 +254,9 @@ pub(crate) fn one(scene: &SinkingDiscs, record: &Record, plan: &Plan<'_, 2>, no_
 }
 
 /// The flow at a few times beside the curves.
-fn figure(
+fn figure<L: ContactLaw>(
     record: &Record,
-    plan: &Plan<'_, 2>,
+    plan: &Plan<'_, 2, L>,
     (panels, columns): (&[Panel], usize),
     names: [&str; 2],
 ) -> Outcome<()> {

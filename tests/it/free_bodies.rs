@@ -42,7 +42,8 @@ fn a_sphere_settles_as_measured() {
 #[test]
 fn two_discs_draft() {
     with_threads(1, || {
-        let mut fall = SinkingDiscs::drafting(20).build(SmoothForcing::new(FLUID_DENSITY)).unwrap();
+        let mut fall =
+            SinkingDiscs::drafting(20).build(SmoothForcing::new(FLUID_DENSITY), Chen::default()).unwrap();
         let motion = motion(&mut fall, 0.15, 0.2);
         let published = [
             include_str!("../data/uhlmann_2005_trailing_streamwise_position.csv"),
@@ -64,7 +65,7 @@ fn two_discs_draft() {
 fn a_disc_sinks_as_others_computed() {
     with_threads(1, || {
         let scene = SinkingDiscs::single(16);
-        let mut fall = scene.build(SmoothForcing::new(FLUID_DENSITY)).unwrap();
+        let mut fall = scene.build(SmoothForcing::new(FLUID_DENSITY), Chen::default()).unwrap();
         let speeds = motion(&mut fall, 0.5, 0.2).over_time(0, |s| -s.velocity[1]);
         let fastest = speeds.iter().fold(0.0, |most: f64, v| most.max(v.1));
         let reynolds = scene.density_ratio * fastest * DIAMETER / scene.viscosity;

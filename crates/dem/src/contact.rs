@@ -6,6 +6,7 @@ mod law;
 mod lubricated;
 mod potential;
 mod properties;
+mod repulsive;
 mod rolling;
 
 pub use chen::Chen;
@@ -14,4 +15,5 @@ pub use law::{ContactLaw, Memory, Push, Touch};
 pub use lubricated::{Lubricated, WholeFilm};
 pub use potential::Potential;
 pub use properties::{Means, PairProperties};
+pub use repulsive::Repulsive;
 pub use rolling::Rolling;

@@ -199,7 +199,7 @@ impl<L: ContactLaw> RigidBodies<L> {
         if !constants.inertia.mass.is_finite() {
             return Err(DemError::Unsupported { a: constants.shape.name(), b: "body" });
         }
-        if L::FILMS && kind == Kind::Disc {
+        if !L::PLANE && kind == Kind::Disc {
             return Err(DemError::Unsupported { a: constants.shape.name(), b: "film" });
         }
         if let (Some(first), Some(other)) = (self.bodies.first(), self.constants.first())

@@ -4,7 +4,7 @@ use crate::physics::Physics;
 use crate::setup::{Algorithm, Bodies, ContactLawChoice, ForcingChoice, InflowSetup, Motion, Setup};
 use crate::still::Still;
 use dem::placing::{PlacingError, Region};
-use dem::{Chen, ContactLaw, DemError, Entrant, Inflow, Lubricated, Population, RigidBodies};
+use dem::{Chen, ContactLaw, DemError, Entrant, Inflow, Lubricated, Population, Repulsive, RigidBodies};
 use fv_mesh::{CartesianGrid, Diffusion, FlowError, Piso, PisoParams, Projection, Side, TimeScheme};
 use ibm::{Hfdib, IbmError, SmoothFilm, SmoothForcing, cut_walls};
 use interfaces::{Freedom, Kinematics, Periods, Twist};
@@ -238,6 +238,10 @@ impl Setup {
         let viscosity = self.fluid().viscosity * self.fluid().density;
         Ok(Lubricated::new(self.chen(), viscosity, SmoothFilm::new(spacing)?)?.with_roughness(roughness)?)
     }
+    /// The paper's law with a repulsion of this strength \[N\] and range \[m\].
+    pub(crate) fn repulsive(&self, [strength, range]: [f64; 2]) -> Result<Repulsive<Chen>, BuildError> {
+        Ok(Repulsive::new(self.chen(), strength, range)?)
+    }
     /// The law that keeps energy.
     pub(crate) fn potential(&self) -> dem::Potential {
         dem::Potential::default().with_length_factor(self.bodies.length_factor)
@@ -262,6 +266,7 @@ impl Setup {
         let bodies = &self.bodies;
         let any = !bodies.list.is_empty() || !bodies.inflows.is_empty();
         let law = match bodies.law {
+            ContactLawChoice::Chen if bodies.repulsion.is_some() => "chen with repulsion",
             ContactLawChoice::Chen => "chen",
             ContactLawChoice::Potential => "potential",
             ContactLawChoice::Rolling => "rolling",

@@ -95,6 +95,9 @@ impl Setup {
 
     /// Bodies without a fluid.
     fn grains(&self, stage: &Stage<'_>) -> Result<RunResult, RunError> {
+        if let Some(repulsion) = self.bodies.repulsion {
+            return stage.march(Grains::new(self.cast(self.repulsive(repulsion)?)?), ());
+        }
         match self.bodies.law {
             ContactLawChoice::Chen => stage.march(Grains::new(self.cast(self.chen())?), ()),
             ContactLawChoice::Potential => stage.march(Grains::new(self.cast(self.potential())?), ()),
@@ -109,6 +112,9 @@ impl Setup {
         forcing: F,
     ) -> Result<RunResult, RunError> {
         let flow = self.physics(self.projection::<D>()?)?;
+        if let Some(repulsion) = self.bodies.repulsion {
+            return stage.bodies(flow, self.particles(forcing, self.cast(self.repulsive(repulsion)?)?));
+        }
         match (self.bodies.law, self.bodies.coupling.strategy, self.bodies.lubrication) {
             (ContactLawChoice::Chen, StrategyChoice::OneSolve, Some(roughness)) => {
                 stage.bodies(flow, self.particles(forcing, self.cast(self.lubricated(roughness)?)?))

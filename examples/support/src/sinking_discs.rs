@@ -4,10 +4,11 @@ use crate::Outcome;
 use crate::coupled::{Fall, Slice, View};
 use crate::picture::{Disc as Outline, Domain};
 use coupling::{Particles, Simulation, WeightBalance};
-use dem::{Disc, HalfSpace, Material, RigidBodies};
+use dem::{Chen, ContactLaw, Disc, HalfSpace, Material, Repulsive, RigidBodies};
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Side};
 use ibm::SmoothForcing;
 use interfaces::{BodyId, Freedom, Kinematics, Periods, Point, Pose, Twist, Vector};
+use std::f64::consts::PI;
 
 /// Edges of the box \[m\]; gravity acts along −y.
 pub const BOX: [f64; 2] = [0.02, 0.06];
@@ -79,11 +80,21 @@ impl SinkingDiscs {
         BOX.map(|l| (l / self.spacing()).round().max(1.0) as usize)
     }
 
+    /// [`Chen`] with a repulsion over so many `cells`, which where surfaces touch is 50 times a disc's weight less buoyancy.
+    ///
+    /// # Errors
+    /// Of a range that is not positive and finite.
+    pub fn repulsive(&self, cells: f64) -> Outcome<Repulsive<Chen>> {
+        let excess = (self.density_ratio - 1.0) * FLUID_DENSITY;
+        let weight = excess * GRAVITY * 0.25 * PI * DIAMETER * DIAMETER;
+        Ok(Repulsive::new(Chen::default(), 50.0 * weight.abs(), cells * self.spacing())?)
+    }
+
     /// Discs, walls and fluid at rest.
     ///
     /// # Errors
     /// Those of grid, flow and bodies.
-    pub fn build(&self, forcing: SmoothForcing) -> Outcome<Fall<2>> {
+    pub fn build<L: ContactLaw>(&self, forcing: SmoothForcing, law: L) -> Outcome<Fall<2, L>> {
         if self.cells_per_diameter < LEAST_CELLS {
             return Err(format!(
                 "{} cells across a disc; at least {LEAST_CELLS} are needed: raise --cells-per-diameter",
@@ -96,7 +107,7 @@ impl SinkingDiscs {
             .with_diffusion(Diffusion::Explicit);
         let material =
             Material { density: self.density_ratio * FLUID_DENSITY, friction: self.friction, ..MATERIAL };
-        let mut bodies = RigidBodies::new(Periods::default());
+        let mut bodies = RigidBodies::with_law(Periods::default(), law);
         for (corner, inwards) in [([0.0; 2], Vector::x()), ([0.0; 2], Vector::y()), (BOX, -Vector::x())] {
             bodies.add_wall(HalfSpace::new(Point::new(corner[0], corner[1], 0.0), inwards)?, material)?;
         }
@@ -111,14 +122,14 @@ impl SinkingDiscs {
     }
 
     /// All of the box.
-    pub fn view(&self) -> View<2> {
+    pub fn view<L: ContactLaw>(&self) -> View<2, L> {
         let domain = Domain { width: BOX[0], height: BOX[1], periodic: [false; 2] };
         let max_speed = if self.starts.len() > 1 { 0.18 } else { 0.07 };
         View { domain, max_speed, slice }
     }
 }
 
-fn slice(fall: &Fall<2>) -> Slice {
+fn slice<L: ContactLaw>(fall: &Fall<2, L>) -> Slice {
     let (flow, bodies) = (&fall.flow, &fall.particles.bodies);
     let speed = flow.centred_velocity(0).zip(flow.centred_velocity(1)).map(|(u, v)| u.hypot(v)).collect();
     let outline = |b: BodyId| {

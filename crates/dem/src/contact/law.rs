@@ -25,6 +25,9 @@ pub trait ContactLaw: Clone + Debug + Send + Sync {
     /// Does it act [across](Self::across) gaps, too? Others pay nothing for it.
     const FILMS: bool = false;
 
+    /// Does it have a meaning in plane scenes?
+    const PLANE: bool = true;
+
     /// The largest gap across which it acts \[m\].
     fn reach(&self) -> f64 {
         0.0

@@ -26,6 +26,7 @@ impl<L: ContactLaw> ContactLaw for Rolling<L> {
     type Memory = (L::Memory, Vector);
     const MOBILITY: bool = L::MOBILITY;
     const FILMS: bool = L::FILMS;
+    const PLANE: bool = L::PLANE;
 
     fn reach(&self) -> f64 {
         self.0.reach()

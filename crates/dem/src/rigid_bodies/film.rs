@@ -49,7 +49,7 @@ impl<L: ContactLaw> View<'_, L> {
         }
         let wall = matches!(meeting.other, Other::Wall(_));
         let film = Gap { distance: gap, normal, velocity, spin, radius, curvatures, wall };
-        let FilmForce { force, couple, resistance } = self.law.across(&film);
+        let FilmForce { force, couple, resistance, stiffness } = self.law.across(&film);
         let inverse_mass = |b: u32, c: &Constants| {
             if c.pinned() { 0.0 } else { 1.0 / (c.mass + self.loads.of(b as usize).added_mass) }
         };
@@ -58,14 +58,17 @@ impl<L: ContactLaw> View<'_, L> {
             inverse += inverse_mass(meeting.pair.b, meeting.others());
         }
         let rate = PI * resistance * inverse / (LEAST_STEPS * MOST_TAKEN);
-        Some(Film { on_both: meeting.wrenches(at, force, couple), stiffness: rate * rate })
+        // Turning a ball by a force at its surface is 2.5 times as easy as moving it.
+        let turns = if meeting.a.kind == Kind::Other { 3.5 } else { 1.0 };
+        let stiffness = rate * rate + stiffness * inverse * turns;
+        Some(Film { on_both: meeting.wrenches(at, force, couple), stiffness })
     }
 
     /// Where the two are closest, if that is within reach.
     fn place(&self, meeting: &Meeting<'_>) -> Option<Place> {
         let (a, reach) = (meeting.a, self.law.reach());
         let at_a = a.pose.position;
-        let ball = |b: &super::Body| b.kind == Kind::Ball;
+        let ball = |b: &super::Body| b.kind != Kind::Other;
         let placed = |normal: Vector, gap: f64, k: f64| {
             let at = at_a + normal * (a.radius + 0.5 * gap);
             let own = 1.0 / a.radius;

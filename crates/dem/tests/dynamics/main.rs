@@ -10,6 +10,7 @@ mod near;
 mod population;
 mod potential;
 mod removal;
+mod repulsion;
 mod rotation;
 mod sleep;
 mod state;

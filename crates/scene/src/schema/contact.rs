@@ -13,6 +13,19 @@ pub(super) static EXIT: Table = Table { about: "A half-space.", keys: &[PLANE_PO
 
 static PLANE: Table = Table { about: "All behind a plane, solid.", keys: &[PLANE_POINT, PLANE_NORMAL] };
 
+static REPULSION: Table = Table {
+    about: "A force F₀(1 − δ/ζ)² between bodies whose closest places are δ < ζ apart, and from walls (Glowinski et al. 1999).",
+    keys: &[
+        required(
+            "strength",
+            Kind::Number(Range::Positive, "N; plane N/m"),
+            "F₀, where surfaces touch: some times what presses them together.",
+            "1.0",
+        ),
+        required("range", Kind::Number(Range::Positive, "m"), "ζ, one or two cells.", "3e-4"),
+    ],
+};
+
 pub(super) static CONTACT: Table = Table {
     about: "Contacts of bodies with one another and with walls.",
     keys: &[
@@ -49,6 +62,13 @@ pub(super) static CONTACT: Table = Table {
             "4",
             "Of the contact length L_c.",
             "4.0",
+        ),
+        optional(
+            "repulsion",
+            Kind::Table(&REPULSION),
+            "none",
+            "Pushes bodies apart before they touch (law chen, one-solve).",
+            "{ strength = 1.0, range = 3e-4 }",
         ),
         optional("adhesion", Kind::Flag, "false", "May damping pull (law chen)?", "true"),
         optional("overlaps", Kind::Flag, "false", "May bodies overlap at the start?", "true"),

@@ -46,6 +46,8 @@ pub(crate) struct Bodies {
     pub(crate) law: ContactLawChoice,
     pub(crate) length_factor: f64,
     pub(crate) adhesion: bool,
+    /// Strength \[N\] and range \[m\] of the repulsion.
+    pub(crate) repulsion: Option<[f64; 2]>,
     /// May they overlap at the start?
     pub(crate) overlaps: bool,
     /// Walls of the box that they touch.
@@ -158,6 +160,10 @@ pub(super) fn read(
         },
         length_factor: contact.as_ref().and_then(|t| t.number("length_factor")).unwrap_or(4.0),
         adhesion: contact.as_ref().and_then(|t| t.flag("adhesion")).unwrap_or(false),
+        repulsion: contact.as_ref().and_then(|t| t.table("repulsion")).and_then(|t| {
+            let [strength, range] = ["strength", "range"].map(|key| t.number(key));
+            Some([strength?, range?])
+        }),
         overlaps: contact.as_ref().and_then(|t| t.flag("overlaps")).unwrap_or(false),
         walls: [
             if touches { walls(axes, sides).map_err(|e| root.fail("sides", e))? } else { vec![] },
@@ -190,11 +196,18 @@ fn agrees(root: &Reader<'_>, bodies: &Bodies, fluid: Option<Fluid>) -> Result<()
     {
         return Err(root.fail("fluid", "walls by cut links need a viscosity; give `nu` above 0"));
     }
-    let chen = bodies.law == ContactLawChoice::Chen && bodies.lubrication.is_none();
-    if bodies.coupling.strategy != StrategyChoice::OneSolve && !chen {
-        return Err(fail("strategy", "\"iterated\" and \"explicit\" go with the contact law \"chen\" without lubrication only; take \"one-solve\"".into()));
+    let chen = bodies.law == ContactLawChoice::Chen;
+    let across = bodies.lubrication.is_some() || bodies.repulsion.is_some();
+    if bodies.coupling.strategy != StrategyChoice::OneSolve && (!chen || across) {
+        return Err(fail("strategy", "\"iterated\" and \"explicit\" go with the contact law \"chen\" without lubrication and repulsion only; take \"one-solve\"".into()));
     }
-    if bodies.lubrication.is_some() && bodies.law != ContactLawChoice::Chen {
+    if bodies.repulsion.is_some() && (!chen || bodies.lubrication.is_some()) {
+        return Err(root.fail(
+            "contact",
+            "repulsion goes with the contact law \"chen\" without lubrication only; leave out contact.repulsion, or contact.law and lubrication",
+        ));
+    }
+    if bodies.lubrication.is_some() && !chen {
         return Err(root.fail(
             "lubrication",
             "films go with the contact law \"chen\" only; leave out contact.law or lubrication",

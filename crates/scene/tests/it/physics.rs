@@ -1,0 +1,196 @@
+//! Bodies that move as told, turbulence, scalars.
+use crate::{folder, problems, quiet, root, run};
+use scene::{Ending, Options, Scene};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// Bodies that move by formulas have the formula's velocity, too: the force on a cylinder that swings goes to and fro, as measured (3.3 at the most).
+#[test]
+fn a_cylinder_swings() {
+    let out = folder("swings");
+    let coarse = [
+        "grid.x.fine=0.1",
+        "grid.y.fine=0.1",
+        "time.dt=0.02",
+        "time.end=10",
+        "forces.start=5",
+        "output.snapshots=0",
+        "output.images=false",
+    ];
+    let scene =
+        Scene::load(&root().join("scenes/oscillating_cylinder.toml"), &coarse.map(String::from)).unwrap();
+    let result = scene.run(&quiet(&out), &AtomicBool::new(false)).unwrap().result;
+    std::fs::remove_dir_all(&out).unwrap();
+    let of = |what: &str| result["forces"][0]["coefficients"][what][0].as_f64().unwrap();
+    assert!(
+        of("mean").abs() < 0.03 && (of("highest") / 3.3 - 1.0).abs() < 0.1,
+        "{} {} {}",
+        of("mean"),
+        of("highest"),
+        of("lowest")
+    );
+    // x = −5/(2π) sin(2πt/5), so u = −cos(2πt/5).
+    let velocity = result["bodies"][0]["velocity"][0].as_f64().unwrap();
+    assert!((velocity + 1.0).abs() < 1e-4, "{velocity}");
+}
+
+/// A warm sphere in a stream, large eddies modelled: `\n`-separated tables.
+pub(crate) const WARM: &str = r#"
+gravity = [0.0, -9.81, 0.0]
+turbulence = { model = "smagorinsky", constant = 0.1 }
+[grid]
+cells = [16, 12, 12]
+size = [1.6, 1.2, 1.2]
+[sides]
+x_min = { type = "inlet", velocity = [1.0, 0.0, 0.0] }
+x_max = "outlet"
+y = "symmetry"
+z = "wall"
+[fluid]
+density = 1.0
+nu = 1e-3
+[scalars.temperature]
+diffusivity = 1e-3
+bodies = 1.0
+expansion = 0.05
+[[bodies]]
+shape = { type = "sphere", radius = 0.25 }
+position = [0.6, 0.6, 0.6]
+motion = "fixed"
+[time]
+end = 0.6
+[output]
+snapshots = 2
+field = "temperature"
+"#;
+
+/// Half a run, and the rest of it: the same bits as the whole.
+#[test]
+fn a_warm_sphere_with_large_eddies_goes_on_as_if_it_had_not_stopped() {
+    let [whole, halves] = ["warm-whole", "warm-halves"].map(folder);
+    let run =
+        |out: &Path, more: &[&str], resume: bool| run(WARM, more, &Options { resume, ..quiet(out) }).result;
+    let all = run(&whole, &[], false);
+    run(&halves, &["time.end=0.3", "output.snapshots=1"], false);
+    let rest = run(&halves, &[], true);
+    assert_eq!(all, rest);
+    let temperature = &all["fields"]["temperature"];
+    // Cells at the surface whose centre is inside have what the profile has there, beyond the 1 of the surface.
+    let [mean, most] = ["mean", "most"].map(|what| temperature[what].as_f64().unwrap());
+    assert!((0.01..0.3).contains(&mean) && (0.999..1.6).contains(&most), "{temperature}");
+    assert!(all["fields"]["eddy_viscosity"]["most"].as_f64().unwrap() > 1e-4);
+    assert!(whole.join("images/00002.png").exists());
+    [whole, halves].iter().for_each(|out| std::fs::remove_dir_all(out).unwrap());
+}
+
+/// What cannot be together is told, by its key.
+#[test]
+fn physics_that_does_not_go_together_is_told() {
+    for (more, told) in [
+        ("turbulence=\"sst\"", None),
+        ("flow.algorithm=\"simple\"", Some("large eddies are not steady")),
+        ("output.field=\"salt\"", Some("there are: temperature, eddy_viscosity")),
+        ("bodies.0.motion=\"free\"", Some("for bodies at rest")),
+        ("turbulence.length=0.1", Some("no key \"length\"")),
+        ("scalars.temperature.sides.x_min={type=\"value\"}", Some("value")),
+    ] {
+        let told_here = Scene::parse("warm.toml", WARM, &[more.into()]).err().map(|e| e.to_string());
+        match told {
+            None => assert!(told_here.is_none(), "{more}: {told_here:?}"),
+            Some(part) => {
+                assert!(told_here.as_ref().is_some_and(|t| t.contains(part)), "{more}: {told_here:?}")
+            }
+        }
+    }
+}
+
+/// A steady channel with a wall inside, by k–ω SST: it slows the fluid down, and its drag is told.
+#[test]
+fn a_wall_in_a_steady_channel_has_friction() {
+    let text = r#"
+        turbulence = { model = "sst", intensity = 0.05, length = 0.07 }
+        [grid]
+        cells = [40, 20]
+        size = [4.0, 1.1]
+        [sides]
+        x_min = { type = "inlet", velocity = [1.0, 0.0] }
+        x_max = { type = "pressure" }
+        y = "symmetry"
+        [fluid]
+        density = 1.0
+        nu = 1e-5
+        [flow]
+        algorithm = "simple"
+        convection = "upwind"
+        tolerance = 1e-4
+        iterations = 400
+        [[bodies]]
+        name = "floor"
+        shape = { type = "formula", distance = "y - 0.12", lower = [-1.0, -1.0], upper = [5.0, 0.2] }
+        position = [0.0, 0.0]
+        motion = "fixed"
+        [forces]
+        velocity = 1.0
+        area = 4.0
+        [time]
+        end = 1.0
+        [output]
+        field = "k"
+    "#;
+    let out = folder("steady");
+    let scene = Scene::parse("channel.toml", text, &[]).unwrap();
+    let run = scene.run(&quiet(&out), &AtomicBool::new(false)).unwrap();
+    std::fs::remove_dir_all(&out).unwrap();
+    assert_eq!(run.ending, Ending::Done, "{}", run.result["residual"]);
+    let drag = run.result["forces"][0]["coefficients"]["last"][0].as_f64().unwrap();
+    // Between those of a smooth plate at Re 4e5 with and without a fully turbulent layer, twice as wide for the coarse cells.
+    assert!((2e-3..1.2e-2).contains(&drag), "{drag}");
+    assert!(run.result["y_plus"]["mean"].as_f64().unwrap() > 10.0);
+}
+
+/// A disc that swings across a turbulent stream: models of two equations see it, by the unsteady algorithm only.
+#[test]
+fn a_model_of_two_equations_sees_a_body_that_moves() {
+    let text = r#"
+        turbulence = { model = "sst", intensity = 0.05, viscosity_ratio = 10.0 }
+        [grid]
+        cells = [60, 40]
+        size = [6.0, 4.0]
+        [sides]
+        x_min = { type = "inlet", velocity = [1.0, 0.0] }
+        x_max = { type = "pressure" }
+        y = "symmetry"
+        [fluid]
+        density = 1.0
+        nu = 1e-4
+        [initial]
+        velocity = [1.0, 0.0]
+        [[bodies]]
+        name = "cylinder"
+        shape = { type = "disc", radius = 0.5 }
+        position = [2.0, 2.0]
+        motion = { type = "prescribed", shift = [0.0, "0.3*sin(3*t)"] }
+        [forces]
+        velocity = 1.0
+        area = 1.0
+        [time]
+        end = 0.5
+        [output]
+        field = "k"
+    "#;
+    let out = folder("swings");
+    let scene = Scene::parse("swings.toml", text, &[]).unwrap();
+    let plan = scene.plan().unwrap().to_string();
+    assert!(plan.contains("beside bodies wherever they are"), "{plan}");
+    let run = scene.run(&quiet(&out), &AtomicBool::new(false)).unwrap();
+    std::fs::remove_dir_all(&out).unwrap();
+    assert_eq!(run.ending, Ending::Done);
+    assert!(run.result["y_plus"]["mean"].as_f64().unwrap() > 5.0, "{}", run.result["y_plus"]);
+    for (more, told) in [
+        ("flow.algorithm=\"simple\"", "a steady flow has no bodies that move"),
+        ("flow.algorithm=\"piso\"", "turbulence models go with \"projection\""),
+    ] {
+        let found = problems(text, more);
+        assert!(found.contains(told), "{more}: {found}");
+    }
+}

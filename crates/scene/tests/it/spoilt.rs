@@ -1,0 +1,157 @@
+//! Spoilt scene files.
+use crate::{coarse, folder, quiet, scenes};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, TestCaseError, TestRunner};
+use scene::Scene;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+/// One way to spoil a text.
+#[derive(Clone, Debug)]
+enum Spoil {
+    /// The byte at a share of the text becomes another.
+    Byte(f64, u8),
+    /// A line goes.
+    Drop(f64),
+    /// A line comes twice.
+    Twice(f64),
+    /// What stands behind an equals sign becomes something else.
+    Value(f64, &'static str),
+    /// The name of a key loses its first letter.
+    Key(f64),
+    /// A digit is put into a number.
+    Digit(f64, u8),
+    /// The rest is cut off.
+    Cut(f64),
+}
+
+const VALUES: [&str; 20] = [
+    "0",
+    "-1",
+    "1e300",
+    "nan",
+    "inf",
+    "\"\"",
+    "\"x\"",
+    "[]",
+    "[1, 2, 3, 4]",
+    "{}",
+    "true",
+    "1979-05-27",
+    "\"sin(\"",
+    "\"1/t\"",
+    "[[1]]",
+    "1e-300",
+    "99999999999999999999",
+    "\"periodic\"",
+    "{ type = \"wall\" }",
+    "'''\n'''",
+];
+
+fn spoil() -> impl Strategy<Value = Spoil> {
+    let at = || 0.0..1.0;
+    prop_oneof![
+        (at(), any::<u8>()).prop_map(|(a, b)| Spoil::Byte(a, b)),
+        at().prop_map(Spoil::Drop),
+        at().prop_map(Spoil::Twice),
+        (at(), proptest::sample::select(&VALUES[..])).prop_map(|(a, v)| Spoil::Value(a, v)),
+        (at(), proptest::sample::select(&VALUES[..])).prop_map(|(a, v)| Spoil::Value(a, v)),
+        at().prop_map(Spoil::Key),
+        (at(), b'0'..=b'9').prop_map(|(a, d)| Spoil::Digit(a, d)),
+        at().prop_map(Spoil::Cut),
+    ]
+}
+
+fn spoilt(text: &str, how: &Spoil) -> String {
+    let lines: Vec<&str> = text.lines().collect();
+    let pick = |share: f64, n: usize| ((share * n as f64) as usize).min(n.saturating_sub(1));
+    let on = |share: f64, change: &dyn Fn(&str) -> String, which: &dyn Fn(&str) -> bool| {
+        let fit: Vec<usize> = (0..lines.len()).filter(|&i| which(lines[i])).collect();
+        let chosen = fit.get(pick(share, fit.len())).copied();
+        let line =
+            |(i, line): (usize, &&str)| if Some(i) == chosen { change(line) } else { (*line).to_owned() };
+        lines.iter().enumerate().map(line).collect::<Vec<_>>().join("\n")
+    };
+    let is_key = |line: &str| line.contains('=') && !line.trim_start().starts_with('#');
+    match *how {
+        Spoil::Byte(share, byte) => {
+            let mut bytes = text.as_bytes().to_vec();
+            let at = pick(share, bytes.len());
+            bytes[at] = byte;
+            String::from_utf8_lossy(&bytes).into_owned()
+        }
+        Spoil::Drop(share) => on(share, &|_| String::new(), &|line| !line.trim().is_empty()),
+        Spoil::Twice(share) => on(share, &|line| format!("{line}\n{line}"), &|line| !line.trim().is_empty()),
+        Spoil::Value(share, value) => {
+            on(share, &|line| format!("{} = {value}", line.split('=').next().unwrap_or("")), &is_key)
+        }
+        Spoil::Key(share) => on(share, &|line| line.chars().skip(1).collect(), &is_key),
+        Spoil::Digit(share, digit) => on(
+            share,
+            &|line| match line.rfind(|c: char| c.is_ascii_digit()) {
+                Some(at) => format!("{}{}{}", &line[..at], digit as char, &line[at..]),
+                None => line.to_owned(),
+            },
+            &is_key,
+        ),
+        Spoil::Cut(share) => {
+            let at = pick(share, text.len());
+            String::from_utf8_lossy(&text.as_bytes()[..at]).into_owned()
+        }
+    }
+}
+
+/// A thousand spoilt files: whatever is wrong is told with its key or line; what is right after all can be planned, and, if it is small,
+/// makes a step. Nothing panics, nothing takes ten seconds.
+#[test]
+fn spoilt_scenes_are_told_about() {
+    let all: Vec<_> = scenes().into_iter().map(|(path, text)| (path, coarse(&text))).collect();
+    for (path, text) in &all {
+        Scene::parse(&path.display().to_string(), text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    }
+    let strategy = (0..all.len(), proptest::collection::vec(spoil(), 1..3));
+    let mut runner = TestRunner::new(Config { cases: 1000, failure_persistence: None, ..Config::default() });
+    let out = folder("spoilt");
+    let stop = AtomicBool::new(false);
+    let result = runner.run(&strategy, |(which, spoils)| {
+        let (path, text) = &all[which];
+        let text = spoils.iter().fold(text.clone(), |text, how| spoilt(&text, how));
+        let start = Instant::now();
+        match Scene::parse(&path.display().to_string(), &text, &[]) {
+            Err(problems) => {
+                prop_assert!(problems.count() > 0);
+                for (line, _, message) in problems.iter() {
+                    prop_assert!(line >= 1 && line <= text.lines().count() + 1, "line {line}: {problems}");
+                    prop_assert!(message.len() > 10, "{message}");
+                }
+                prop_assert!(problems.to_string().contains(".toml:"));
+            }
+            Ok(scene) => match scene.plan() {
+                Err(error) => prop_assert!(error.to_string().len() > 10),
+                Ok(plan) if plan.cells.iter().product::<usize>() < 5000 && plan.bodies < 100 => {
+                    let short = [
+                        "time.end=1e-9",
+                        "output.snapshots=0",
+                        "output.images=false",
+                        "output.fields=false",
+                        "flow.iterations=2",
+                    ];
+                    let short = short.map(String::from);
+                    if let Ok(scene) = Scene::parse(&path.display().to_string(), &text, &short)
+                        && let Err(error) = scene.run(&quiet(&out), &stop)
+                    {
+                        prop_assert!(error.to_string().len() > 10);
+                    }
+                }
+                Ok(_) => {}
+            },
+        }
+        let took = start.elapsed();
+        if took > Duration::from_secs(10) {
+            return Err(TestCaseError::fail(format!("{took:?}")));
+        }
+        Ok(())
+    });
+    let _ = std::fs::remove_dir_all(&out);
+    result.unwrap();
+}

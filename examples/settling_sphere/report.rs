@@ -2,7 +2,7 @@
 use example_support::Outcome;
 use example_support::coupled::{Plan, Record};
 use example_support::picture::comparison::{Comparison, Curve, Panel};
-use example_support::reference_curve::{Distance, at};
+use example_support::reference_curve::{Distance, at, passes};
 use example_support::settling_sphere::{Case, DIAMETER, SettlingSphere};
 use example_support::table::{Table, grouped, number, write_json};
 use serde_json::json;
@@ -10,6 +10,15 @@ use siltflow::dem::ContactLaw;
 
 /// Below so many cells between sphere and floor the flow is not resolved.
 const RESOLVED_GAP: f64 = 2.0;
+
+/// Heights between which the mean speed is told \[diameters above the floor\].
+const HEIGHTS: [f64; 2] = [7.0, 2.0];
+
+/// Mean speed between [`HEIGHTS`] of a gap over the diameter \[m/s\].
+fn mean_speed(gap: &[(f64, f64)]) -> Option<f64> {
+    let [from, to] = HEIGHTS.map(|h| passes(gap, h));
+    Some((HEIGHTS[0] - HEIGHTS[1]) * DIAMETER / (to? - from?))
+}
 
 pub(crate) fn tell<L: ContactLaw>(
     scene: &SettlingSphere,
@@ -63,6 +72,16 @@ pub(crate) fn tell<L: ContactLaw>(
             t.row("  measured points", unresolved.points, "");
         }
     }
+    // What was measured as heights does not depend on what was measured as speeds.
+    let over_diameter: Vec<_> = gap.iter().map(|&(t, g)| (t, g / DIAMETER)).collect();
+    let means = [mean_speed(&over_diameter), mean_speed(&scene.case.gap_over_diameter())];
+    if let [Some(ours), measured] = means {
+        t.row("mean speed between 7 and 2 diameters above the floor", number(1e3 * ours), "mm/s");
+        if let Some(measured) = measured {
+            t.row("  by the measured heights", number(1e3 * measured), "mm/s");
+            t.row("  off by", format!("{:+.2}", 100.0 * (ours / measured - 1.0)), "%");
+        }
+    }
     t.row("fastest sideways / peak", number(sideways / peak.max(f64::MIN_POSITIVE)), "");
     t.row("smallest gap to the floor", number(closest / scene.spacing()), "cells");
     t.row("time in contact", number(record.motion.contact_seconds), "s");
@@ -76,7 +95,7 @@ pub(crate) fn tell<L: ContactLaw>(
         "steps": record.summary.steps, "dt": record.summary.dt, "cpu_seconds": record.elapsed.cpu,
         "peak_speed": peak, "peak_time": peak_time, "measured_peak_speed": measured_peak,
         "curve_over_peak": of(&resolved), "curve_over_peak_below_two_cells": of(&unresolved),
-        "smallest_gap": closest, "contact_seconds": record.motion.contact_seconds,
+        "mean_speed": means[0], "measured_mean_speed": means[1], "smallest_gap": closest, "contact_seconds": record.motion.contact_seconds,
         "film_seconds": record.motion.film_seconds,
     });
     write_json(&plan.out.join("result.json"), &result)?;

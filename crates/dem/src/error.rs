@@ -90,6 +90,14 @@ pub enum DemError {
         /// Its value.
         factor: f64,
     },
+    /// A polygon makes no sense.
+    #[error("corner {corner} of the polygon {what}")]
+    Polygon {
+        /// Its number.
+        corner: usize,
+        /// What is wrong with it.
+        what: &'static str,
+    },
     /// A film of fluid makes no sense.
     #[error("the film's {what} is {value}; give a positive, finite number, of a roughness no more than 1")]
     Film {

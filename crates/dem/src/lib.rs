@@ -57,5 +57,5 @@ pub use rigid_dynamics::RigidDynamics;
 pub use shapes::{AdmissionReport, MeshError, Shell, Thinnest, TriangleMesh, TriangleSoup};
 pub use shapes::{
     Capsule, ConvexPolyhedron, Cuboid, Cylinder, Disc, Ellipsoid, Facets, Form, HalfSpace, Implicit, Part,
-    Shape, SmoothConvex, Sphere, Union,
+    Polygon, Shape, SmoothConvex, Sphere, Union,
 };

@@ -9,6 +9,7 @@ mod ellipsoids;
 mod facets;
 mod half_space;
 mod integrals;
+pub(crate) mod plane;
 mod slices;
 mod solver;
 pub(crate) mod tree;

@@ -199,11 +199,12 @@ impl<L: ContactLaw> RigidBodies<L> {
         if !constants.inertia.mass.is_finite() {
             return Err(DemError::Unsupported { a: constants.shape.name(), b: "body" });
         }
-        if !L::PLANE && kind == Kind::Disc {
+        let plane = constants.shape.form().is_plane();
+        if !L::PLANE && plane {
             return Err(DemError::Unsupported { a: constants.shape.name(), b: "film" });
         }
         if let (Some(first), Some(other)) = (self.bodies.first(), self.constants.first())
-            && first.is_plane() != (kind == Kind::Disc)
+            && first.is_plane() != plane
         {
             return Err(DemError::Unsupported { a: other.shape.name(), b: constants.shape.name() });
         }
@@ -224,6 +225,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             inverse_mass: if constants.pinned() { 0.0 } else { 1.0 / constants.inertia.mass },
             material: number,
             kind,
+            plane,
         });
         self.constants.push(constants);
         self.loads.add();

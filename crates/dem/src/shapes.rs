@@ -14,6 +14,7 @@ mod icosphere;
 mod implicit;
 mod lines;
 mod moments;
+mod polygon;
 mod smooth_convex;
 mod sphere;
 mod spiral;
@@ -38,6 +39,8 @@ pub use half_space::HalfSpace;
 pub(crate) use icosphere::icosphere;
 pub use implicit::Implicit;
 pub(crate) use moments::Moments;
+pub use polygon::Polygon;
+pub(crate) use polygon::{Piece, nearest};
 pub use smooth_convex::SmoothConvex;
 pub use sphere::Sphere;
 #[cfg(feature = "mesh")]
@@ -96,6 +99,8 @@ impl<T: Shape + ?Sized> Shape for Arc<T> {
 pub enum Form<'a> {
     /// A disc in the plane z = 0.
     Disc(&'a Disc),
+    /// A polygon in the plane z = 0.
+    Polygon(&'a Polygon),
     /// A sphere.
     Sphere(&'a Sphere),
     /// All behind a plane.
@@ -119,6 +124,10 @@ pub enum Form<'a> {
 }
 
 impl<'a> Form<'a> {
+    /// Is it of the plane z = 0?
+    pub(crate) fn is_plane(&self) -> bool {
+        matches!(self, Self::Disc(_) | Self::Polygon(_))
+    }
     /// The triangles of a flat-faced shape.
     pub(crate) fn facets(&self) -> Option<&'a Facets> {
         match self {

@@ -10,7 +10,7 @@ const CORNERS: usize = 64;
 
 impl<L: ContactLaw> RigidBodies<L> {
     /// Writes the bodies as one `.vtp` file (VTK polygonal data): discs as polygons with a line from centre to
-    /// rim that shows how far they have turned, bodies made of triangles by these, others as three such ellipses along their axes, as long as their boxes. Periodic bodies are drawn at
+    /// rim that shows how far they have turned, polygons by their corners, bodies made of triangles by these, others as three such ellipses along their axes, as long as their boxes. Periodic bodies are drawn at
     /// their image next after `corner`. Cell data: body number, velocity \[m/s\], angular velocity \[rad/s\].
     ///
     /// # Errors
@@ -45,6 +45,14 @@ impl<L: ContactLaw> RigidBodies<L> {
                     lines.push(connectivity.len());
                     owners.push(b);
                 }
+                continue;
+            }
+            if let Form::Polygon(polygon) = shape.form() {
+                let first = points.len();
+                points.extend(polygon.corners().iter().map(|c| world(Vector::new(c.x, c.y, 0.0))));
+                connectivity.extend((first..points.len()).chain([first]).map(|i| i as i64));
+                lines.push(connectivity.len());
+                owners.push(b);
                 continue;
             }
             let half = 0.5 * shape.aabb().extent();
@@ -121,7 +129,7 @@ impl<L: ContactLaw> RigidBodies<L> {
         };
         let diameter = |b: &BodyId| {
             let volume = self.inertia(*b).volume;
-            if matches!(self.shape(*b).form(), Form::Disc(_)) {
+            if self.shape(*b).form().is_plane() {
                 2.0 * (volume / PI).sqrt()
             } else {
                 (6.0 * volume / PI).cbrt()

@@ -3,6 +3,7 @@ use super::ball_faces::{BallFaces, Round};
 use super::clip::Clipper;
 use super::facets::{FacetOverlap, Impossible};
 use super::half_space::HalfSpaceOverlap;
+use super::plane::PlaneOverlap;
 use super::slices::Slices;
 use super::tree::{AdaptiveTree, Exhausted, Normal, Refinement, SubBox};
 use super::{Overlap, closed, columns, walls};
@@ -67,6 +68,7 @@ pub struct OverlapSolver {
     clipper: Clipper,
     facets: FacetOverlap,
     half_space: HalfSpaceOverlap,
+    plane: PlaneOverlap,
     slices: Slices,
     tree: AdaptiveTree,
 }
@@ -236,6 +238,8 @@ impl OverlapSolver {
             (Form::Disc(p), Form::Disc(q)) => {
                 out.extend(closed::discs(p.radius(), place, q.radius(), at_b.position))
             }
+            (Form::Disc(p), Form::Polygon(q)) => self.plane.disc(p.radius(), place, q, at_b, out),
+            (Form::Polygon(p), Form::Polygon(q)) => self.plane.polygons(p, at_a, q, at_b, out),
             (Form::Sphere(p), Form::Sphere(q)) => {
                 out.extend(closed::spheres(p.radius(), place, q.radius(), at_b.position))
             }
@@ -260,6 +264,7 @@ impl OverlapSolver {
                     Form::Disc(p) => {
                         out.extend(closed::disc_wall(p.radius(), place, w.signed_distance(place), w.normal()))
                     }
+                    Form::Polygon(p) => self.plane.at_wall(p, at_a, &w, out),
                     Form::Sphere(p) => out.extend(closed::sphere_wall(
                         p.radius(),
                         place,
@@ -284,13 +289,14 @@ fn rank(form: &Form<'_>) -> usize {
     match form {
         Form::Union(_) => 0,
         Form::Disc(_) => 1,
-        Form::Sphere(_) => 2,
-        Form::Ellipsoid(_) => 3,
-        Form::Capsule(_) | Form::Cylinder(_) | Form::Smooth(_) => 4,
-        Form::Hull(_) => 5,
-        Form::Facets(_) => 6,
-        Form::Distance => 7,
-        Form::HalfSpace(_) => 8,
+        Form::Polygon(_) => 2,
+        Form::Sphere(_) => 3,
+        Form::Ellipsoid(_) => 4,
+        Form::Capsule(_) | Form::Cylinder(_) | Form::Smooth(_) => 5,
+        Form::Hull(_) => 6,
+        Form::Facets(_) => 7,
+        Form::Distance => 8,
+        Form::HalfSpace(_) => 9,
     }
 }
 
@@ -305,8 +311,9 @@ fn is_smooth(form: &Form<'_>) -> bool {
 /// The best route for a pair in the order of [`rank`].
 fn best(a: &Form<'_>, b: &Form<'_>) -> Option<Route> {
     Some(match (a, b) {
-        (Form::Disc(_), Form::Disc(_) | Form::HalfSpace(_)) => Route::ClosedForm,
-        (Form::Disc(_), _) => return None,
+        (Form::Disc(_), Form::Disc(_)) => Route::ClosedForm,
+        (Form::Disc(_) | Form::Polygon(_), Form::Polygon(_) | Form::HalfSpace(_)) => Route::ClosedForm,
+        (Form::Disc(_) | Form::Polygon(_), _) => return None,
         (Form::Sphere(_), Form::Sphere(_)) => Route::ClosedForm,
         (Form::Sphere(_) | Form::Ellipsoid(_), Form::Hull(_) | Form::Facets(_) | Form::HalfSpace(_)) => {
             Route::ClosedForm

@@ -17,6 +17,8 @@ pub(super) struct Body {
     pub(super) inverse_mass: f64,
     pub(super) material: u32,
     pub(super) kind: Kind,
+    /// Are its quantities per metre of depth?
+    pub(super) plane: bool,
 }
 
 /// Bodies whose overlaps need neither an orientation nor a solver, and others.
@@ -51,6 +53,7 @@ fn flat(form: &Form<'_>) -> Option<f64> {
     match form {
         Form::Hull(hull) => Some(hull.face_areas().fold(0.0, f64::max)),
         Form::Facets(facets) => Some(facets.largest_flat()),
+        Form::Polygon(p) => Some(p.longest_edge()),
         Form::Cylinder(c) => Some(PI * c.radius() * c.radius()),
         Form::Union(parts) => {
             parts.iter().try_fold(0.0, |largest, part| flat(&part.shape.form()).map(|f| f64::max(largest, f)))
@@ -74,7 +77,7 @@ impl std::fmt::Debug for Constants {
 impl Constants {
     pub(super) fn new(shape: Arc<dyn Shape>, density: f64, freedom: Freedom) -> Self {
         let inertia = shape.inertia(density);
-        let plane = matches!(shape.form(), Form::Disc(_));
+        let plane = shape.form().is_plane();
         let size = if plane { (inertia.volume / PI).sqrt() } else { (0.75 * inertia.volume / PI).cbrt() };
         let depth = -shape.signed_distance(Point::origin(), shape.bounding_radius());
         let inner = if depth > 0.0 { depth } else { size };
@@ -139,7 +142,7 @@ impl Loads {
 impl Body {
     #[inline]
     pub(super) fn is_plane(&self) -> bool {
-        self.kind == Kind::Disc
+        self.plane
     }
 
     /// Moves along with the twist for half a step before forces are known. Round bodies turn afterwards, at once.

@@ -4,8 +4,10 @@ use super::body::{Constants, Kind};
 use super::contacts::View;
 use super::meeting::{Meeting, Other};
 use super::time_step::LEAST_STEPS;
+use crate::Shape;
 use crate::contact::{ContactLaw, FilmForce, Gap};
-use crate::overlap::tree::{Closest, closest};
+use crate::overlap::plane;
+use crate::overlap::tree::{self, Closest};
 use interfaces::{Point, Pose, Vector, Wrench};
 use nalgebra::Matrix2;
 use std::f64::consts::PI;
@@ -108,6 +110,16 @@ impl<L: ContactLaw> View<'_, L> {
                 Some(curved(&found, first.size))
             }
         }
+    }
+}
+
+/// The closest places of two bodies, if they are within `reach`.
+fn closest(a: &dyn Shape, at_a: &Pose, b: &dyn Shape, at_b: &Pose, reach: f64) -> Option<Closest> {
+    let form = a.form();
+    if form.is_plane() {
+        plane::closest(&form, at_a, &b.form(), at_b, reach)
+    } else {
+        tree::closest(a, at_a, b, at_b, reach)
     }
 }
 

@@ -6,6 +6,7 @@ mod film;
 mod friction;
 mod many;
 mod near;
+mod polygons;
 #[cfg(feature = "placing")]
 mod population;
 mod potential;

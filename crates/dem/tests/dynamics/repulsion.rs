@@ -1,7 +1,7 @@
 //! Bodies pushed apart before they touch.
 use crate::R;
 use dem::{
-    Chen, ContactLaw, Cuboid, DemError, Disc, Ellipsoid, HalfSpace, Lubricated, Material, Repulsive,
+    Chen, ContactLaw, Cuboid, DemError, Disc, Ellipsoid, HalfSpace, Lubricated, Material, Polygon, Repulsive,
     RigidBodies, Shape, Sphere, WholeFilm,
 };
 use interfaces::{Bodies, BodyId, Dynamics, Freedom, Kinematics, Periods, Point, Pose, Twist, Vector};
@@ -33,11 +33,12 @@ fn approach<L: ContactLaw>(law: L, shape: &Arc<dyn Shape>, freedom: Freedom, wal
 #[test]
 fn bodies_turn_back_where_energy_tells() {
     let solid = Freedom::FREE;
-    let shapes: [(Arc<dyn Shape>, Freedom); 4] = [
+    let shapes: [(Arc<dyn Shape>, Freedom); 5] = [
         (Arc::new(Sphere::new(R).unwrap()), solid),
         (Arc::new(Ellipsoid::new([R; 3]).unwrap()), solid),
         (Arc::new(Cuboid::new([R; 3]).unwrap()), solid),
         (Arc::new(Disc::new(R).unwrap()), Freedom::PLANAR),
+        (Arc::new(Polygon::rectangle([R, 0.7 * R]).unwrap()), Freedom::PLANAR),
     ];
     for (shape, freedom) in &shapes {
         for wall in [true, false] {

@@ -49,8 +49,27 @@ pub(super) static MATERIAL: Table = Table {
 };
 
 const RADIUS: Key = required("radius", LENGTH, "Radius.", "5e-4");
-pub(super) static SHAPES: [(&str, &Table); 10] = [
+pub(super) static SHAPES: [(&str, &Table); 12] = [
     ("disc", &Table { about: "A disc, in plane scenes.", keys: &[RADIUS] }),
+    (
+        "ellipse",
+        &Table {
+            about: "An ellipse, in plane scenes: a polygon of 180 corners and the same area.",
+            keys: &[required("semi_axes", Kind::List(&LENGTH, 2, 2), "Semi-axes.", "[1e-3, 5e-4]")],
+        },
+    ),
+    (
+        "polygon",
+        &Table {
+            about: "A polygon, in plane scenes, convex or not; its centre of mass is where the body is put.",
+            keys: &[required(
+                "corners",
+                Kind::List(&Kind::List(&METRES, 2, 2), 3, 10_000),
+                "Its corners, one after the other.",
+                "[[0.0, 0.0], [1e-3, 0.0], [0.0, 1e-3]]",
+            )],
+        },
+    ),
     ("sphere", &Table { about: "A sphere.", keys: &[RADIUS] }),
     (
         "ellipsoid",
@@ -76,7 +95,7 @@ pub(super) static SHAPES: [(&str, &Table); 10] = [
     (
         "box",
         &Table {
-            about: "A box (in plane scenes a rectangle, for bodies that are not moved by the flow).",
+            about: "A box, in plane scenes a rectangle.",
             keys: &[required(
                 "edges",
                 Kind::List(&LENGTH, 2, 3),

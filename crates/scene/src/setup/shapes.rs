@@ -4,7 +4,7 @@ use crate::expression::Expression;
 use crate::problem::Problem;
 use crate::reader::Reader;
 use dem::{
-    Capsule, ConvexPolyhedron, Cuboid, Cylinder, Disc, Ellipsoid, Implicit, Part, Shape, Sphere,
+    Capsule, ConvexPolyhedron, Cuboid, Cylinder, Disc, Ellipsoid, Implicit, Part, Polygon, Shape, Sphere,
     TriangleMesh, Union,
 };
 use interfaces::{Aabb, Point, Pose, Rotation, Solid, Vector};
@@ -20,6 +20,8 @@ struct ByFormula {
     plane: bool,
 }
 
+/// Corners of a polygon that stands for an ellipse.
+const ELLIPSE_CORNERS: usize = 180;
 /// How well volume and moments of a formula's solid have to be known.
 const VOLUME_TOLERANCE: f64 = 1e-3;
 
@@ -114,6 +116,18 @@ pub(super) fn shape(
             Err(fail(&"a disc is for plane scenes; take a sphere or a cylinder in space"))
         }
         "disc" => arc(Disc::new(length("radius")), fail),
+        "ellipse" | "polygon" if context.dim == 3 => {
+            Err(fail(&"this is for plane scenes; take an ellipsoid or a polyhedron in space"))
+        }
+        "ellipse" => {
+            let [a, b, _] = triple("semi_axes");
+            arc(Polygon::ellipse([a, b], ELLIPSE_CORNERS), fail)
+        }
+        "polygon" => {
+            let corner = |row: &Vec<f64>| [0, 1].map(|a| factor * row.get(a).copied().unwrap_or(0.0));
+            let corners: Vec<_> = t.rows("corners").iter().map(corner).collect();
+            arc(Polygon::new(&corners), fail)
+        }
         "sphere" if context.dim == 2 => {
             Err(fail(&"a sphere is for scenes in space; take a disc in the plane"))
         }
@@ -123,12 +137,12 @@ pub(super) fn shape(
         "cylinder" => arc(Cylinder::new(length("radius"), length("length")), fail),
         "box" => {
             t.has_dim("edges", context.dim)?;
-            let mut edges = triple("edges");
+            let [x, y, z] = triple("edges");
             if context.dim == 2 {
-                // Far enough along z that only the sides count in the plane.
-                edges[2] = 100.0 * (edges[0] + edges[1]);
+                arc(Polygon::rectangle([x, y]), fail)
+            } else {
+                arc(Cuboid::new([x, y, z]), fail)
             }
-            arc(Cuboid::new(edges), fail)
         }
         "polyhedron" => {
             let vertices: Vec<[f64; 3]> = t

@@ -11,6 +11,7 @@ mod meshes;
 mod moving;
 mod moving_walls;
 mod physics;
+mod plane_shapes;
 mod population;
 mod preset;
 mod removal;

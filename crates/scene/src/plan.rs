@@ -34,6 +34,8 @@ pub struct Plan {
 /// CPU seconds per cell and step of the flow alone in the plane and in space (docs/results.md), and per marker.
 const COST: [f64; 2] = [1.2e-8, 3.5e-8];
 const COST_OF_MARKER: f64 = 1.5e-6;
+/// The same per cell of a model of large eddies (scene `sphere_les`), and of two equations beside bodies (`turbulent_cylinder`).
+const COST_OF_MODEL: [f64; 2] = [2.2e-7, 2.9e-7];
 /// CPU seconds per body and step (of 20 steps of the contacts) without a fluid, of smooth bodies and of polyhedra in a pile.
 const COST_OF_BODY: [f64; 2] = [8e-6, 2e-4];
 /// CPU seconds per cell and iteration of the steady algorithm.
@@ -80,6 +82,7 @@ impl Setup {
         };
         let h = self.axes.iter().map(Axis::narrowest).fold(f64::INFINITY, f64::min);
         let markers: f64 = if moved { self.bodies.list.iter().map(|b| surface(b, h, D)).sum() } else { 0.0 };
+        let model = self.turbulence.as_ref().map_or(0.0, |t| COST_OF_MODEL[usize::from(t.model.averages())]);
         let cpu = steps
             * match self.flow.algorithm {
                 _ if self.fluid.is_none() => {
@@ -88,7 +91,7 @@ impl Setup {
                     };
                     self.bodies.list.iter().map(cost).sum()
                 }
-                Algorithm::Projection => cells * COST[D - 2] + markers * COST_OF_MARKER,
+                Algorithm::Projection => cells * (COST[D - 2] + model) + markers * COST_OF_MARKER,
                 Algorithm::Piso => 20.0 * cells * COST[D - 2] + markers * COST_OF_MARKER,
                 Algorithm::Simple => cells * COST_OF_ITERATION,
             };

@@ -22,7 +22,7 @@ use example_support::progress::Progress;
 use ibm::Forcing;
 use interfaces::{Checkpoint, RestartError};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Why a run ended before its time.
@@ -315,14 +315,15 @@ impl Stage<'_> {
             progress.finish(summary.steps, if summary.stopped { "stopped" } else { "done" });
         }
         let Look { mut audience, books, extremes, mut log, output, .. } = look;
-        let ending = if summary.stopped { Ending::Stopped } else { Ending::Done };
         let mut seen = simulation.see(setup);
-        if ending == Ending::Done {
-            audience.finish(&mut seen)?;
-        } else {
+        if summary.stopped {
             audience.flush()?;
+        } else {
+            audience.finish(&mut seen, self.stop)?;
         }
-        log.line(if summary.stopped { "stopped; --resume goes on" } else { "done" })?;
+        let stopped = summary.stopped || self.stop.load(Ordering::Relaxed);
+        let ending = if stopped { Ending::Stopped } else { Ending::Done };
+        log.line(if stopped { "stopped; --resume goes on" } else { "done" })?;
         let seconds = audience.seconds + output;
         let result =
             RunResult::new(setup, &mut seen, &extremes, books.report(), &audience, ending, self.folder());

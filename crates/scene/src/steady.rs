@@ -126,7 +126,7 @@ impl Stage<'_> {
         let info = StepInfo { step: seen.steps(), time: setup.end, dt: 1.0, courant: 0.0, snapshot: None };
         audience.step(&mut seen, &info)?;
         audience.snapshot(&mut seen, 0, &info)?;
-        audience.finish(&mut seen)?;
+        audience.finish(&mut seen, self.stop)?;
         let extremes = Extremes::default();
         let seconds = audience.seconds;
         let mut result = RunResult::new(setup, &mut seen, &extremes, None, &audience, ending, self.folder());

@@ -22,6 +22,7 @@ use ibm::SolidFraction;
 use interfaces::Checkpoint;
 use serde_json::Value;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 /// Someone who looks on. What it keeps from step to step is saved with the run's state.
 pub(crate) trait Watch: Checkpoint {
@@ -52,9 +53,9 @@ pub(crate) trait Watch: Checkpoint {
     fn flush(&mut self) -> Result<(), CouplingError> {
         Ok(())
     }
-    /// The run is over: the last files.
-    fn finish(&mut self, view: &mut dyn View) -> Result<(), CouplingError> {
-        let _ = view;
+    /// The run is over: the last files, unless they take long and somebody asks to `stop`.
+    fn finish(&mut self, view: &mut dyn View, stop: &AtomicBool) -> Result<(), CouplingError> {
+        let _ = (view, stop);
         Ok(())
     }
     /// What goes into the results, if anything.
@@ -105,8 +106,8 @@ impl Audience {
         self.watches.iter_mut().try_for_each(|watch| watch.flush())
     }
 
-    pub(crate) fn finish(&mut self, view: &mut dyn View) -> Result<(), CouplingError> {
-        self.watches.iter_mut().try_for_each(|watch| watch.finish(view))?;
+    pub(crate) fn finish(&mut self, view: &mut dyn View, stop: &AtomicBool) -> Result<(), CouplingError> {
+        self.watches.iter_mut().try_for_each(|watch| watch.finish(view, stop))?;
         self.flush()
     }
 }

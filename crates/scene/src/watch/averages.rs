@@ -7,6 +7,7 @@ use interfaces::{Checkpoint, RestartError};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 
 /// Keeps ∫u dt, ∫p dt and ∫uᵢuⱼ dt of every cell since means began; writes `averages.vti` and, if asked for, `profile.csv`.
 pub(crate) struct AveragesWatch {
@@ -118,7 +119,7 @@ impl Watch for AveragesWatch {
         }
         Ok(())
     }
-    fn finish(&mut self, view: &mut dyn View) -> Result<(), CouplingError> {
+    fn finish(&mut self, view: &mut dyn View, _: &AtomicBool) -> Result<(), CouplingError> {
         if self.seconds == 0.0 {
             return Ok(());
         }

@@ -15,6 +15,7 @@ use serde_json::Value;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 
 /// Writes the snapshots of each field that has models to `models/FIELD.npy`, and makes the models of them when the run is over.
 pub(crate) struct ModelsWatch {
@@ -229,7 +230,7 @@ impl Watch for ModelsWatch {
         }
         Ok(())
     }
-    fn finish(&mut self, view: &mut dyn View) -> Result<(), CouplingError> {
+    fn finish(&mut self, view: &mut dyn View, stop: &AtomicBool) -> Result<(), CouplingError> {
         self.flush()?;
         self.results.clear();
         for model in &self.models {
@@ -247,8 +248,8 @@ impl Watch for ModelsWatch {
                 source: io::Error::other(e),
             };
             let snapshots = (self.times.as_slice(), all.as_ref());
-            let (fitted, story) =
-                Fitted::new(&model.setup, view, snapshots, &model.paths).map_err(refused)?;
+            let made = Fitted::new(&model.setup, view, snapshots, &model.paths, stop).map_err(refused)?;
+            let Some((fitted, story)) = made else { break };
             let file = self.folder.join(format!("{name}.model"));
             fitted.record().save(&file).map_err(failed(&file))?;
             let path = self.folder.join(format!("{name}_modes.{}", view.extension()));

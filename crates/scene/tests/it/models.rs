@@ -1,7 +1,8 @@
 //! Reduced models of a run.
 use crate::{folder, problems, quiet, run};
-use scene::Options;
+use scene::{Ending, Options, Scene};
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 /// Reduced models of half a run that goes on are those of the whole one; modes that move show a disc's edge that as many modes at rest do not.
 #[test]
@@ -29,6 +30,11 @@ output = { snapshots = 32, fields = false, image_every = 32 }
     let same =
         |name: &str| std::fs::read(whole.join(name)).unwrap() == std::fs::read(halves.join(name)).unwrap();
     assert!(same("models/lambda.npy") && same("models/moving.model") && same("models/wake.model"));
+    // Stopped while models are made: they are made when the run goes on.
+    let scene = Scene::parse("scene.toml", text, &[]).unwrap();
+    let stopped = scene.run(&Options { resume: true, ..quiet(&whole) }, &AtomicBool::new(true)).unwrap();
+    assert!(stopped.ending == Ending::Stopped && stopped.result["models"].as_array().unwrap().is_empty());
+    assert_eq!(all["models"], run(&whole, &[], true)["models"]);
     let error = |k: usize| all["models"][k]["held_out"]["total"].as_f64().unwrap();
     assert!(error(0) < 0.2 * error(1), "{} {}", error(0), error(1));
     // The tolerance of the modes, and what the network adds.

@@ -5,11 +5,14 @@ use interfaces::Pose;
 use mor::interpolation::{Method, NetworkParams, Record, Samples, SplineParams};
 use mor::models::{Assessment, ModelError, Podiann, Spodiann, SpodiannParams};
 use mor::pod::{Pod, PodParams, Rank};
-use mor::shifted::{Grid, Interpolation, Motion, Motions, Ranks, ShiftedError, ShiftedPod};
+use mor::shifted::{
+    Grid, Interpolation, Motion, Motions, Progress, Ranks, ShiftedError, ShiftedPod, StopReason,
+};
 use mor::{Mat, MatRef};
 use serde_json::{Value, json};
 use std::error::Error;
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A model, with modes that stay or move.
 pub(super) enum Fitted {
@@ -73,13 +76,18 @@ fn some(all: &[usize], most: usize) -> Vec<usize> {
 }
 
 impl Fitted {
-    /// Of snapshots (rows × times) with the paths of the frames.
+    /// Of snapshots (rows × times) with the paths of the frames; nothing if somebody asks to `stop`.
     pub(super) fn new(
         setup: &ModelSetup,
         view: &dyn View,
         (times, all): (&[f64], MatRef<'_, f64>),
         paths: &[Vec<Pose>],
-    ) -> Result<(Self, Story), Failure> {
+        stop: &AtomicBool,
+    ) -> Result<Option<(Self, Story)>, Failure> {
+        let go_on = || !stop.load(Ordering::Relaxed);
+        if !go_on() {
+            return Ok(None);
+        }
         let (made, others): (Vec<usize>, Vec<usize>) =
             (0..times.len()).partition(|k| k.is_multiple_of(setup.every));
         let part = |which: &[usize]| Part::of(setup, (times, all), paths, which);
@@ -109,9 +117,12 @@ impl Fitted {
             let pod = ShiftedPod::new(grid, setup.interpolation).ranks(ranks).rank_tolerance(setup.tolerance);
             // Modes a tenth as far off as asked for are enough.
             let pod = pod.tolerance(0.1 * setup.tolerance);
-            let found = pod.solve(&training.motions, training.snapshots.as_ref(), None, &mut |_| {
-                ControlFlow::Continue(())
-            })?;
+            let mut observer =
+                |_: &Progress| if go_on() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
+            let found = pod.solve(&training.motions, training.snapshots.as_ref(), None, &mut observer)?;
+            if found.stopped == StopReason::Asked {
+                return Ok(None);
+            }
             let params = SpodiannParams { coefficients: method, paths: None };
             let how = (grid, setup.interpolation);
             Self::Moving(Box::new(Spodiann::new(
@@ -142,7 +153,7 @@ impl Fitted {
             result["held_out"] = assess(&others)?;
         }
         let field = all.col(shown).iter().copied().collect();
-        Ok((fitted, Story { result, time: times[shown], field, predicted }))
+        Ok(Some((fitted, Story { result, time: times[shown], field, predicted })))
     }
 
     fn assess(&self, part: &Part) -> Result<Assessment, ModelError> {

@@ -126,7 +126,11 @@ pub enum Form<'a> {
 impl<'a> Form<'a> {
     /// Is it of the plane z = 0?
     pub(crate) fn is_plane(&self) -> bool {
-        matches!(self, Self::Disc(_) | Self::Polygon(_))
+        match self {
+            Self::Disc(_) | Self::Polygon(_) => true,
+            Self::Union(parts) => parts.iter().all(|part| part.shape.form().is_plane()),
+            _ => false,
+        }
     }
     /// The triangles of a flat-faced shape.
     pub(crate) fn facets(&self) -> Option<&'a Facets> {

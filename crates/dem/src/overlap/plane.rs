@@ -212,16 +212,13 @@ impl PlaneOverlap {
     }
 }
 
-/// Shares of the square of the length over which a patch is wide, below which it is round-off.
+/// Patches whose area is a smaller share of the square of their distance from the first body's place are round-off.
 const ROUND_OFF: f64 = 1e-15;
 
 fn patch(sums: &Sums, about: Point, apart: Vector2<f64>) -> Option<Overlap> {
     let Sums { area, first, gradient, moment } = *sums;
-    if area <= 0.0 {
-        return None;
-    }
     let centre = first / area;
-    if !(area > ROUND_OFF * centre.norm_squared()) {
+    if area <= 0.0 || area <= ROUND_OFF * centre.norm_squared() {
         return None;
     }
     let space = |v: Vector2<f64>| Vector::new(v.x, v.y, 0.0);

@@ -35,7 +35,7 @@ fn elastic_collisions_keep_the_books() {
     let starts: [(Arc<dyn Shape>, Pose, [f64; 3]); 3] = [
         (angle(), turned(0.0, 0.0, 0.3), [0.0, 0.0, 5.0]),
         (Arc::new(Disc::new(0.5 * R).unwrap()), turned(3.0 * R, 0.8 * R, 0.0), [-0.5, 0.0, 0.0]),
-        (ellipse, turned(-1.0 * R, 4.0 * R, 1.0), [0.1, -0.6, -3.0]),
+        (ellipse, turned(-R, 4.0 * R, 1.0), [0.1, -0.6, -3.0]),
     ];
     for (shape, pose, [u, v, spin]) in starts {
         let motion = Twist { linear: Vector::new(u, v, 0.0), angular: Vector::z() * spin };

@@ -1,13 +1,30 @@
 //! Where two bodies of the plane are closest.
 use crate::overlap::tree::Closest;
 use crate::shapes::nearest;
-use crate::{Form, Polygon};
+use crate::{Form, Part, Polygon};
 use interfaces::{Point, Pose, Vector};
 use nalgebra::{Matrix2, Vector2};
 
-/// The closest places of two bodies of the plane that do not overlap, if they are no farther apart than `reach`: discs, polygons, the second perhaps a wall.
+/// The closest places of two bodies of the plane that do not overlap, if they are no farther apart than `reach`: discs, polygons, unions of these, the second perhaps a wall.
 pub(crate) fn closest(a: &Form<'_>, at_a: &Pose, b: &Form<'_>, at_b: &Pose, reach: f64) -> Option<Closest> {
     let [from, to] = match (a, b) {
+        (Form::Union(parts), _) => {
+            let each = |p: &Part| closest(&p.shape.form(), &at_a.of(&p.pose), b, at_b, reach);
+            return parts.iter().filter_map(each).min_by(|v, w| v.gap.total_cmp(&w.gap));
+        }
+        (_, Form::Union(_)) => {
+            let back = closest(b, at_b, a, at_a, reach)?;
+            return Some(Closest { normal: -back.normal, ..back });
+        }
+        (Form::Disc(p), Form::Disc(q)) => {
+            let way = (at_b.position - at_a.position).try_normalize(0.0)?;
+            [at_a.position + way * p.radius(), at_b.position - way * q.radius()]
+        }
+        (Form::Disc(p), Form::HalfSpace(w)) => {
+            let wall = w.posed(at_b);
+            let foot = at_a.position - wall.normal() * wall.signed_distance(at_a.position);
+            [at_a.position - wall.normal() * p.radius(), foot]
+        }
         (Form::Polygon(p), Form::Polygon(q)) => {
             let back = ways(q, at_b, p, at_a).map(|[corner, foot]| [foot, corner]);
             least(ways(p, at_a, q, at_b).chain(back))?

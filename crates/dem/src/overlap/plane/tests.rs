@@ -1,8 +1,9 @@
 use super::*;
-use crate::{ConvexPolyhedron, Disc, OverlapSolver, Shape};
+use crate::{ConvexPolyhedron, Disc, OverlapSolver, Part, Shape, Union};
 use interfaces::{Rotation, Solid};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 fn at(x: f64, y: f64, angle: f64) -> Pose {
     Pose { orientation: Rotation::from_scaled_axis(Vector::z() * angle), ..Pose::at([x, y, 0.0]) }
@@ -48,6 +49,31 @@ fn unit_squares() {
     assert!(solve(&square, &at(0.0, 0.0, 0.0), &square, &at(1.0, 0.0, 0.0)).is_empty());
 }
 
+/// An angle of two rectangles is what it is as one polygon, but for the patches.
+#[test]
+fn unions_of_the_plane() {
+    let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
+    let angle = Polygon::new(&corners).unwrap();
+    let part = |edges: [f64; 2], x: f64, y: f64| Part {
+        shape: Arc::new(Polygon::rectangle(edges).unwrap()),
+        pose: at(x, y, 0.0),
+    };
+    let both = Union::new(vec![part([2.0, 1.0], 1.0, 0.5), part([1.0, 1.0], 0.5, 1.5)]).unwrap();
+    assert!((both.inertia(1.0).tensor[(2, 2)] - angle.inertia(1.0).tensor[(2, 2)]).abs() < 1e-13);
+    let (disc, wall) = (Disc::new(0.8).unwrap(), HalfSpace::new(Point::origin(), Vector::y()).unwrap());
+    let others: [(&dyn Shape, Pose); 3] =
+        [(&disc, at(0.9, 1.1, 0.0)), (&angle, at(1.4, 0.6, 2.0)), (&wall, at(0.0, 0.4, 0.0))];
+    for (other, pose) in others {
+        let [one, two] = [&angle as &dyn Shape, &both].map(|a| solve(a, &at(0.2, 0.1, 0.3), other, &pose));
+        let [(v, w), (m, n)] = [&one, &two].map(|o| sums(o));
+        assert!((v - m).abs() < 1e-13 && v > 0.1 && (w - n).norm() < 1e-13, "{} {v} {m}", other.name());
+        let apart = Pose { position: pose.position - 6.0 * Vector::y(), ..pose };
+        let [one, two] = [&angle as &dyn Shape, &both]
+            .map(|a| closest(&a.form(), &at(0.2, 0.1, 0.3), &other.form(), &apart, 9.0).unwrap());
+        assert!((one.gap - two.gap).abs() < 1e-13 && (one.normal - two.normal).norm() < 1e-12);
+    }
+}
+
 /// A comb in a bar: a patch per tooth; two halves of one polygon that only a cut parts are one patch.
 #[test]
 fn what_hangs_together_is_one_patch() {
@@ -81,19 +107,20 @@ fn what_hangs_together_is_one_patch() {
 }
 
 proptest! {
-    /// What two convex prisms share that are as thick as their size, per depth.
+    /// What two convex prisms share, per depth.
     #[test]
     fn convex_ones_are_prisms(
         [n, m] in [3_usize..9, 3..9], [a, b] in [0.5..1.5_f64, 0.5..1.5], x in -2.0..2.0_f64, y in -2.0..2.0_f64, [s, t] in [0.0..6.0_f64, 0.0..6.0],
     ) {
         let (p, q) = (Polygon::ellipse([1.0, a], n).unwrap(), Polygon::ellipse([b, 1.0], m).unwrap());
-        let prism = |p: &Polygon| {
-            let corners = p.corners().iter().flat_map(|c| [-1.0, 1.0].map(|z| [c.x, c.y, z])).collect::<Vec<_>>();
+        // No faces of both in one plane.
+        let prism = |p: &Polygon, half: f64| {
+            let corners = p.corners().iter().flat_map(|c| [-half, half].map(|z| [c.x, c.y, z])).collect::<Vec<_>>();
             ConvexPolyhedron::from_points(&corners).unwrap()
         };
         let poses = [at(0.3, -0.2, s), at(x, y, t)];
         let plane = solve(&p, &poses[0], &q, &poses[1]);
-        let solid = solve(&prism(&p), &poses[0], &prism(&q), &poses[1]);
+        let solid = solve(&prism(&p, 1.0), &poses[0], &prism(&q, 1.5), &poses[1]);
         prop_assert!(plane.len() <= 1);
         match (plane.first(), solid.first()) {
             (Some(o), Some(v)) => {

@@ -265,27 +265,29 @@ fn near_frames(seed: u64) -> (Motions, Mat<f64>, Vec<usize>) {
 #[test]
 fn a_fit_that_is_stuck_is_tried_in_other_ways() {
     let grid = Grid::new([128], [1.0]).unwrap();
-    // One fit ends elsewhere, the other creeps.
-    for (seed, elsewhere, attempts) in [(105, StopReason::Stagnation, 1), (121, StopReason::Steps, 1)] {
-        let (shifts, q, ranks) = near_frames(seed);
-        let once = Als { tolerance: 1e-10, ..Als::new(ranks.clone()) };
-        let once = once.solve(&grid, &shifts, q.as_ref(), None, None, &mut |_| true).unwrap();
-        let error = |d: &Decomposition| d.history.last().unwrap().error;
-        assert!(once.stopped == elsewhere && error(&once) > 1e-5, "{:?} {:.1e}", once.stopped, error(&once));
-        let pod = ShiftedPod::new(grid, Interpolation::Spectral).ranks(Ranks::Given(ranks));
-        let d = pod.solve(&shifts, q.as_ref(), None, &mut quiet).unwrap();
-        let op = GridFrames::new(grid, Interpolation::Spectral, &shifts, 128).unwrap();
-        let measured = d.relative_error(&op, q.as_ref());
-        assert!(measured < 1e-9 && d.attempts == attempts, "{measured:.1e} after {}", d.attempts);
-        assert!((error(&d) - measured).abs() < 0.1 * measured + 1e-10, "{:.1e}", error(&d));
-        // Who looks on may stop what is tried, too.
-        let mut steps = 0;
-        let more = once.history.len() + 3;
-        let stopped = pod.solve(&shifts, q.as_ref(), None, &mut |_| {
-            steps += 1;
-            if steps < more { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-        });
-        let stopped = stopped.unwrap();
-        assert_eq!((stopped.stopped, stopped.history.len(), steps), (StopReason::Asked, more, more));
-    }
+    let (shifts, q, ranks) = near_frames(105);
+    let once = Als { tolerance: 1e-10, ..Als::new(ranks.clone()) };
+    let once = once.solve(&grid, &shifts, q.as_ref(), None, None, &mut |_| true).unwrap();
+    let error = |d: &Decomposition| d.history.last().unwrap().error;
+    assert!(
+        once.stopped == StopReason::Stagnation && error(&once) > 1e-5,
+        "{:?} {:.1e}",
+        once.stopped,
+        error(&once)
+    );
+    let pod = ShiftedPod::new(grid, Interpolation::Spectral).ranks(Ranks::Given(ranks));
+    let d = pod.solve(&shifts, q.as_ref(), None, &mut quiet).unwrap();
+    let op = GridFrames::new(grid, Interpolation::Spectral, &shifts, 128).unwrap();
+    let measured = d.relative_error(&op, q.as_ref());
+    assert!(measured < 1e-9 && d.attempts == 1, "{measured:.1e} after {}", d.attempts);
+    assert!((error(&d) - measured).abs() < 0.1 * measured + 1e-10, "{:.1e}", error(&d));
+    // Who looks on may stop what is tried, too.
+    let mut steps = 0;
+    let more = once.history.len() + 3;
+    let stopped = pod.solve(&shifts, q.as_ref(), None, &mut |_| {
+        steps += 1;
+        if steps < more { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    });
+    let stopped = stopped.unwrap();
+    assert_eq!((stopped.stopped, stopped.history.len(), steps), (StopReason::Asked, more, more));
 }

@@ -93,13 +93,15 @@ pub struct Decomposition {
     pub history: Vec<Progress>,
     /// Why there are no more.
     pub stopped: StopReason,
+    /// Fits that were tried besides the first, as that was stuck; the best of all is told.
+    pub attempts: usize,
 }
 
 impl Decomposition {
     /// Where frames are, without a noise.
     pub(super) fn of(frames: Vec<Frame>, history: Vec<Progress>, stopped: StopReason) -> Self {
         let offsets = vec![Vector::zeros(); frames.len()];
-        Self { frames, offsets, noise: None, history, stopped }
+        Self { frames, offsets, noise: None, history, stopped, attempts: 0 }
     }
 
     /// Modes of each frame.

@@ -38,7 +38,7 @@ pub enum Noise {
 /// 3. [`JointDescent`] fits all modes to the entries that are not wrong: nothing is left of the bias of the nuclear norm.
 ///
 /// Frames that only move along periodic axes, with [`Interpolation::Spectral`], are fitted in the space of wave vectors by [`Als`](super::fourier::Als) instead, and first brought to
-/// where what they carry is at the centres of cells ([`centred`](super::fourier::centred), [`Decomposition::offsets`]). Wrong entries are found by turns with the modes, those of some of the snapshots first: what is off by
+/// where what they carry is at the centres of cells ([`centred`](super::fourier::centred), [`Decomposition::offsets`]). A fit of given ranks that ends above 1e-6 is tried in other ways ([`Decomposition::attempts`]). Wrong entries are found by turns with the modes, those of some of the snapshots first: what is off by
 /// more than six deviations is replaced by what the modes have there. Only if more than a twentieth of up to a million entries is wrong, the augmented Lagrangian is asked as above.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShiftedPod {

@@ -102,9 +102,12 @@ impl Translated<'_> {
                 (frames.iter().map(Frame::rank).collect(), Some(frames))
             }
         };
-        let start = start.map(started);
+        let als = self.als(&ranks, self.pod.tolerance);
         let mut go_on = |p: &Progress| watch.see(p).is_continue();
-        let d = self.als(&ranks, self.pod.tolerance).fit(&spectrum, start.as_ref(), LONG, &mut go_on)?;
+        let d = match start.map(started) {
+            Some(start) => als.fit(&spectrum, Some(&start), LONG, &mut go_on)?,
+            None => als.least(&spectrum, &mut go_on)?,
+        };
         Ok(Decomposition { history: watch.take(), offsets, ..d })
     }
 

@@ -59,6 +59,7 @@ fn decomposition(times: &[f64]) -> Decomposition {
         noise: None,
         history: vec![Progress { step: 0, error: 1e-6, rank: 2 }],
         stopped: StopReason::Tolerance,
+        attempts: 0,
     }
 }
 
@@ -164,6 +165,7 @@ fn frames_that_turn() {
         noise: None,
         history: Vec::new(),
         stopped: StopReason::Tolerance,
+        attempts: 0,
     };
     let how = (grid(), Interpolation::Spectral);
     let params = SpodiannParams::default();

@@ -2,6 +2,7 @@
 use super::amplitudes::Amplitudes;
 use super::descent::Descent;
 use super::finish::frame;
+use super::newton::Newton;
 use super::objective::{Evaluation, dominant};
 use super::problem::Problem;
 use super::spectrum::Spectrum;
@@ -14,6 +15,8 @@ pub(in crate::shifted) const LONG: Patience = (10, 0.0);
 const SHORT: Patience = (3, 0.1);
 /// On all data after a sample.
 const POLISH: Patience = (1, 3e-4);
+/// Of Newton's steps.
+const FLAT: Patience = (10, 1e-3);
 
 /// The best approximation Q ≈ Σ_k T^k Φ_k A_k with given ranks, for translations on periodic axes.
 ///
@@ -99,11 +102,12 @@ impl Als {
             amplitudes = grow(problem, amplitudes, &ranks);
             let last = amplitudes.ranks == ranks;
             let mut descent = Descent::new(problem, amplitudes);
-            let mut reason = run.descend(&mut descent, if last { patience } else { SHORT });
+            let mut step = Descent::step;
+            let mut reason = run.descend(&mut descent, if last { patience } else { SHORT }, &mut step);
             if sampled && (last || reason == StopReason::Tolerance) && reason != StopReason::Asked {
                 (problem, sampled) = (&all, false);
                 descent = descent.with(problem);
-                reason = run.descend(&mut descent, POLISH);
+                reason = run.descend(&mut descent, POLISH, &mut step);
             }
             if reason != StopReason::Stagnation || last {
                 break (descent, reason);
@@ -115,6 +119,25 @@ impl Als {
             evaluation = Evaluation::new(&all, &amplitudes);
         }
         let frames = frames_of(spectrum, &amplitudes, &evaluation);
+        Ok(Decomposition::of(frames, run.history, stopped))
+    }
+
+    /// Goes on by Newton's steps, on all data.
+    pub(super) fn refine(
+        &self,
+        spectrum: &Spectrum,
+        start: &Decomposition,
+        newton: &mut Newton,
+        progress: &mut dyn FnMut(&Progress) -> bool,
+    ) -> Result<Decomposition, ShiftedError> {
+        let all = Problem::all(spectrum);
+        let mut descent = Descent::new(&all, begin(Some(start), &start.ranks(), spectrum.n_snapshots())?);
+        let mut run = Run { als: self, spectrum, history: Vec::new(), progress };
+        let mut stopped = run.descend(&mut descent, FLAT, &mut |descent| newton.step(descent));
+        if stopped == StopReason::Stagnation && newton.products == 0 {
+            stopped = StopReason::Steps;
+        }
+        let frames = frames_of(spectrum, &descent.amplitudes, &descent.evaluation);
         Ok(Decomposition::of(frames, run.history, stopped))
     }
 }
@@ -139,7 +162,12 @@ impl Run<'_> {
     }
 
     /// Goes down until it is good enough or does not get better.
-    fn descend(&mut self, descent: &mut Descent<'_>, (window, part): Patience) -> StopReason {
+    fn descend<'p>(
+        &mut self,
+        descent: &mut Descent<'p>,
+        (window, part): Patience,
+        step: &mut dyn FnMut(&mut Descent<'p>) -> bool,
+    ) -> StopReason {
         let rank = descent.amplitudes.ranks.iter().sum();
         let part = if part > 0.0 { part } else { self.als.stagnation };
         let mut errors = Vec::new();
@@ -155,7 +183,7 @@ impl Run<'_> {
                 return StopReason::Stagnation;
             } else if self.history.len() > self.als.max_steps {
                 return StopReason::Steps;
-            } else if !descent.step() {
+            } else if !step(descent) {
                 return StopReason::Stagnation;
             }
         }

@@ -8,18 +8,18 @@ use std::collections::VecDeque;
 /// Pairs of steps and changes of the gradient that are remembered.
 const MEMORY: usize = 40;
 /// Part of the trace that is added to the second derivatives at given modes: some snapshots do not tell all amplitudes.
-const DAMPING: f64 = 1e-10;
+pub(super) const DAMPING: f64 = 1e-10;
 
 /// Limited-memory BFGS; the step to the best amplitudes at given modes (alternating least squares) is its first guess.
 pub(super) struct Descent<'a> {
-    problem: &'a Problem<'a>,
+    pub(super) problem: &'a Problem<'a>,
     pub(super) amplitudes: Amplitudes,
     pub(super) evaluation: Evaluation,
     /// Steps, changes of the gradient, and their product.
     memory: VecDeque<(Mat<f64>, Mat<f64>, f64)>,
 }
 
-fn dot(a: &Mat<f64>, b: &Mat<f64>) -> f64 {
+pub(super) fn dot(a: &Mat<f64>, b: &Mat<f64>) -> f64 {
     let column = |c: usize| a.col_as_slice(c).iter().zip(b.col_as_slice(c)).map(|(x, y)| x * y).sum::<f64>();
     (0..a.ncols()).map(column).sum()
 }

@@ -136,6 +136,23 @@ impl Normal {
         add_product(view_mut(&mut self.residual, self.n), design, negative);
     }
 
+    /// What is left changes by this when B does by that of another one.
+    pub(super) fn differentiate(&mut self, other: &Self) {
+        let width = 2 * self.frames.len();
+        self.residual.fill(0.0);
+        let change = view(&other.design, self.n);
+        add_product(view_mut(&mut self.residual, self.n), change, view(&self.negative, width));
+        let phi = std::mem::take(&mut self.phi);
+        let residual = std::mem::take(&mut self.residual);
+        self.project(&residual);
+        self.residual = residual;
+        self.phi.chunks_exact_mut(width).for_each(|x| substitute(&self.matrix, x));
+        self.negate();
+        let (design, negative) = (view(&self.design, self.n), view(&self.negative, width));
+        add_product(view_mut(&mut self.residual, self.n), design, negative);
+        self.phi = phi;
+    }
+
     /// BᵀB below its diagonal. Phases of length one cancel within a frame.
     fn multiply(&mut self, shortest: bool) {
         let width = 2 * self.frames.len();

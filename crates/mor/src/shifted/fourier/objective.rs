@@ -78,6 +78,29 @@ impl Evaluation {
         all
     }
 
+    /// The second derivatives of f along a direction, but for what vanishes with the residual (Kaufman 1975).
+    pub(super) fn curvature(problem: &Problem<'_>, a: &Amplitudes, direction: &Mat<f64>) -> Mat<f64> {
+        let (n, rank) = a.values.shape();
+        let direction = Amplitudes { ranks: a.ranks.clone(), values: direction.clone() };
+        let of = |pieces: &[Piece<'_>]| {
+            let (mut normal, mut other) = (Normal::new(problem, a), Normal::new(problem, &direction));
+            let mut sum = Mat::zeros(n, rank);
+            for piece in pieces {
+                normal.begin(problem, piece, a);
+                normal.solve(problem, piece);
+                other.begin(problem, piece, &direction);
+                normal.differentiate(&other);
+                let residual = std::mem::take(&mut normal.residual);
+                normal.add_gradient(&residual, piece.weight, &mut sum);
+                normal.residual = residual;
+            }
+            sum
+        };
+        let mut all = Mat::zeros(n, rank);
+        sum(problem, of, |part| add(&mut all, 1.0, &part));
+        all
+    }
+
     /// Re Σ p̄_r p_s φ̄_r φ_s
     fn add_gram(&mut self, normal: &Normal, frames: &[usize], weight: f64, product: &mut [f64]) {
         let rank = frames.len();

@@ -1,3 +1,7 @@
+use super::amplitudes::{Amplitudes, add};
+use super::objective::Evaluation;
+use super::problem::Problem;
+use super::spectrum::Spectrum;
 use super::{Als, centred};
 use crate::Mat;
 use crate::shifted::{
@@ -345,4 +349,32 @@ proptest! {
         let e = error(&grid, &still, &q, &d);
         prop_assert!(e < best * (1.0 + 1e-5) + 1e-8 && e > best * (1.0 - 1e-9) - 1e-12, "{e:.3e} {best:.3e}");
     }
+}
+
+/// Where nothing is left, what is called the curvature is that of the squared error: the gradient's change along any direction.
+#[test]
+fn second_derivatives_are_those_of_the_gradient() {
+    let grid = Grid::new([14, 3], [1.0; 2]).unwrap();
+    let (shifts, q) = random(&grid, &[2, 1], 2, 9, 5.0, 11);
+    let d = solve(&Als { tolerance: 1e-12, ..Als::new([2, 1]) }, &grid, &shifts, &q);
+    let spectrum = Spectrum::new(&grid, &shifts, q.as_ref(), None, 1e-14).unwrap();
+    let problem = Problem::all(&spectrum);
+    let column = |c: usize| d.frames[c / 2].coefficients.row(c % 2);
+    let values = Mat::from_fn(9, 3, |j, c| column(c)[j]);
+    let amplitudes = Amplitudes { ranks: vec![2, 1], values };
+    let mut rng = Pcg64::seed_from_u64(12);
+    let direction = Mat::from_fn(9, 3, |_, _| rng.random_range(-1.0..1.0));
+    let at = |h: f64| {
+        let mut moved = amplitudes.clone();
+        add(&mut moved.values, h, &direction);
+        Evaluation::new(&problem, &moved).gradient
+    };
+    let h = 1e-5;
+    let expected = Mat::from_fn(9, 3, {
+        let (after, before) = (at(h), at(-h));
+        move |j, c| (after[(j, c)] - before[(j, c)]) / (2.0 * h)
+    });
+    let curved = Evaluation::curvature(&problem, &amplitudes, &direction);
+    let off = norm(&(&curved - &expected)) / norm(&expected);
+    assert!(off < 1e-6, "{off:.1e}");
 }

@@ -6,9 +6,9 @@ use example_support::picture::comparison::{Comparison, Curve, Panel};
 use siltflow::flow::{CartesianGrid, Simple};
 use std::path::Path;
 
-/// The stations of the reference and where they are along the centreline from the start of the bend \[m\].
+/// The stations of the reference (`middle` has the name of its angle) and where they are: heights before the bend, parts of it, heights behind it and one.
 const STATIONS: [(&str, f64); 6] =
-    [("in1H", -1.0), ("in0", 0.0), ("bend45", 0.5), ("exit", 1.0), ("exit1H", 2.0), ("exit5H", 6.0)];
+    [("in1H", -1.0), ("in0", 0.0), ("middle", 0.5), ("exit", 1.0), ("exit1H", 2.0), ("exit5H", 6.0)];
 const KAPPA: f64 = 0.41;
 const E: f64 = 9.8;
 
@@ -93,9 +93,13 @@ impl Probe<'_> {
     }
 }
 
-fn read(model: &str, station: &str) -> Outcome<Vec<Vec<f64>>> {
+/// The reference of a bend; a straight duct has that of the one by 90°.
+fn read(duct: Duct, model: &str, station: &str) -> Outcome<Vec<Vec<f64>>> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/bends");
-    let text = std::fs::read_to_string(format!("{folder}/bend90_{model}_c_{station}.csv"))?;
+    let degrees = if duct.bend == 0.0 { 90.0 } else { duct.bend.to_degrees().round() };
+    let middle = format!("bend{}", 0.5 * degrees);
+    let station = if station == "middle" { &middle } else { station };
+    let text = std::fs::read_to_string(format!("{folder}/bend{degrees}_{model}_c_{station}.csv"))?;
     let row = |line: &str| line.split(',').map(str::parse).collect::<Result<Vec<f64>, _>>();
     Ok(text.lines().skip(1).map(row).collect::<Result<_, _>>()?)
 }
@@ -116,7 +120,7 @@ pub(crate) fn report(flow: &Simple<2>, eddy: &[f64], duct: Duct, model: &str, ou
         if duct.bend == 0.0 && turns > -1.0 {
             break;
         }
-        let rows = if model.is_empty() || duct.bend > 2.0 { Vec::new() } else { read(model, station)? };
+        let rows = read(duct, model, station)?;
         let (mut du, mut de, mut scale) = (0.0, 0.0, 0.0);
         for (k, row) in rows.iter().enumerate() {
             let edge = |k: usize| 0.5 * (rows[k - 1][2] + rows[k][2]);
@@ -126,9 +130,7 @@ pub(crate) fn report(flow: &Simple<2>, eddy: &[f64], duct: Duct, model: &str, ou
             de += width * (probe.eddy(s, 1.0 + row[2]) - row[7]).powi(2);
             scale += width * row[7] * row[7];
         }
-        if !rows.is_empty() {
-            println!("{station:8}  {:.2}  {:.1}", 100.0 * du.sqrt(), 100.0 * (de / scale).sqrt());
-        }
+        println!("{station:8}  {:.2}  {:.1}", 100.0 * du.sqrt(), 100.0 * (de / scale).sqrt());
         let line = |f: &dyn Fn(f64) -> f64| {
             (0..=200).map(|k| (f64::from(k) / 200.0, f(1.0 + f64::from(k) / 200.0))).collect()
         };
@@ -150,11 +152,21 @@ pub(crate) fn report(flow: &Simple<2>, eddy: &[f64], duct: Duct, model: &str, ou
             curves: vec![Curve { label, line: line(&|r| 1e3 * probe.eddy(s, r)), points: points(7, 1e3) }],
         });
     }
-    if !model.is_empty() && (1.5..1.6).contains(&duct.bend) {
-        let rows = read(model, "pmean")?;
+    if duct.bend > 0.0 {
+        // The duct may be shorter behind the bend than that of the reference.
+        let grid = flow.grid();
+        let inside = |s: f64| {
+            let x = duct.point(s, 1.5);
+            (0..2).all(|a| grid.axis(a).centre(0) < x[a] && x[a] < grid.axis(a).centre(grid.cells()[a] - 1))
+        };
+        let rows: Vec<_> = read(duct, model, "pmean")?.into_iter().filter(|row| inside(row[0])).collect();
         let drop = |f: &dyn Fn(usize) -> f64| f(0) - f(rows.len() - 1);
         let (ours, given) = (drop(&|k| probe.mean_pressure(rows[k][0])), drop(&|k| rows[k][1]));
-        println!("pressure drop {ours:.5}, reference {given:.5}: {:+.1} %", 100.0 * (ours / given - 1.0));
+        let to = rows.last().map_or(0.0, |row| row[0]);
+        println!(
+            "pressure drop to {to:.1}: {ours:.5}, reference {given:.5}: {:+.1} %",
+            100.0 * (ours / given - 1.0)
+        );
     }
     let domain = Domain { width: 1.0, height: 1.0, periodic: [false; 2] };
     let names = ["immersed walls", "body-fitted"];

@@ -73,9 +73,11 @@ fn main() -> Outcome<()> {
             let law = Wilcox { beta: 0.072, gamma: 0.52, ..Wilcox::default() };
             run(&cli, duct, grid, KOmega::new(law, n, inflow)?, "kOmega")
         }
-        Model::KEpsilon => run(&cli, duct, grid, KEpsilon::new(StandardKEpsilon::default(), n, inflow)?, ""),
+        Model::KEpsilon => {
+            run(&cli, duct, grid, KEpsilon::new(StandardKEpsilon::default(), n, inflow)?, "kEpsilon")
+        }
         Model::Realizable => {
-            run(&cli, duct, grid, RealizableKEpsilon::new(Realizable::default(), n, inflow)?, "")
+            run(&cli, duct, grid, RealizableKEpsilon::new(Realizable::default(), n, inflow)?, "realizableKE")
         }
     }
 }

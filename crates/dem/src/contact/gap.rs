@@ -30,6 +30,4 @@ pub struct FilmForce {
     pub couple: Vector,
     /// The largest force per velocity that may be behind it \[N s/m\]: what the time step is chosen by.
     pub resistance: f64,
-    /// The same per distance \[N/m\].
-    pub stiffness: f64,
 }

@@ -100,7 +100,7 @@ impl<L: ContactLaw> ContactLaw for Lubricated<L> {
         let force = -squeeze * approach * n - shear * (direct * sliding + mixed * turning.cross(&n));
         let couple = -shear * (mixed * n.cross(&sliding) + 0.8 * r * r * turning);
         // Turning a ball by a force at its surface is 3.5 times as easy as moving it.
-        FilmForce { force, couple, resistance: squeeze.abs().max(3.5 * shear), stiffness: 0.0 }
+        FilmForce { force, couple, resistance: squeeze.abs().max(3.5 * shear) }
     }
     fn check(&self) -> Result<(), DemError> {
         self.check_film()?;

@@ -54,7 +54,7 @@ impl<L: ContactLaw> ContactLaw for Repulsive<L> {
     fn push(&self, p: &PairProperties, touch: &Touch<'_>, memory: &mut Self::Memory) -> Push {
         let mut push = self.law.push(p, touch, memory);
         // Of several patches each has its share.
-        // Where it still grows, just before, is what the step is chosen by.
+        // As stiff as it is where surfaces touch: what the step is chosen by, far from one another, too.
         push.stiffness += 2.0 * self.strength / self.range;
         push.force += touch.overlap.normal * (self.strength * touch.overlap.volume / touch.volume);
         push
@@ -66,7 +66,6 @@ impl<L: ContactLaw> ContactLaw for Repulsive<L> {
         let mut film = if L::FILMS { self.law.across(gap) } else { FilmForce::default() };
         let near = (1.0 - gap.distance / self.range).max(0.0);
         film.force -= self.strength * near * near * gap.normal;
-        film.stiffness += 2.0 * self.strength / self.range * near;
         film
     }
     fn check(&self) -> Result<(), DemError> {

@@ -51,7 +51,7 @@ impl<L: ContactLaw> View<'_, L> {
         }
         let wall = matches!(meeting.other, Other::Wall(_));
         let film = Gap { distance: gap, normal, velocity, spin, radius, curvatures, wall };
-        let FilmForce { force, couple, resistance, stiffness } = self.law.across(&film);
+        let FilmForce { force, couple, resistance } = self.law.across(&film);
         let inverse_mass = |b: u32, c: &Constants| {
             if c.pinned() { 0.0 } else { 1.0 / (c.mass + self.loads.of(b as usize).added_mass) }
         };
@@ -60,10 +60,7 @@ impl<L: ContactLaw> View<'_, L> {
             inverse += inverse_mass(meeting.pair.b, meeting.others());
         }
         let rate = PI * resistance * inverse / (LEAST_STEPS * MOST_TAKEN);
-        // Turning a ball by a force at its surface is 2.5 times as easy as moving it.
-        let turns = if meeting.a.kind == Kind::Other { 3.5 } else { 1.0 };
-        let stiffness = rate * rate + stiffness * inverse * turns;
-        Some(Film { on_both: meeting.wrenches(at, force, couple), stiffness })
+        Some(Film { on_both: meeting.wrenches(at, force, couple), stiffness: rate * rate })
     }
 
     /// Where the two are closest, if that is within reach.

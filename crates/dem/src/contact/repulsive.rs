@@ -53,9 +53,9 @@ impl<L: ContactLaw> ContactLaw for Repulsive<L> {
     #[inline]
     fn push(&self, p: &PairProperties, touch: &Touch<'_>, memory: &mut Self::Memory) -> Push {
         let mut push = self.law.push(p, touch, memory);
-        // Of several patches each has its share.
         // As stiff as it is where surfaces touch: what the step is chosen by, far from one another, too.
         push.stiffness += 2.0 * self.strength / self.range;
+        // Of several patches each has its share.
         push.force += touch.overlap.normal * (self.strength * touch.overlap.volume / touch.volume);
         push
     }

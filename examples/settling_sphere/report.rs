@@ -76,7 +76,9 @@ pub(crate) fn tell<L: ContactLaw>(
     let over_diameter: Vec<_> = gap.iter().map(|&(t, g)| (t, g / DIAMETER)).collect();
     let means = [mean_speed(&over_diameter), mean_speed(&scene.case.gap_over_diameter())];
     if let [Some(ours), measured] = means {
-        t.row("mean speed between 7 and 2 diameters above the floor", number(1e3 * ours), "mm/s");
+        let [from, to] = HEIGHTS;
+        let name = format!("mean speed between {from} and {to} diameters above the floor");
+        t.row(&name, number(1e3 * ours), "mm/s");
         if let Some(measured) = measured {
             t.row("  by the measured heights", number(1e3 * measured), "mm/s");
             t.row("  off by", format!("{:+.2}", 100.0 * (ours / measured - 1.0)), "%");

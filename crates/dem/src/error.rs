@@ -98,6 +98,14 @@ pub enum DemError {
         /// What is wrong with it.
         what: &'static str,
     },
+    /// A repulsion makes no sense.
+    #[error("the repulsion's {what} is {value}; give a positive, finite number")]
+    Repulsion {
+        /// Which number.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// A film of fluid makes no sense.
     #[error("the film's {what} is {value}; give a positive, finite number, of a roughness no more than 1")]
     Film {

@@ -40,7 +40,7 @@ pub(crate) use icosphere::icosphere;
 pub use implicit::Implicit;
 pub(crate) use moments::Moments;
 pub use polygon::Polygon;
-pub(crate) use polygon::{Piece, nearest};
+pub(crate) use polygon::{Piece, nearest_on_edge};
 pub use smooth_convex::SmoothConvex;
 pub use sphere::Sphere;
 #[cfg(feature = "mesh")]

@@ -42,7 +42,7 @@ pub trait ContactLaw: Clone + Debug + Send + Sync {
     /// Are its own numbers in order?
     ///
     /// # Errors
-    /// [`DemError::LengthFactor`], [`DemError::Film`].
+    /// [`DemError::LengthFactor`], [`DemError::Film`], [`DemError::Repulsion`].
     fn check(&self) -> Result<(), DemError>;
 }
 

@@ -25,7 +25,7 @@ impl<L: ContactLaw> Repulsive<L> {
     /// The same law with a repulsion of `strength` F₀ \[N; in a plane scene N/m\] where surfaces touch, and `range` ζ \[m\].
     ///
     /// # Errors
-    /// [`DemError::Film`] unless both are positive and finite.
+    /// [`DemError::Repulsion`] unless both are positive and finite.
     pub fn new(law: L, strength: f64, range: f64) -> Result<Self, DemError> {
         let law = Self { law, strength, range };
         law.check_numbers()?;
@@ -33,9 +33,9 @@ impl<L: ContactLaw> Repulsive<L> {
     }
 
     fn check_numbers(&self) -> Result<(), DemError> {
-        let numbers = [("strength in N", self.strength), ("range in m", self.range)];
+        let numbers = [("strength in N (in a plane scene N/m)", self.strength), ("range in m", self.range)];
         match numbers.into_iter().find(|(_, value)| !(*value > 0.0 && value.is_finite())) {
-            Some((what, value)) => Err(DemError::Film { what, value }),
+            Some((what, value)) => Err(DemError::Repulsion { what, value }),
             None => Ok(()),
         }
     }

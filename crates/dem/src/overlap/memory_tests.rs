@@ -1,7 +1,7 @@
 //! What a solver needs memory for.
 use crate::{
-    Capsule, ConvexPolyhedron, Cuboid, Cylinder, Ellipsoid, HalfSpace, OverlapSolver, Shape, Sphere,
-    TriangleMesh,
+    Capsule, ConvexPolyhedron, Cuboid, Cylinder, Disc, Ellipsoid, HalfSpace, OverlapSolver, Polygon, Shape,
+    Sphere, TriangleMesh,
 };
 use interfaces::{Point, Pose, Rotation, Vector};
 
@@ -24,6 +24,10 @@ fn a_warmed_up_solver_allocates_nothing() {
     let tubes: [&dyn Shape; 2] = [&capsule, &cylinder];
     let others: [&dyn Shape; 6] = [&sphere, &cube, &hull, &wall, &capsule, &cylinder];
     pairs.extend(tubes.iter().flat_map(|a| others.iter().map(|b| [*a, *b])));
+    let side = HalfSpace::new(Point::origin(), Vector::y()).unwrap();
+    let angle = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
+    let (disc, angle) = (Disc::new(0.8).unwrap(), Polygon::new(&angle).unwrap());
+    pairs.extend([[&angle as &dyn Shape, &angle as _], [&disc, &angle], [&angle, &disc], [&angle, &side]]);
     let poses = |distance: f64| {
         let orientation = Rotation::from_scaled_axis(Vector::new(0.3, 0.4, 0.5));
         [Pose::at([0.0; 3]), Pose { position: Point::new(0.3, 0.4, distance), orientation }]

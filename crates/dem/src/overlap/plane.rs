@@ -24,6 +24,8 @@ pub(super) struct PlaneOverlap {
     parts: Vec<Part>,
     /// Pairs of pieces that share a place on a cut.
     joints: Vec<[[u32; 2]; 2]>,
+    /// Square of the radius of the smaller of two pieces that may meet, the largest of all.
+    scale: f64,
 }
 
 /// The corners of all pieces of a polygon in the world, and where those of each begin.
@@ -113,6 +115,7 @@ impl PlaneOverlap {
                 if (self.corners[0].middles[i] - self.corners[1].middles[j]).norm_squared() >= reach * reach {
                     continue;
                 }
+                self.look(piece.radius.min(other.radius));
                 self.ring.start(self.corners[0].of(i), &piece.beyond);
                 self.ring.clip(self.corners[1].of(j), &other.beyond);
                 self.sum([i, j].map(|k| k as u32));
@@ -129,6 +132,7 @@ impl PlaneOverlap {
             if normal.dot(&self.corners[0].middles[i]) + height >= piece.radius {
                 continue;
             }
+            self.look(piece.radius);
             self.ring.start(self.corners[0].of(i), &piece.beyond);
             self.ring.cut(|x| -(normal.dot(&x) + height), Side::Second(None));
             self.sum([i as u32, 0]);
@@ -145,14 +149,17 @@ impl PlaneOverlap {
             if self.corners[1].middles[j].norm_squared() >= reach * reach {
                 continue;
             }
+            self.look(r.min(piece.radius));
             let (corners, mut part) =
                 (self.corners[1].of(j), Part { pieces: [0, j as u32], ..Part::default() });
+            let mut crosses = false;
             for (k, p) in corners.iter().enumerate() {
                 let q = &corners[(k + 1) % corners.len()];
                 let Some([s, e]) = ring::within(r, p, q) else {
                     ring::sector(r, p, q, &mut part.sums);
                     continue;
                 };
+                crosses = true;
                 ring::sector(r, p, &s, &mut part.sums);
                 ring::triangle(&s, &e, &mut part.sums);
                 ring::sector(r, &e, q, &mut part.sums);
@@ -162,7 +169,10 @@ impl PlaneOverlap {
                     Some(next) => self.joints.push([part.pieces, [0, next]]),
                 }
             }
-            self.parts.push(part);
+            // Where no edge is within the disc, all of it is within the piece, or nothing.
+            if crosses || part.sums.area > r * r {
+                self.parts.push(part);
+            }
         }
         self.finish(at, (at - at_b.position).xy(), out);
     }
@@ -170,6 +180,12 @@ impl PlaneOverlap {
     fn start(&mut self) {
         self.parts.clear();
         self.joints.clear();
+        self.scale = 0.0;
+    }
+
+    /// Two pieces may meet, the smaller one of this radius.
+    fn look(&mut self, radius: f64) {
+        self.scale = self.scale.max(radius * radius);
     }
 
     /// Adds what the ring holds as the part of these pieces.
@@ -207,33 +223,32 @@ impl PlaneOverlap {
             }
             let mut sums = Sums::default();
             self.parts[k..].iter().filter(|p| p.patch == k).for_each(|p| sums.add(&p.sums));
-            out.extend(patch(&sums, about, apart));
+            if sums.area > ROUND_OFF * self.scale {
+                out.push(patch(&sums, about, apart));
+            }
         }
     }
 }
 
-/// Patches whose area is a smaller share of the square of their distance from the first body's place are round-off.
-const ROUND_OFF: f64 = 1e-15;
+/// Patches whose area is a smaller share of the square of the pieces' size are round-off.
+const ROUND_OFF: f64 = 1e-14;
 
-fn patch(sums: &Sums, about: Point, apart: Vector2<f64>) -> Option<Overlap> {
+fn patch(sums: &Sums, about: Point, apart: Vector2<f64>) -> Overlap {
     let Sums { area, first, gradient, moment } = *sums;
     let centre = first / area;
-    if area <= 0.0 || area <= ROUND_OFF * centre.norm_squared() {
-        return None;
-    }
     let space = |v: Vector2<f64>| Vector::new(v.x, v.y, 0.0);
     let centroid = about + space(centre);
     let length = gradient.norm();
     // All of one is within the other.
     if length <= 1e-9 * area.sqrt() {
         let normal = space(apart).try_normalize(0.0).unwrap_or_else(Vector::x);
-        return Some(Overlap::whole(area, centroid, normal));
+        return Overlap::whole(area, centroid, normal);
     }
-    Some(Overlap {
+    Overlap {
         volume: area,
         centroid,
         normal: -space(gradient) / length,
         gradient: space(gradient),
         moment: Vector::z() * (moment - centre.perp(&gradient)),
-    })
+    }
 }

@@ -67,7 +67,7 @@ impl<L: ContactLaw> View<'_, L> {
     fn place(&self, meeting: &Meeting<'_>) -> Option<Place> {
         let (a, reach) = (meeting.a, self.law.reach());
         let at_a = a.pose.position;
-        let ball = |b: &super::Body| b.kind != Kind::Other;
+        let round = |b: &super::Body| b.kind != Kind::Other;
         let placed = |normal: Vector, gap: f64, k: f64| {
             let at = at_a + normal * (a.radius + 0.5 * gap);
             let own = 1.0 / a.radius;
@@ -80,12 +80,12 @@ impl<L: ContactLaw> View<'_, L> {
             })
         };
         match meeting.other {
-            Other::Body(b, at_b) if ball(a) && ball(b) => {
+            Other::Body(b, at_b) if round(a) && round(b) => {
                 let apart = at_b - at_a;
                 let distance = apart.norm();
                 placed(apart / distance, distance - a.radius - b.radius, 1.0 / b.radius)
             }
-            Other::Wall(wall) if ball(a) => {
+            Other::Wall(wall) if round(a) => {
                 placed(-wall.plane.normal(), wall.plane.signed_distance(at_a) - a.radius, 0.0)
             }
             Other::Body(b, at_b) => {

@@ -148,7 +148,7 @@ impl Polygon {
     fn way(&self, x: Vector2<f64>) -> (Vector2<f64>, bool) {
         let (mut least, mut way, mut inside) = (f64::INFINITY, Vector2::zeros(), false);
         for [p, q] in self.edges() {
-            let from = x - nearest([p, q], x);
+            let from = x - nearest_on_edge([p, q], x);
             let square = from.norm_squared();
             if square < least {
                 (least, way) = (square, from);
@@ -163,7 +163,7 @@ impl Polygon {
 }
 
 /// The place of an edge that is nearest to `x`.
-pub(crate) fn nearest([p, q]: [Vector2<f64>; 2], x: Vector2<f64>) -> Vector2<f64> {
+pub(crate) fn nearest_on_edge([p, q]: [Vector2<f64>; 2], x: Vector2<f64>) -> Vector2<f64> {
     let along = q - p;
     p + along * ((x - p).dot(&along) / along.norm_squared()).clamp(0.0, 1.0)
 }

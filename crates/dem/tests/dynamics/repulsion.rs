@@ -110,7 +110,13 @@ fn films_stay() {
 #[test]
 fn senseless_repulsion_is_refused() {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(Repulsive::new(Chen::default(), bad, RANGE), Err(DemError::Film { .. })), "{bad}");
-        assert!(matches!(Repulsive::new(Chen::default(), 1.0, bad), Err(DemError::Film { .. })), "{bad}");
+        assert!(
+            matches!(Repulsive::new(Chen::default(), bad, RANGE), Err(DemError::Repulsion { .. })),
+            "{bad}"
+        );
+        assert!(
+            matches!(Repulsive::new(Chen::default(), 1.0, bad), Err(DemError::Repulsion { .. })),
+            "{bad}"
+        );
     }
 }

@@ -180,8 +180,11 @@ fn a_model_of_two_equations_sees_a_body_that_moves() {
     "#;
     let out = folder("swings");
     let scene = Scene::parse("swings.toml", text, &[]).unwrap();
-    let plan = scene.plan().unwrap().to_string();
-    assert!(plan.contains("beside bodies wherever they are"), "{plan}");
+    let plan = scene.plan().unwrap();
+    assert!(plan.to_string().contains("beside bodies wherever they are"), "{plan}");
+    let lines = text.lines().filter(|line| !line.contains("turbulence") && !line.contains("field = "));
+    let laminar = Scene::parse("swings.toml", &lines.collect::<Vec<_>>().join("\n"), &[]).unwrap();
+    assert!(plan.cpu > 5.0 * laminar.plan().unwrap().cpu, "{plan}");
     let run = scene.run(&quiet(&out), &AtomicBool::new(false)).unwrap();
     std::fs::remove_dir_all(&out).unwrap();
     assert_eq!(run.ending, Ending::Done);

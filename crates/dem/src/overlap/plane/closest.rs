@@ -1,6 +1,6 @@
 //! Where two bodies of the plane are closest.
 use crate::overlap::tree::Closest;
-use crate::shapes::nearest;
+use crate::shapes::nearest_on_edge;
 use crate::{Form, Part, Polygon};
 use interfaces::{Point, Pose, Vector};
 use nalgebra::{Matrix2, Vector2};
@@ -68,14 +68,14 @@ fn world(p: &Polygon, at: &Pose) -> impl Iterator<Item = Point> {
 fn ways(p: &Polygon, at_p: &Pose, q: &Polygon, at_q: &Pose) -> impl Iterator<Item = [Point; 2]> {
     world(p, at_p).flat_map(move |corner| {
         let own = at_q.to_body(corner).coords.xy();
-        q.edges().map(move |edge| [corner, at_q.to_world(point(nearest(edge, own)))])
+        q.edges().map(move |edge| [corner, at_q.to_world(point(nearest_on_edge(edge, own)))])
     })
 }
 
 /// From the nearest place of `p` to that of a disc.
 fn to_disc(p: &Polygon, at: &Pose, r: f64, centre: Point) -> Option<[Point; 2]> {
     let own = at.to_body(centre).coords.xy();
-    let [from, _] = least(p.edges().map(|edge| [at.to_world(point(nearest(edge, own))), centre]))?;
+    let [from, _] = least(p.edges().map(|edge| [at.to_world(point(nearest_on_edge(edge, own))), centre]))?;
     let way: Vector = centre - from;
     Some([from, centre - way.try_normalize(0.0)? * r])
 }

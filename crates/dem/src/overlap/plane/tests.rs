@@ -168,6 +168,29 @@ proptest! {
         }
     }
 
+    /// Bodies that are apart, however near, share nothing.
+    #[test]
+    fn bodies_apart_share_nothing(
+        [p, q] in [proptest::collection::vec(0.3..1.5_f64, 3..9), proptest::collection::vec(0.3..1.5_f64, 3..9)],
+        angle in 0.0..6.3_f64, turn in 0.0..6.3_f64, gap in 1e-9..1e-3_f64, size in 0.01..100.0_f64, disc: bool,
+    ) {
+        let (p, q, disc) = (star(&p), star(&q), if disc { Some(Disc::new(size).unwrap()) } else { None });
+        let other: &dyn Shape = disc.as_ref().map_or(&q, |disc| disc);
+        // Comes from far away until it is as near as that.
+        let (mut way, way_by) = (4.0 + other.bounding_radius(), Vector::new(angle.cos(), angle.sin(), 0.0));
+        let place = |way: f64| Pose { position: Point::from(way * way_by), ..at(0.0, 0.0, turn) };
+        for _ in 0..60 {
+            let found = closest(&p.form(), &at(0.0, 0.0, 0.0), &other.form(), &place(way), f64::INFINITY).unwrap();
+            if found.gap <= gap {
+                break;
+            }
+            way -= 0.999 * (found.gap - 0.5 * gap);
+        }
+        for patches in [solve(&p, &at(0.0, 0.0, 0.0), other, &place(way)), solve(other, &place(way), &p, &at(0.0, 0.0, 0.0))] {
+            prop_assert!(patches.is_empty(), "{patches:?}");
+        }
+    }
+
     /// A disc is a polygon of many corners.
     #[test]
     fn discs_are_polygons_of_many_corners(

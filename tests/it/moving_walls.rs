@@ -179,6 +179,28 @@ fn models_that_see_no_bodies_are_left_as_they_are() {
     run(|n| Smagorinsky::new(SmagorinskyConstants::default(), n).unwrap(), &disc);
 }
 
+/// A cell that comes out of a solid has the mean of those beside it that were in none and are in none; one that stays in has nothing.
+#[test]
+fn what_comes_out_of_a_solid_is_as_what_is_beside_it() {
+    let flow = flow(false);
+    let [nx, ny] = flow.grid().cells();
+    let k: Vec<f64> = (0..nx * ny).map(|c| 1.0 + (c % nx) as f64 + 100.0 * (c / nx) as f64).collect();
+    let mut closure = KOmegaSst::new(Sst::default(), nx * ny, start()).unwrap();
+    closure.set(&k, &vec![1.0; nx * ny]).unwrap();
+    let mut model = Modelled::new(closure, flow.grid(), flow.sides(), TransportParams::default()).unwrap();
+    let cell = 5 * nx + 7;
+    model.immerse(&[cell, cell + 1], 0.0).unwrap();
+    assert!(model.closure.k()[cell] < 1e-6);
+    model.immerse(&[cell + 1, cell + 2], 0.1).unwrap();
+    let beside = [cell - 1, cell - nx, cell + nx].map(|c| k[c]).iter().sum::<f64>() / 3.0;
+    let found = model.closure.k();
+    assert!((found[cell] / beside - 1.0).abs() < 1e-14, "{} {beside}", found[cell]);
+    assert!(found[cell + 1] < 1e-6 && found[cell + 2] < 1e-6 && found[cell + 3] == k[cell + 3]);
+    for wrong in [[cell + 2, cell + 1], [cell, cell]] {
+        assert!(matches!(model.immerse(&wrong, 0.2), Err(FlowError::Closure { .. })));
+    }
+}
+
 #[test]
 fn cells_and_films_that_make_no_sense_are_errors() {
     let flow = flow(false);

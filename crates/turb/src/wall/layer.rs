@@ -113,13 +113,13 @@ impl WallLayer {
                 let part = if area > 0.0 { row.area / area } else { 1.0 / own.len() as f64 };
                 let share = share(f.y_star(row.y, k, nu), *laminar);
                 let friction = friction(row, nu + viscosity[r]);
-                value += part
-                    * match scale {
-                        Scale::Omega => f.omega(row.y, k, nu),
-                        Scale::Epsilon => f.epsilon(row.y, k, nu),
-                    };
+                let given = match scale {
+                    Scale::Omega => f.omega(row.y, k, nu),
+                    Scale::Epsilon => f.epsilon(row.y, k, nu),
+                };
+                value += part * given;
                 w.share += part * share;
-                w.production += part * share * f.production(row.y, k, friction);
+                w.production += part * share * f.production(scale, given, k, friction);
                 w.conductance += (1.0 - share) * row.area * nu / row.y;
                 let shear = match f.shear {
                     WallShear::Mean if row.seen.is_none() => row.shear,
@@ -143,7 +143,7 @@ impl WallLayer {
         for (viscosity, row) in self.viscosity.iter_mut().zip(rows) {
             let (y, k) = row.seen.map_or((row.y, k[row.cell]), |seen| (seen.y, seen.k));
             let y_star = self.functions.y_star(y, k, nu);
-            *viscosity = nu * self.functions.ratio_above(y_star, self.laminar);
+            *viscosity = nu * self.functions.viscosity_ratio(y_star);
         }
     }
 

@@ -57,7 +57,7 @@ pub(crate) fn channel() -> Outcome<()> {
             Ok(Modelled::new(closure, flow.grid(), flow.sides(), params())?)
         }
     };
-    for (name, c_s) in [("C_s 0.1", 0.1), ("C_s 0.17", 0.17)] {
+    for (name, c_s) in [("C_s 0.065", 0.065), ("C_s 0.1", 0.1)] {
         run(name, of_model(name, &grid, [end, from], &dns, smagorinsky(c_s))?, &mut curves);
     }
     let points = dns.iter().step_by(2).map(|p| (p[0], p[1])).filter(|p| p.0 > 0.3).collect();

@@ -31,11 +31,12 @@ fn compare<L: Law>(law: L, text: &str) {
     let y = between_walls(40, 1.0, 3e-3).unwrap();
     let ours = developed_channel(law, WallFunctions::default(), y, nu, Drive::Bulk(1.0), start).unwrap();
     let [friction, u, nu_t] = deviations(&ours, &reference(text), nu);
-    assert!(friction.abs() < 3e-3 && u < 1e-3 && nu_t < 2e-3, "{friction} {u} {nu_t}");
+    assert!(friction.abs() < 4e-3 && u < 1e-3 && nu_t < 2e-3, "{friction} {u} {nu_t}");
     assert!(ours.y_plus.warnings().is_empty() && ours.y_plus.rows == 4);
 }
 
-/// The same equations, wall functions and cells: what is left is round-off of the printed figures and convergence.
+/// The same equations and cells at y+ 54, where the law of the wall is 0.4 % above the logarithmic law of simpleFoam (0.34 to 0.37 % of the
+/// friction by k–ε).
 #[test]
 fn a_channel_at_re_1e6_is_that_of_simple_foam() {
     compare(Sst::default(), include_str!("../data/turbulence/channel_kOmegaSST_c.csv"));
@@ -100,6 +101,46 @@ fn bad_starts_converge_all_the_same() {
     let start = Inflow::from_length(1.0, 0.05, 0.07).unwrap();
     run(Sst::default(), 3e-3, 40, Inflow { k: 100.0 * start.k, ..start });
     run(StandardKEpsilon::default(), 0.05, 20, start);
+}
+
+/// With first cells at y+ 29 and 100 the logarithmic layer is within 5 % of the DNS of Lee & Moser (2015) at Re_τ 1000 for all models.
+#[test]
+fn wall_functions_give_the_logarithmic_layer_of_dns() {
+    fn run<L: Law>(law: L) {
+        let (re, dns) = (1000.512, numbers::<2>(include_str!("../data/turbulence/dns_1000.csv")));
+        for cells in [34, 10] {
+            let y = Axis::uniform(cells, 0.0, 2.0).unwrap();
+            let start = Inflow { k: 1.0, omega: 10.0 };
+            let functions = WallFunctions::default();
+            let ours =
+                developed_channel(law.clone(), functions, y, 1.0 / re, Drive::Force(1.0), start).unwrap();
+            for (y, u) in ours.y.iter().zip(&ours.u).map(|(y, u)| (y * re, u)).filter(|p| p.0 <= 0.3 * re) {
+                let i = dns.partition_point(|p| p[0] < y);
+                let ([y0, u0], [y1, u1]) = (dns[i - 1], dns[i]);
+                let off = u / (u0 + (u1 - u0) * (y - y0) / (y1 - y0)) - 1.0;
+                assert!(off.abs() < 0.05, "{cells} cells: {off} at y+ {y}");
+            }
+        }
+    }
+    run(Sst::default());
+    run(Wilcox::default());
+    run(StandardKEpsilon::default());
+    run(Realizable::default());
+}
+
+/// First cells in the buffer layer and far outside of it: k of a few cells would jump from iteration to iteration.
+#[test]
+fn cells_at_bad_distances_come_to_rest() {
+    fn run<L: Law>(law: L, first: f64, cells: usize) {
+        let inflow = Inflow::from_length(1.0, 0.05, 0.07).unwrap();
+        let (mut flow, mut model) = duct(law, [60, cells], first, inflow).unwrap();
+        flow.set_velocity(|_| [1.0, 0.0]);
+        let (info, done) = iterate(&mut flow, &mut model, 600, 1e-5).unwrap();
+        assert!(done, "{info:?} {}", model.closure.y_plus());
+    }
+    run(Sst::default(), 2.8e-4, 80);
+    run(StandardKEpsilon::default(), 2.8e-4, 80);
+    run(Realizable::default(), 5.6e-2, 16);
 }
 
 #[test]

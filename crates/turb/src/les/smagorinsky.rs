@@ -7,15 +7,16 @@ use interfaces::{Checkpoint, Closure, RestartError, SolveError, Transport, WallR
 /// Constants of [`Smagorinsky`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmagorinskyConstants {
-    /// C_s. Default 0.17 (Lilly 1967); in channels about 0.1.
+    /// C_s. Default 0.065, that of channels (Moin & Kim 1982, *J. Fluid Mech.* 118, 341–377); 0.1 to 0.17 without walls (Deardorff 1970,
+    /// *J. Fluid Mech.* 41, 453–480; Lilly 1967).
     pub c_s: f64,
-    /// A+ of the damping. Default 26 (van Driest 1956).
+    /// A+ of the damping. Default 25 (Moin & Kim 1982).
     pub a_plus: f64,
 }
 
 impl Default for SmagorinskyConstants {
     fn default() -> Self {
-        Self { c_s: 0.17, a_plus: 26.0 }
+        Self { c_s: 0.065, a_plus: 25.0 }
     }
 }
 
@@ -91,12 +92,12 @@ mod tests {
         (flow.volume, flow.distance) = (8.0, vec![1e-3, 1e3]);
         let mut model = Smagorinsky::new(SmagorinskyConstants::default(), 2).unwrap();
         model.correct(&mut flow, &[], 0.1, None).unwrap();
-        let full = (0.17 * 2.0_f64).powi(2) * 3.0;
+        let full = (0.065 * 2.0_f64).powi(2) * 3.0;
         assert!(model.eddy.iter().all(|e| (e - full).abs() < 1e-14));
         // u_τ = 1: y+ = 0.01 and 1e4.
         let wall = WallRow { cell: 0, y: 0.1, area: 2.0, u_t: 1.0, ..WallRow::default() };
         model.correct(&mut flow, &[wall], 0.1, None).unwrap();
-        let damped = full * (1.0 - (-0.01_f64 / 26.0).exp()).powi(2);
+        let damped = full * (1.0 - (-0.01_f64 / 25.0).exp()).powi(2);
         assert!((model.eddy[0] / damped - 1.0).abs() < 1e-9 && (model.eddy[1] - full).abs() < 1e-14);
         assert!(model.correct(&mut Uniform::new([[0.0; 3]; 3], 3), &[], 0.1, None).is_err());
         assert!(Smagorinsky::new(SmagorinskyConstants { c_s: -0.1, a_plus: 26.0 }, 2).is_err());

@@ -85,8 +85,8 @@ pub(super) static TURBULENCE: [(&str, &Table); 6] = [
             keys: &[optional(
                 "constant",
                 Kind::Number(Range::Positive, "1"),
-                "0.17",
-                "C_s: 0.1 in channels.",
+                "0.065",
+                "C_s: 0.1 to 0.17 without walls.",
                 "0.1",
             )],
         },

@@ -89,12 +89,6 @@ pub struct Terms {
 }
 
 impl Terms {
-    /// For a steady iteration: the same balance at `value`, from which one iteration goes by at most a part 1/`slowness` of it where
-    /// nothing is transported.
-    pub(super) fn slowed(self, slowness: f64, value: f64) -> Self {
-        let rate = slowness * (self.source / value - self.sink).abs();
-        Self { source: self.source + rate * value, sink: self.sink + rate, ..self }
-    }
     pub(super) fn put(self, [diffusivity, source, sink]: &mut [Vec<f64>; 3], i: usize) {
         (diffusivity[i], source[i], sink[i]) = (self.diffusivity, self.source, self.sink);
     }

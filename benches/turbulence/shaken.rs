@@ -39,7 +39,7 @@ pub(crate) fn swinging_cylinder() -> Outcome<()> {
     of_model("k-omega SST", Sst::default(), 1e5, 20, 0)?;
     of_model("k-omega", Wilcox::default(), 1e4, 20, 0)?;
     of_model("k-epsilon", StandardKEpsilon::default(), 1e4, 20, 0)?;
-    of_model("realizable k-eps", Realizable::default(), 1e4, 20, 1)
+    of_model("realizable k-eps", Realizable::default(), 1e4, 20, 2)
 }
 
 /// Without a model.

@@ -150,7 +150,7 @@ fn run<C: Closure>(cli: &Cli, duct: Duct, grid: CartesianGrid<2>, closure: C, na
         .with_params(SimpleParams { velocity_relaxation: cli.relaxation, ..SimpleParams::turbulent() })?;
     let walls = StaticBodies::new().with(duct, Pose::at([0.0; 3]));
     let cuts = cut_cells(flow.velocity(), &walls)?;
-    flow.set_walls(Some((&cuts, WallStress::LOG_LAW)))?;
+    flow.set_walls(Some((&cuts, WallStress::LAW_OF_THE_WALL)))?;
     flow.set_velocity(|x| duct.along_at(x));
     let mut model = Modelled::new(closure, flow.grid(), flow.sides(), TransportParams::steady())?;
     let centres = (0..grid.n_cells()).map(|i| grid.centre(grid.cell(i)));

@@ -36,8 +36,11 @@ struct Cli {
     #[arg(long, default_value_t = 1000)]
     iterations: usize,
     /// Relaxation factor of the velocity
-    #[arg(long, default_value_t = 0.8)]
+    #[arg(long, default_value_t = 0.95)]
     relaxation: f64,
+    /// How far beside the body the cells are even, in diameters; three times as far behind it
+    #[arg(long, default_value_t = 0.3)]
+    margin: f64,
     /// Intensity of the turbulence that enters; with next to none the wall functions take the layer for a laminar one
     #[arg(long, default_value_t = 0.05)]
     intensity: f64,
@@ -54,8 +57,10 @@ const ENDS: [f64; 3] = [-10.0, 40.0, 20.0];
 
 fn main() -> Outcome<()> {
     let cli = Cli::parse();
-    if !(cli.re.is_finite() && cli.re > 0.0) || cli.cells < 8 {
-        return Err("give a positive Reynolds number and at least 8 cells per diameter".into());
+    if !(cli.re.is_finite() && cli.re > 0.0) || cli.cells < 8 || !(0.0..=3.0).contains(&cli.margin) {
+        return Err(
+            "give a positive Reynolds number, at least 8 cells per diameter and a margin of 0 to 3".into()
+        );
     }
     match cli.body {
         Body::Cylinder => run::<2, _>(&cli, Disc::new(0.5)?, 1.0),
@@ -66,14 +71,19 @@ fn main() -> Outcome<()> {
 fn run<const D: usize, S: Solid + Copy + 'static>(cli: &Cli, body: S, face: f64) -> Outcome<()> {
     let h = 1.0 / cli.cells as f64;
     let [from, to, aside] = ENDS;
+    let side = 0.5 + cli.margin;
     let across = |a: usize| {
         if cli.half && a == 1 {
-            let all = gathered(2.0 * aside, h, [aside - 0.8, aside + 0.8], 1.1, 0.0)?;
+            let all = gathered(2.0 * aside, h, [aside - side, aside + side], 1.1, 0.0)?;
             let faces: Vec<f64> =
                 all.faces().iter().map(|x| x - aside).filter(|x| *x > -1e-9 * aside).collect();
             return siltflow::flow::Axis::from_faces(faces);
         }
-        let range = if a == 0 { [-from - 0.8, -from + 1.5] } else { [aside - 0.8, aside + 0.8] };
+        let range = if a == 0 {
+            [-from - side, -from + side + 2.0 * cli.margin]
+        } else {
+            [aside - side, aside + side]
+        };
         let length = if a == 0 { to - from } else { 2.0 * aside };
         gathered(length, h, range, 1.1, 0.0)
     };
@@ -98,7 +108,7 @@ fn run<const D: usize, S: Solid + Copy + 'static>(cli: &Cli, body: S, face: f64)
     let centre = std::array::from_fn(|a| place.get(a).copied().unwrap_or(0.0));
     let walls = StaticBodies::new().with(body, Pose::at(centre));
     let cuts = cut_cells(flow.velocity(), &walls)?;
-    flow.set_walls(Some((&cuts, WallStress::LOG_LAW)))?;
+    flow.set_walls(Some((&cuts, WallStress::LAW_OF_THE_WALL)))?;
     flow.set_velocity(|_| std::array::from_fn(|a| if a == 0 { 1.0 } else { 0.0 }));
     let n = flow.grid().n_cells();
     let inflow = Inflow::from_viscosity_ratio(1.0, cli.intensity, cli.ratio, fluid.viscosity)?;

@@ -1,5 +1,6 @@
 //! Tests across crates, in one binary. Their scene is that of the example `falling_discs` (crate `example-support`).
 mod bad_input;
+mod bluff_body;
 mod edges;
 mod files;
 mod frame;

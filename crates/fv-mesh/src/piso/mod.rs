@@ -275,7 +275,7 @@ impl<const D: usize> Piso<D> {
         boundaries.reset_outlets(&velocity.components);
         self.state.fill_velocity();
         let FlowState { grid, boundaries, fluid, velocity, pressure, .. } = &mut self.state;
-        self.correction.measure(boundaries, &velocity.components, pressure, fluid.density);
+        self.correction.measure(boundaries, &velocity.components, Some(pressure), fluid.density);
         match self.correction.solve(true) {
             Err(PoissonError::NonFinite { .. }) => return Err(self.state.diverged(dt)),
             other => other?,

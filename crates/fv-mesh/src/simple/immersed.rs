@@ -7,7 +7,7 @@ use crate::{Field, FlowError, Modelled};
 use interfaces::{Closure, CutCells, Vector, Wrench};
 
 impl<const D: usize> Simple<D> {
-    /// Sets the turbulence kinetic energy k \[m²/s²\] at the cell centres, from which [`WallStress::LogLaw`] takes the friction
+    /// Sets the turbulence kinetic energy k \[m²/s²\] at the cell centres, from which [`WallStress::Law`] takes the friction
     /// velocity; `None` takes it away. [`iterate_with`](Self::iterate_with) takes it from the model.
     pub fn set_turbulence_energy(&mut self, k: Option<&Field<D>>) {
         match (&mut self.energy, k) {

@@ -1,4 +1,5 @@
 //! The steady flow algorithm.
+mod first_guess;
 mod immersed;
 mod params;
 mod pressure_correction;
@@ -43,6 +44,9 @@ const FLOOR: f64 = 1e-5;
 /// At a [`Side::PressureOutlet`] the pressure extrapolated from two cells is the given one plus
 /// ½ρ(|u| + 2ν/w)(u − u_inside), w the width of the cell and u the velocity through the side: the momentum balance of half
 /// a cell.
+///
+/// Before the first iteration the velocity is freed of its divergence: from rest, or from a uniform stream that passes through
+/// walls, it starts as the potential flow.
 ///
 /// ```
 /// use fv_mesh::{CartesianGrid, Fluid, Side, Simple};
@@ -176,6 +180,9 @@ impl<const D: usize> Simple<D> {
     fn iterate_here(&mut self) -> Result<SimpleInfo, FlowError> {
         let mut info = SimpleInfo::default();
         let mut scale = 0.0_f64;
+        if self.state.step == 0 {
+            self.free_first_guess()?;
+        }
         if let Some(walls) = &mut self.walls {
             let FlowState { velocity, fluid, .. } = &self.state;
             walls.update(&velocity.components, self.energy.as_ref(), fluid.viscosity);
@@ -254,7 +261,7 @@ impl<const D: usize> Simple<D> {
             walls.show_fluxes(velocity);
         }
         let through = momentum::throughput(grid, metrics, velocity);
-        let divergence = self.correction.measure(boundaries, velocity, pressure, fluid.density);
+        let divergence = self.correction.measure(boundaries, velocity, Some(pressure), fluid.density);
         if !divergence.is_finite() {
             return Err(self.state.diverged(0.0));
         }

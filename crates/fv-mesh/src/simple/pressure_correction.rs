@@ -178,36 +178,36 @@ impl<const D: usize> PressureCorrection<D> {
     }
 
     /// Measures the divergence of the velocity. On faces of given pressure φ will be what brings the pressure there,
-    /// extrapolated from two cells, to the one given; the velocity that this takes counts. Gives Σ |∇·u| V.
+    /// extrapolated from two cells, to the one given, or 0 without a `pressure`; the velocity that this takes counts. Gives
+    /// Σ |∇·u| V.
     pub(crate) fn measure(
         &mut self,
         boundaries: &mut Boundaries<D>,
         velocity: &[Field<D>; D],
-        pressure: &Field<D>,
+        pressure: Option<&Field<D>>,
         density: f64,
     ) -> f64 {
         self.write_divergence(velocity);
         self.given.clear();
-        let (given, p, stride, n) = (&mut self.given, pressure.data(), self.grid.stride(), self.grid.cells());
+        let p = pressure.map(Field::data);
+        let (given, stride, n) = (&mut self.given, self.grid.stride(), self.grid.cells());
         let (metrics, beta, grid) = (&self.metrics, &self.beta, &self.grid);
         boundaries.each_pressure_face(|face, _| {
             let PressureFace { axis, upper, cell, index, pressure } = face;
             let (at, gap) = if upper { (n[axis] - 1, n[axis] - 1) } else { (0, 1) };
             let nodes = &metrics.axes[axis];
             let width = nodes.width[GHOSTS + at];
-            let rise = if n[axis] > 1 {
-                let next = if upper { index - stride[axis] } else { index + stride[axis] };
-                0.5 * width * nodes.faces.inv_volume[GHOSTS + gap] * (p[index] - p[next])
-            } else {
-                0.0
-            };
-            let beta = beta[axis][end_face(grid, axis, cell, upper)];
-            given.push(Given {
-                cell,
-                phi: (pressure - p[index] - rise) / density,
-                conductance: 2.0 * beta / width,
-                width,
+            let phi = p.map_or(0.0, |p| {
+                let rise = if n[axis] > 1 {
+                    let next = if upper { index - stride[axis] } else { index + stride[axis] };
+                    0.5 * width * nodes.faces.inv_volume[GHOSTS + gap] * (p[index] - p[next])
+                } else {
+                    0.0
+                };
+                (pressure - p[index] - rise) / density
             });
+            let beta = beta[axis][end_face(grid, axis, cell, upper)];
+            given.push(Given { cell, phi, conductance: 2.0 * beta / width, width });
         });
         for g in &self.given {
             self.divergence[g.cell] -= g.conductance / g.width * g.phi;

@@ -97,7 +97,7 @@ pub(super) fn turbulence(root: &Reader<'_>, dim: usize) -> Result<Option<Turbule
         walls: match t.text("walls") {
             Some("no-slip") => WallStress::NoSlip,
             Some("slip") => WallStress::Slip,
-            _ => WallStress::LOG_LAW,
+            _ => WallStress::LAW_OF_THE_WALL,
         },
     }))
 }

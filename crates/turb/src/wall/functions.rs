@@ -1,6 +1,7 @@
 //! What the layer beside a smooth wall is like, at any distance.
 use crate::error::positive;
 use crate::{Scale, TurbulenceError};
+use interfaces::LawOfTheWall;
 
 /// Wall functions of Kalitzin et al. (2005), in the form that rests on k: with y* = C_μ^¼ √k y/ν, which is y+ in a layer in
 /// equilibrium.
@@ -75,17 +76,9 @@ impl WallFunctions {
         self.c_mu.sqrt().sqrt() * k.max(0.0).sqrt() * y / nu
     }
 
-    /// u+ at any y+ (Reichardt 1951, *Z. Angew. Math. Mech.* 31, 208–219), and at most y+:
-    ///
-    /// ```text
-    /// u+ = ln(1 + κy+)/κ + ln(E/κ)/κ (1 − e^(−y+/11) − y+/11 e^(−y+/3))
-    /// ```
-    ///
-    /// Far out this is ln(E y+)/κ, which is 3 % more at y+ 30 and 25 % at 11.
+    /// u+ at any y+ by the [law of the wall](LawOfTheWall).
     pub fn u_plus(&self, y_plus: f64) -> f64 {
-        let core = (self.kappa * y_plus).ln_1p() / self.kappa;
-        let layer = 1.0 - (-y_plus / 11.0).exp() - y_plus / 11.0 * (-y_plus / 3.0).exp();
-        (core + (self.e / self.kappa).ln() / self.kappa * layer).min(y_plus)
+        LawOfTheWall { kappa: self.kappa, e: self.e }.u_plus(y_plus)
     }
 
     /// ν_t/ν on the wall: y+/u+ − 1.

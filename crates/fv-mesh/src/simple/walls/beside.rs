@@ -40,9 +40,7 @@ impl Beside {
             else {
                 continue;
             };
-            let at = openings.at(index);
-            let extent: f64 =
-                (0..D).map(|a| wall.normal[a].abs() * openings.metrics.axes[a].width[at[a]]).sum();
+            let extent = openings.extent(index, wall);
             let y = y.max(NEAREST * extent);
             new.rows.push(WallRow { cell, y, area: wall.area, ..WallRow::default() });
             new.probes.push((probe, y + 0.5 * extent));
@@ -61,36 +59,35 @@ impl Beside {
     }
 }
 
-/// A node in the solid, and what its velocity would be if the fluid went on.
-pub(super) struct Ghost {
+/// A node in the solid, and what its velocity would be if the fluid went on: nodes in the fluid, their gradients, and the
+/// steps from them.
+pub(super) struct Ghost<const D: usize> {
     pub(super) node: usize,
-    pub(super) terms: Vec<(usize, f64)>,
-    pub(super) constant: f64,
+    pub(super) from: Vec<(usize, u32, [f64; D])>,
 }
 
-/// Nodes in the solid around nodes in the fluid: extrapolated with these nodes' gradients.
+/// Nodes in the solid around nodes in the fluid.
 pub(super) fn ghosts<const D: usize>(
     openings: &Openings<D>,
     c: usize,
-    sticks: bool,
+    nearest: Option<f64>,
     gradients: &mut Gradients<D>,
-) -> Vec<Ghost> {
+) -> Vec<Ghost<D>> {
     let grid = openings.grid;
     let nodes = (0..grid.n_cells()).map(|cell| grid.place(grid.cell(cell)));
     let mut out = Vec::new();
     for node in nodes.filter(|&o| !openings.alive(c, o)) {
-        let from: Vec<usize> =
-            around(openings, node).filter(|&o| openings.alive(c, o) && grid.cell_at(o).is_some()).collect();
-        let mut ghost = Ghost { node, terms: Vec::new(), constant: 0.0 };
-        let (x, weight) = (openings.node(c, node), 1.0 / from.len() as f64);
-        for &other in &from {
-            let slot = gradients.slot(openings, c, other, sticks);
-            let y = openings.node(c, other);
-            let by = std::array::from_fn(|a| x[a] - y[a]);
-            ghost.constant += gradients.extrapolation(slot, by, &mut ghost.terms, weight);
-        }
+        let x = openings.node(c, node);
+        let from: Vec<_> = around(openings, node)
+            .filter(|&o| openings.alive(c, o) && grid.cell_at(o).is_some())
+            .map(|other| {
+                let y = openings.node(c, other);
+                let slot = gradients.slot(openings, c, other, nearest);
+                (other, slot, std::array::from_fn(|a| x[a] - y[a]))
+            })
+            .collect();
         if !from.is_empty() {
-            out.push(ghost);
+            out.push(Ghost { node, from });
         }
     }
     out

@@ -5,113 +5,160 @@ use interfaces::WallPiece;
 use std::collections::HashMap;
 
 /// Gradients of one velocity component at nodes beside walls, by least squares with weights 1/distance² over the nodes around
-/// that are in the fluid and, where the fluid does not slip, the wall.
+/// that are in the fluid, and the wall as far as it is to be heard.
 #[derive(Default)]
 pub(super) struct Gradients<const D: usize> {
     slots: HashMap<usize, u32>,
-    nodes: Vec<usize>,
-    starts: Vec<usize>,
-    terms: Vec<(usize, [f64; D])>,
-    /// Weight of the node itself.
-    own: Vec<[f64; D]>,
-    /// What the wall's velocity gives.
-    wall: Vec<[f64; D]>,
+    nodes: Vec<Node<D>>,
+    terms: Vec<Term<D>>,
+    /// Places on walls: the piece, and how far from it the node is taken to be \[m\].
+    walls: Vec<(usize, f64)>,
     pub(super) values: Vec<[f64; D]>,
 }
 
-impl<const D: usize> Gradients<D> {
-    pub(super) fn new() -> Self {
-        Self {
-            slots: HashMap::new(),
-            nodes: Vec::new(),
-            starts: vec![0],
-            terms: Vec::new(),
-            own: Vec::new(),
-            wall: Vec::new(),
-            values: Vec::new(),
-        }
-    }
+/// A node that has a gradient.
+struct Node<const D: usize> {
+    index: usize,
+    /// Ends of its terms and walls.
+    ends: [usize; 2],
+    own: Weight<D>,
+}
 
-    /// The number of the gradient at a node of component `c`; `sticks`: the fluid has the wall's velocity.
-    pub(super) fn slot(&mut self, openings: &Openings<D>, c: usize, node: usize, sticks: bool) -> u32 {
+struct Term<const D: usize> {
+    point: Point,
+    weight: Weight<D>,
+}
+
+/// What a velocity adds to a gradient without the wall, and how much more with it.
+#[derive(Clone, Copy)]
+struct Weight<const D: usize> {
+    free: [f64; D],
+    more: [f64; D],
+}
+
+/// Where a velocity is known: a node, by its storage index, or one of the places on walls.
+#[derive(Clone, Copy)]
+enum Point {
+    Node(usize),
+    Wall(usize),
+}
+
+/// What a wall tells the gradients beside it: its velocity, and how much that counts, from 0 to 1.
+pub(super) struct AtWall {
+    pub(super) velocity: f64,
+    pub(super) share: f64,
+}
+
+impl<const D: usize> Gradients<D> {
+    /// The number of the gradient at a node of component `c`. `nearest`: the least distance of the wall, in extents of the cell
+    /// along its normal; without it the wall is not there.
+    pub(super) fn slot(
+        &mut self,
+        openings: &Openings<D>,
+        c: usize,
+        node: usize,
+        nearest: Option<f64>,
+    ) -> u32 {
         if let Some(&slot) = self.slots.get(&node) {
             return slot;
         }
         let slot = self.nodes.len() as u32;
         self.slots.insert(node, slot);
-        self.nodes.push(node);
         let x = openings.node(c, node);
-        let mut seen: Vec<(Option<usize>, [f64; D], f64)> = Vec::new();
+        let mut seen: Vec<(Point, [f64; D])> = Vec::new();
         for other in around(openings, node).filter(|&o| o != node && openings.alive(c, o)) {
             let y = openings.node(c, other);
-            seen.push((Some(other), std::array::from_fn(|a| y[a] - x[a]), 0.0));
+            seen.push((Point::Node(other), std::array::from_fn(|a| y[a] - x[a])));
         }
-        if sticks {
-            let s = openings.grid.stride()[c];
-            for wall in [node - s, node].into_iter().filter_map(|cell| openings.piece(cell)) {
-                let step = to_wall(wall.1, x);
-                if norm2(&step) > 0.0 {
-                    seen.push((None, step, wall.1.velocity[c]));
-                }
+        let free = fit(&seen);
+        let s = openings.grid.stride()[c];
+        for cell in [node - s, node].into_iter().filter(|_| nearest.is_some()) {
+            let Some((piece, wall)) = openings.piece(cell) else { continue };
+            let y = norm2(&to_wall(wall, x))
+                .sqrt()
+                .max(nearest.unwrap_or_default() * openings.extent(cell, wall));
+            if y > 0.0 {
+                seen.push((Point::Wall(self.walls.len()), std::array::from_fn(|a| -y * wall.normal[a])));
+                self.walls.push((piece, y));
             }
         }
-        let typical =
-            seen.iter().map(|t| norm2(&t.1)).fold(f64::INFINITY, |m, d| if d > 0.0 { m.min(d) } else { m });
-        let scale =
-            if typical.is_finite() { seen.iter().map(|t| norm2(&t.1)).fold(0.0, f64::max) } else { 1.0 };
-        let mut normal = [[0.0; D]; D];
-        for (_, step, _) in &seen {
-            let weight = 1.0 / norm2(step).max(1e-2 * scale);
-            for a in 0..D {
-                (0..D).for_each(|b| normal[a][b] += weight * step[a] * step[b]);
-            }
+        let held = if seen.len() > free.len() { fit(&seen) } else { free.clone() };
+        let mut own = Weight { free: [0.0; D], more: [0.0; D] };
+        for (k, (point, _)) in seen.into_iter().enumerate() {
+            let free = free.get(k).copied().unwrap_or([0.0; D]);
+            let more = std::array::from_fn(|a| held[k][a] - free[a]);
+            (0..D).for_each(|a| {
+                own.free[a] -= free[a];
+                own.more[a] -= more[a];
+            });
+            self.terms.push(Term { point, weight: Weight { free, more } });
         }
-        // Where nodes are on one line the gradient across it is none.
-        let trace: f64 = (0..D).map(|a| normal[a][a]).sum();
-        (0..D).for_each(|a| normal[a][a] += 1e-9 * trace + f64::MIN_POSITIVE);
-        let (mut own, mut wall) = ([0.0; D], [0.0; D]);
-        for (other, step, value) in seen {
-            let weight = 1.0 / norm2(&step).max(1e-2 * scale);
-            let part = solve(normal, step.map(|s| weight * s));
-            (0..D).for_each(|a| own[a] -= part[a]);
-            match other {
-                Some(other) => self.terms.push((other, part)),
-                None => (0..D).for_each(|a| wall[a] += value * part[a]),
-            }
-        }
-        self.starts.push(self.terms.len());
-        self.own.push(own);
-        self.wall.push(wall);
+        self.nodes.push(Node { index: node, ends: [self.terms.len(), self.walls.len()], own });
         self.values.push([0.0; D]);
         slot
     }
 
-    /// The value at `by` from a node as weights of stored values, and a constant.
-    pub(super) fn extrapolation(
-        &self,
-        slot: u32,
-        by: [f64; D],
-        out: &mut Vec<(usize, f64)>,
-        weight: f64,
-    ) -> f64 {
-        let k = slot as usize;
-        let dot = |g: &[f64; D]| (0..D).map(|a| g[a] * by[a]).sum::<f64>();
-        out.push((self.nodes[k], weight * (1.0 + dot(&self.own[k]))));
-        out.extend(self.terms[self.starts[k]..self.starts[k + 1]].iter().map(|(o, g)| (*o, weight * dot(g))));
-        weight * dot(&self.wall[k])
+    /// Where the terms and walls of a node begin.
+    fn starts(&self, k: usize) -> [usize; 2] {
+        if k == 0 { [0; 2] } else { self.nodes[k - 1].ends }
     }
 
-    pub(super) fn update(&mut self, u: &Field<D>) {
+    /// Adds the value at `by` from a node, without what walls say, as weights of stored values.
+    pub(super) fn extrapolation(&self, slot: u32, by: [f64; D], out: &mut Vec<(usize, f64)>, weight: f64) {
+        let k = slot as usize;
+        let node = &self.nodes[k];
+        out.push((node.index, weight * (1.0 + dot(&node.own.free, &by))));
+        out.extend(self.terms[self.starts(k)[0]..node.ends[0]].iter().filter_map(|term| match term.point {
+            Point::Node(other) => Some((other, weight * dot(&term.weight.free, &by))),
+            Point::Wall(_) => None,
+        }));
+    }
+
+    /// Looks at the flow; `at_wall`: what is so at a distance from a piece of wall.
+    pub(super) fn update(&mut self, u: &Field<D>, at_wall: impl Fn(usize, f64) -> AtWall) {
         let u = u.data();
-        for (k, value) in self.values.iter_mut().enumerate() {
-            let here = u[self.nodes[k]];
-            let mut sum: [f64; D] = std::array::from_fn(|a| self.own[k][a] * here + self.wall[k][a]);
-            for (other, weights) in &self.terms[self.starts[k]..self.starts[k + 1]] {
-                (0..D).for_each(|a| sum[a] += weights[a] * u[*other]);
+        let at_walls: Vec<AtWall> = self.walls.iter().map(|&(piece, y)| at_wall(piece, y)).collect();
+        let mut starts = [0; 2];
+        for (node, value) in self.nodes.iter().zip(&mut self.values) {
+            let walls = &at_walls[starts[1]..node.ends[1]];
+            let share = walls.iter().map(|w| w.share).sum::<f64>() / walls.len().max(1) as f64;
+            *value = [0.0; D];
+            let mut add = |weight: &Weight<D>, u: f64| {
+                (0..D).for_each(|a| value[a] += (weight.free[a] + share * weight.more[a]) * u);
+            };
+            add(&node.own, u[node.index]);
+            for term in &self.terms[starts[0]..node.ends[0]] {
+                add(
+                    &term.weight,
+                    match term.point {
+                        Point::Node(other) => u[other],
+                        Point::Wall(wall) => at_walls[wall].velocity,
+                    },
+                );
             }
-            *value = sum;
+            starts = node.ends;
         }
     }
+}
+
+/// What velocities at steps from a node, less the one there, add to the gradient.
+fn fit<const D: usize>(seen: &[(Point, [f64; D])]) -> Vec<[f64; D]> {
+    let scale = seen.iter().map(|t| norm2(&t.1)).fold(0.0, f64::max);
+    let weight = |step: &[f64; D]| 1.0 / norm2(step).max(1e-2 * scale);
+    let mut normal = [[0.0; D]; D];
+    for (_, step) in seen {
+        for a in 0..D {
+            (0..D).for_each(|b| normal[a][b] += weight(step) * step[a] * step[b]);
+        }
+    }
+    // Where nodes are on one line the gradient across it is none.
+    let trace: f64 = (0..D).map(|a| normal[a][a]).sum();
+    (0..D).for_each(|a| normal[a][a] += 1e-9 * trace + f64::MIN_POSITIVE);
+    seen.iter().map(|(_, step)| solve(normal, step.map(|s| weight(step) * s))).collect()
+}
+
+fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
+    (0..D).map(|k| a[k] * b[k]).sum()
 }
 
 /// From `x` to the wall.

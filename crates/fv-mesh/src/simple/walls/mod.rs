@@ -37,7 +37,7 @@ pub(crate) struct SimpleWalls<const D: usize> {
     /// The cells that wall functions see.
     beside: Beside,
     /// Nodes in the solid beside nodes in the fluid.
-    ghosts: [Vec<Ghost>; D],
+    ghosts: [Vec<Ghost<D>>; D],
     sums: Vec<f64>,
     rates: Vec<f64>,
     n_bodies: usize,
@@ -70,7 +70,7 @@ impl<const D: usize> SimpleWalls<D> {
         outlets: &HashSet<(usize, usize)>,
     ) -> Result<Self, FlowError> {
         let openings = Openings::new(cuts, grid, metrics, outlets)?;
-        let mut gradients = std::array::from_fn(|_| Gradients::new());
+        let mut gradients = std::array::from_fn(|_| Gradients::default());
         let (mut shut, mut partly) =
             (std::array::from_fn(|_| Vec::new()), std::array::from_fn(|_| Vec::new()));
         let mut rows = std::array::from_fn(|_| Vec::new());
@@ -97,12 +97,12 @@ impl<const D: usize> SimpleWalls<D> {
                 if open < 1.0 {
                     partly[c].push((index, cell, open));
                 }
-                rows[c].extend(Row::new(&openings, c, index, law.sticks(), &mut gradients));
+                rows[c].extend(Row::new(&openings, c, index, law.nearest(), &mut gradients));
             }
         }
         let stresses = Stresses::new(&openings, law, &rows, &mut gradients);
         let beside = Beside::new(&openings);
-        let ghosts = std::array::from_fn(|c| beside::ghosts(&openings, c, law.sticks(), &mut gradients[c]));
+        let ghosts = std::array::from_fn(|c| beside::ghosts(&openings, c, law.nearest(), &mut gradients[c]));
         let n_bodies = cuts.walls.iter().map(|w| w.body + 1).max().unwrap_or(0);
         let longest = rows.iter().map(Vec::len).max().unwrap_or(0);
         Ok(Self {
@@ -123,10 +123,10 @@ impl<const D: usize> SimpleWalls<D> {
 
     /// Looks at the flow before an iteration.
     pub(super) fn update(&mut self, velocity: &[Field<D>; D], k: Option<&Field<D>>, viscosity: f64) {
-        for (gradients, u) in self.gradients.iter_mut().zip(velocity) {
-            gradients.update(u);
-        }
         self.stresses.update(velocity, k, viscosity);
+        for (c, (gradients, u)) in self.gradients.iter_mut().zip(velocity).enumerate() {
+            gradients.update(u, |piece, y| self.stresses.at_wall(piece, y, c, viscosity));
+        }
     }
 
     /// Puts the rows beside walls into the equation of component `c`. `terms` gets the sizes of the terms of rows that are
@@ -226,8 +226,11 @@ impl<const D: usize> SimpleWalls<D> {
         for (c, u) in velocity.iter_mut().enumerate() {
             let data = u.data_mut();
             for ghost in &self.ghosts[c] {
-                data[ghost.node] =
-                    ghost.terms.iter().map(|&(o, w)| w * data[o]).sum::<f64>() + ghost.constant;
+                let there = |&(o, slot, step): &(usize, u32, [f64; D])| {
+                    let gradient = &self.gradients[c].values[slot as usize];
+                    data[o] + (0..D).map(|a| gradient[a] * step[a]).sum::<f64>()
+                };
+                data[ghost.node] = ghost.from.iter().map(there).sum::<f64>() / ghost.from.len() as f64;
             }
         }
     }

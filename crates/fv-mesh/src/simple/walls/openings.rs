@@ -101,6 +101,12 @@ impl<'a, const D: usize> Openings<'a, D> {
         self.pieces.get(&cell).map(|&p| (p, &self.walls[p]))
     }
 
+    /// How far a cell extends along a wall's normal \[m\].
+    pub(super) fn extent(&self, cell: usize, wall: &WallPiece) -> f64 {
+        let at = self.at(cell);
+        (0..D).map(|a| wall.normal[a].abs() * self.metrics.axes[a].width[at[a]]).sum()
+    }
+
     /// The centre of a cell is in the fluid if it has an open face and no wall, or is before the wall it has.
     fn is_wet(&self, cell: usize) -> bool {
         let at = self.at(cell);

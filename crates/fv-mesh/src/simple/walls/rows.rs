@@ -106,7 +106,7 @@ impl<const D: usize> Row<D> {
         openings: &Openings<D>,
         c: usize,
         index: usize,
-        sticks: bool,
+        nearest: Option<f64>,
         gradients: &mut [Gradients<D>; D],
     ) -> Option<Self> {
         let s = openings.grid.stride();
@@ -129,10 +129,10 @@ impl<const D: usize> Row<D> {
         let at = openings.at(index);
         let gap = openings.metrics.axes[c].faces.volume[at[c]];
         let inv_volume = 1.0 / (openings.open[c].data()[index] * openings.area(c, index) * gap);
-        let slot = gradients[c].slot(openings, c, index, sticks);
+        let slot = gradients[c].slot(openings, c, index, nearest);
         let edges = std::array::from_fn(|b| {
             [0, 1].map(|upper| {
-                Edge::new(openings, [c, b, upper], index, inv_volume, kind(b, upper), sticks, gradients)
+                Edge::new(openings, [c, b, upper], index, inv_volume, kind(b, upper), nearest, gradients)
             })
         });
         let cell = openings.grid.cell_at(index).map_or(0, |cell| openings.grid.index(cell));
@@ -222,7 +222,7 @@ impl<const D: usize> Edge<D> {
         index: usize,
         inv_volume: f64,
         kind: Option<Kind<D>>,
-        sticks: bool,
+        nearest: Option<f64>,
         gradients: &mut [Gradients<D>; D],
     ) -> Self {
         let Openings { grid, metrics, .. } = openings;
@@ -257,7 +257,7 @@ impl<const D: usize> Edge<D> {
         let step: [f64; D] = std::array::from_fn(|a| y[a] - x[a]);
         edge.conduct = open * inv_volume / step[b].abs();
         let mut slot =
-            |c: usize, o: usize| openings.alive(c, o).then(|| gradients[c].slot(openings, c, o, sticks));
+            |c: usize, o: usize| openings.alive(c, o).then(|| gradients[c].slot(openings, c, o, nearest));
         let [v, w] = [openings.node(b, pair[0]), openings.node(b, pair[1])];
         edge.kind = Kind::Cut(Link {
             other: slot(c, other).unwrap_or_default(),

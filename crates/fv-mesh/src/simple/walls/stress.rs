@@ -1,10 +1,10 @@
 //! The stress of walls on the fluid.
-use super::gradients::{Gradients, to_wall};
+use super::gradients::{AtWall, Gradients, to_wall};
 use super::openings::Openings;
 use super::rows::Row;
 use crate::Field;
 use crate::linear::StencilMatrix;
-use interfaces::{Vector, WallPiece};
+use interfaces::{LawOfTheWall, Vector, WallPiece};
 
 /// How the fluid meets immersed walls.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -14,60 +14,52 @@ pub enum WallStress {
     NoSlip,
     /// It slips along them.
     Slip,
-    /// τ = ρ u_τ², from the velocity at some distance y by the law u⁺ = ln(E y⁺)/κ, or u⁺ = y⁺ where that is less. Where the
-    /// turbulence kinetic energy k is known, u_τ² = C_μ^¼ √k κ u/ln(E y*), y* = C_μ^¼ √k y/ν (Launder & Spalding 1974).
-    LogLaw {
-        /// κ.
-        kappa: f64,
-        /// E.
-        e: f64,
+    /// τ = ρ u_τ u/u+(u_τ y/ν) from the velocity u at some distance y, u_τ = C_μ^¼ √k where the turbulence kinetic energy k is known
+    /// (Launder & Spalding 1974), else u/u+.
+    Law {
+        /// u+.
+        law: LawOfTheWall,
         /// y along the normal over the cell's extent along it.
         distance: f64,
     },
 }
 
-impl WallStress {
-    /// The logarithmic law with κ = 0.41 and E = 9.8, seen from three quarters of a cell.
-    pub const LOG_LAW: Self = Self::LogLaw { kappa: 0.41, e: 9.8, distance: 0.75 };
+/// y+ of half a cell at which the gradients beside it take the wall for half.
+const RESOLVED: f64 = 30.0;
 
-    pub(super) fn sticks(self) -> bool {
-        self == Self::NoSlip
+impl WallStress {
+    /// The usual law of the wall, seen from three quarters of a cell.
+    pub const LAW_OF_THE_WALL: Self = Self::Law { law: LawOfTheWall { kappa: 0.41, e: 9.8 }, distance: 0.75 };
+
+    /// The least distance at which gradients see walls, in extents of the cell along the normal; none if they do not.
+    pub(super) fn nearest(self) -> Option<f64> {
+        match self {
+            Self::NoSlip => Some(0.0),
+            Self::Slip => None,
+            // What is left of a cell that is nearly shut moves with the fluid beside it.
+            Self::Law { .. } => Some(0.25),
+        }
     }
 }
 
 /// C_μ^¼.
 const C_MU: f64 = 0.547_722_557_505_166_1;
 
-/// τ/(ρ u) \[m/s\] at a wall where the velocity at distance `y` is `u` and the turbulence kinetic energy `k`.
-fn friction(kappa: f64, e: f64, [y, u]: [f64; 2], k: Option<f64>, nu: f64) -> f64 {
-    let laminar = nu / y;
-    // Where both laws meet.
-    let mut meet = 11.0_f64;
-    for _ in 0..10 {
-        meet = (e * meet).ln() / kappa;
-    }
-    if let Some(k) = k {
-        let speed = C_MU * k.max(0.0).sqrt();
-        let star = speed * y / nu;
-        return if star > meet { kappa * speed / (e * star).ln() } else { laminar };
-    }
-    let reynolds = u * y / nu;
-    if reynolds <= meet * meet {
-        return laminar;
-    }
-    // u⁺ ln-law: u⁺ = ln(E Re/u⁺)/κ, a contraction.
-    let mut plus = meet;
-    for _ in 0..30 {
-        plus = (e * reynolds / plus).ln() / kappa;
-    }
-    u / (plus * plus)
+/// u_τ² over the velocity `u` at distance `y` from a wall \[m/s\], with u_τ if that is known.
+fn friction(law: LawOfTheWall, [y, u]: [f64; 2], u_tau: Option<f64>, nu: f64) -> f64 {
+    let plus = u_tau.map_or_else(|| law.y_plus(u * y / nu), |u_tau| u_tau * y / nu);
+    // y+/u+ is 1 on the wall.
+    let ratio = if plus > 0.0 { plus / law.u_plus(plus) } else { 1.0 };
+    nu / y * ratio
 }
 
 /// Where the flow is seen by a wall, and what acts on it there.
 pub(super) struct Probe {
     y: f64,
-    /// Per component, range in `terms` and a constant.
-    ranges: [(usize, usize, f64); 3],
+    /// Half of the cell's extent along the normal \[m\].
+    half: f64,
+    /// Per component, range in `terms`.
+    ranges: [(usize, usize); 3],
     /// Range in `cells`.
     cells: (usize, usize),
     /// Storage index of its cell.
@@ -153,12 +145,11 @@ impl<const D: usize> Stresses<D> {
         wall: &WallPiece,
         gradients: &mut [Gradients<D>; D],
     ) -> Probe {
-        let metrics = openings.metrics;
         let index = openings.grid.place(openings.grid.cell(wall.cell));
-        let at = openings.at(index);
         let mut probe = Probe {
             y: 0.0,
-            ranges: [(0, 0, 0.0); 3],
+            half: 0.5 * openings.extent(index, wall),
+            ranges: [(0, 0); 3],
             cells: (0, 0),
             cell: index,
             normal: wall.normal,
@@ -167,20 +158,19 @@ impl<const D: usize> Stresses<D> {
             body: wall.body,
             arm: wall.arm,
         };
-        let WallStress::LogLaw { distance, .. } = self.law else { return probe };
-        let extent: f64 = (0..D).map(|a| wall.normal[a].abs() * metrics.axes[a].width[at[a]]).sum();
-        probe.y = distance * extent;
+        let WallStress::Law { distance, .. } = self.law else { return probe };
+        probe.y = 2.0 * distance * probe.half;
         let x: [f64; D] = std::array::from_fn(|a| wall.foot[a] + probe.y * wall.normal[a]);
         for c in 0..D {
-            let (first, mut constant) = (self.terms.len(), 0.0);
+            let first = self.terms.len();
             let corners = corners(openings, Some(c), x, index, |o| openings.alive(c, o));
             for (node, weight) in corners {
-                let slot = gradients[c].slot(openings, c, node, false);
+                let slot = gradients[c].slot(openings, c, node, self.law.nearest());
                 let y = openings.node(c, node);
                 let by = std::array::from_fn(|a| x[a] - y[a]);
-                constant += gradients[c].extrapolation(slot, by, &mut self.terms, weight);
+                gradients[c].extrapolation(slot, by, &mut self.terms, weight);
             }
-            probe.ranges[c] = (first, self.terms.len(), constant);
+            probe.ranges[c] = (first, self.terms.len());
         }
         let first = self.cells.len();
         self.cells.extend(corners(openings, None, x, index, |o| openings.wet[o]));
@@ -190,36 +180,53 @@ impl<const D: usize> Stresses<D> {
 
     /// Looks at the flow.
     pub(super) fn update(&mut self, velocity: &[Field<D>; D], k: Option<&Field<D>>, nu: f64) {
-        let WallStress::LogLaw { kappa, e, .. } = self.law else { return };
+        let WallStress::Law { law, .. } = self.law else { return };
         for (p, probe) in self.probes.iter().enumerate() {
             let mut u = -probe.velocity;
             for c in 0..D {
-                let (first, last, constant) = probe.ranges[c];
+                let (first, last) = probe.ranges[c];
                 let data = velocity[c].data();
-                u[c] += constant + self.terms[first..last].iter().map(|&(o, w)| w * data[o]).sum::<f64>();
+                u[c] += self.terms[first..last].iter().map(|&(o, w)| w * data[o]).sum::<f64>();
             }
             u -= probe.normal * probe.normal.dot(&u);
             let k = k.map(|k| {
                 self.cells[probe.cells.0..probe.cells.1].iter().map(|&(o, w)| w * k.data()[o]).sum()
             });
             self.speeds[p] = k.map(|k: f64| C_MU * k.max(0.0).sqrt());
-            self.friction[p] = friction(kappa, e, [probe.y, u.norm()], k, nu);
+            self.friction[p] = friction(law, [probe.y, u.norm()], self.speeds[p], nu);
             self.traction[p] = u * self.friction[p];
         }
     }
 
-    /// Tangential velocity at distance `y` from the wall that goes with its friction, by the law where there is one.
-    pub(super) fn seen(&self, probe: usize, y: f64, nu: f64) -> f64 {
-        let WallStress::LogLaw { kappa, e, .. } = self.law else {
-            return self.force[probe].norm() / self.probes[probe].area * y / nu;
-        };
-        let stress = self.traction[probe].norm();
-        let speed = self.speeds[probe].unwrap_or_else(|| stress.sqrt());
-        let (linear, star) = (stress * y / nu, speed * y / nu);
-        if e * star <= 1.0 {
-            return linear;
+    /// u_τ beside a piece of wall \[m/s\].
+    fn speed(&self, piece: usize) -> f64 {
+        self.speeds[piece].unwrap_or_else(|| self.traction[piece].norm().sqrt())
+    }
+
+    /// What a wall tells gradients of component `c` at distance `y`: the velocity that a straight profile has on it if its value and
+    /// slope at `y` are the law's, which is the wall's own in the viscous sublayer. Where cells are much larger than that
+    /// layer, the nodes around say more of the flow.
+    pub(super) fn at_wall(&self, piece: usize, y: f64, c: usize, nu: f64) -> AtWall {
+        let probe = &self.probes[piece];
+        let velocity = probe.velocity[c];
+        let speed = self.speed(piece);
+        let WallStress::Law { law, .. } = self.law else { return AtWall { velocity, share: 1.0 } };
+        if speed <= 0.0 {
+            return AtWall { velocity, share: 1.0 };
         }
-        (stress / (kappa * speed) * (e * star).ln()).min(linear)
+        let plus = speed * y / nu;
+        let slip = law.u_plus(plus) - plus * law.slope(plus);
+        let share = 1.0 / (1.0 + (speed * probe.half / nu / RESOLVED).powi(2));
+        AtWall { velocity: velocity + self.traction[piece][c] / speed * slip, share }
+    }
+
+    /// Tangential velocity at distance `y` from the wall that goes with its friction, by the law where there is one.
+    pub(super) fn seen(&self, piece: usize, y: f64, nu: f64) -> f64 {
+        let WallStress::Law { law, .. } = self.law else {
+            return self.force[piece].norm() / self.probes[piece].area * y / nu;
+        };
+        let (stress, speed) = (self.traction[piece].norm(), self.speed(piece));
+        if speed > 0.0 { stress / speed * law.u_plus(speed * y / nu) } else { stress * y / nu }
     }
 
     /// Adds the stress to the equations of component `c`: right-hand sides and diagonals.

@@ -1,0 +1,89 @@
+//! The mean velocity beside a smooth wall.
+
+/// u+ = u/u_τ over y+ = u_τ y/ν in a turbulent layer in equilibrium, from the wall to its logarithmic part (Reichardt 1951, *Z. Angew.
+/// Math. Mech.* 31, 208–219), and at most y+:
+///
+/// ```text
+/// u+ = ln(1 + κy+)/κ + ln(E/κ)/κ (1 − e^(−y+/11) − y+/11 e^(−y+/3))
+/// ```
+///
+/// Far out this is ln(E y+)/κ, which is 3 % more at y+ 30 and 25 % at 11.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LawOfTheWall {
+    /// von Kármán's constant κ.
+    pub kappa: f64,
+    /// E of the logarithmic law ln(E y+)/κ.
+    pub e: f64,
+}
+
+impl Default for LawOfTheWall {
+    fn default() -> Self {
+        Self { kappa: 0.41, e: 9.8 }
+    }
+}
+
+impl LawOfTheWall {
+    /// u+ at y+.
+    pub fn u_plus(&self, y_plus: f64) -> f64 {
+        self.curve(y_plus).min(y_plus)
+    }
+
+    /// du+/dy+ at y+.
+    pub fn slope(&self, y_plus: f64) -> f64 {
+        if self.curve(y_plus) >= y_plus {
+            return 1.0;
+        }
+        let (near, far) = ((-y_plus / 3.0).exp(), (-y_plus / 11.0).exp());
+        let layer = (far - (1.0 - y_plus / 3.0) * near) / 11.0;
+        1.0 / (1.0 + self.kappa * y_plus) + (self.e / self.kappa).ln() / self.kappa * layer
+    }
+
+    /// y+ where u+ y+ is `reynolds` = u y/ν: what the velocity u at the distance y tells of the friction, u_τ = y+ ν/y.
+    pub fn y_plus(&self, reynolds: f64) -> f64 {
+        // In the viscous sublayer the first guess is the solution; farther out each step leaves less than half of the error.
+        let mut y = reynolds.max(0.0).sqrt();
+        for _ in 0..60 {
+            let next = (y * reynolds / self.u_plus(y).max(f64::MIN_POSITIVE)).sqrt();
+            if (next - y).abs() <= 1e-13 * y {
+                break;
+            }
+            y = next;
+        }
+        y
+    }
+
+    fn curve(&self, y_plus: f64) -> f64 {
+        let core = (self.kappa * y_plus).ln_1p() / self.kappa;
+        let layer = 1.0 - (-y_plus / 11.0).exp() - y_plus / 11.0 * (-y_plus / 3.0).exp();
+        core + (self.e / self.kappa).ln() / self.kappa * layer
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_layers_and_what_is_between() {
+        let law = LawOfTheWall::default();
+        assert_eq!(law.u_plus(0.0), 0.0);
+        assert!((law.u_plus(1.0) - 1.0).abs() < 0.02);
+        let logarithmic = |y: f64| (law.e * y).ln() / law.kappa;
+        assert!((law.u_plus(30.0) / logarithmic(30.0) - 0.97).abs() < 0.01);
+        assert!((law.u_plus(11.0) / logarithmic(11.0) - 0.80).abs() < 0.01);
+        assert!((law.u_plus(1e4) / logarithmic(1e4) - 1.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn slope_is_the_derivative_and_y_plus_the_inverse() {
+        let law = LawOfTheWall::default();
+        for y in [0.01, 0.5, 2.0, 5.0, 11.0, 30.0, 200.0, 1e4] {
+            let h = 1e-5 * y;
+            let difference = (law.u_plus(y + h) - law.u_plus(y - h)) / (2.0 * h);
+            assert!((law.slope(y) - difference).abs() < 1e-6, "{y}: {} {difference}", law.slope(y));
+            let back = law.y_plus(y * law.u_plus(y));
+            assert!((back / y - 1.0).abs() < 1e-11, "{y} {back}");
+        }
+        assert_eq!(law.y_plus(0.0), 0.0);
+    }
+}

@@ -110,9 +110,9 @@ impl<const D: usize> WithSimd for LargestRate<'_, D> {
 #[derive(Clone, Debug)]
 pub(crate) struct Measure<const D: usize> {
     /// Per component and axis: width of the part of the control volume inside the box, nodes 0 to n.
-    volumes: [[Vec<f64>; D]; D],
+    pub(crate) volumes: [[Vec<f64>; D]; D],
     /// Per component and axis: 1/distance of node i − 1 and node i, or the part of it that is inside the box.
-    gaps: [[Vec<f64>; D]; D],
+    pub(crate) gaps: [[Vec<f64>; D]; D],
 }
 
 impl<const D: usize> Measure<D> {
@@ -211,6 +211,30 @@ impl<const D: usize> WithSimd for Row<'_, D> {
         }
         sums
     }
+}
+
+/// Σ V s and Σ V s u over the unknowns of component `c`: what the acceleration `source` does to momentum and energy, per density.
+pub(crate) fn acted<const D: usize>(
+    grid: &CartesianGrid<D>,
+    metrics: &Metrics<D>,
+    c: usize,
+    [source, u]: [&Field<D>; 2],
+) -> [f64; 2] {
+    let first = usize::from(!metrics.periodic[c]);
+    let volume = |b: usize, i: usize| metrics.of(Some(c), b).volume[GHOSTS + i];
+    let mut sums = [0.0; 2];
+    for r in 0..u.n_rows() {
+        let at = kernels::row_place(grid, r);
+        if c > 0 && at[c] < first {
+            continue;
+        }
+        let skip = if c == 0 { first } else { 0 };
+        let (s, u, along) = (&source.row(r)[skip..], &u.row(r)[skip..], &metrics.of(Some(c), 0).volume[GHOSTS + skip..]);
+        let across: f64 = (1..D).map(|b| volume(b, at[b])).product();
+        sums[0] += across * lanes(s.len(), |i| along[i] * s[i]);
+        sums[1] += across * lanes(s.len(), |i| along[i] * s[i] * u[i]);
+    }
+    sums
 }
 
 /// Largest |∇·u| of one row.

@@ -18,6 +18,7 @@ use crate::pressure::{Pressure, PressureSolver};
 use crate::{CartesianGrid, Convection, Diffusion, Field, FlowError, Fluid, Side, walls};
 use interfaces::Vector;
 pub use prediction::Prediction;
+pub use sources::SourceWork;
 use sources::Sources;
 
 /// Incompressible flow by incremental pressure projection on a staggered grid:
@@ -183,6 +184,7 @@ impl<const D: usize> Projection<D> {
             };
             self.momentum.advance(c, k, velocity, pressure, &mut self.next[c], &mut self.tendency[c]);
         }
+        self.sources.act(density, dt, weights);
         if let Some(sources) = self.sources.take() {
             for (c, source) in sources.iter().enumerate() {
                 kernels::change(grid, weights[0] * dt, source, &mut self.next[c]);

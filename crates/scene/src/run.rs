@@ -186,10 +186,7 @@ impl Stage<'_> {
         S: Strategy + Exchange<D, Physics<D>>,
         Population<L>: Checkpoint,
     {
-        // What acts on the flow beside bodies is not in the books.
-        let hooks =
-            self.setup.turbulence.is_some() || self.setup.scalars.iter().any(|s| s.buoyancy.is_some());
-        self.march(self.setup.simulation(flow, particles)?, (!hooks).then(Ledger::new))
+        self.march(self.setup.simulation(flow, particles)?, Some(Ledger::new()))
     }
 
     pub(crate) fn folder(&self) -> &Path {

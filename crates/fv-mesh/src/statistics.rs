@@ -229,7 +229,8 @@ pub(crate) fn acted<const D: usize>(
             continue;
         }
         let skip = if c == 0 { first } else { 0 };
-        let (s, u, along) = (&source.row(r)[skip..], &u.row(r)[skip..], &metrics.of(Some(c), 0).volume[GHOSTS + skip..]);
+        let (s, u, along) =
+            (&source.row(r)[skip..], &u.row(r)[skip..], &metrics.of(Some(c), 0).volume[GHOSTS + skip..]);
         let across: f64 = (1..D).map(|b| volume(b, at[b])).product();
         sums[0] += across * lanes(s.len(), |i| along[i] * s[i]);
         sums[1] += across * lanes(s.len(), |i| along[i] * s[i] * u[i]);

@@ -44,7 +44,8 @@ fn books(name: &str, more: &[&str]) -> impl Fn(&str) -> f64 {
 #[test]
 fn momentum_of_a_driven_body_with_buoyancy_is_in_the_books() {
     let of = books("driven", &[]);
-    let terms = ["work", "side_work", "driving_work", "dissipation", "energy_residual", "momentum_worst_step"];
+    let terms =
+        ["work", "side_work", "driving_work", "dissipation", "energy_residual", "momentum_worst_step"];
     let told: Vec<String> = terms.iter().map(|key| format!("{key} {:.3e}", of(key))).collect();
     assert!(of("momentum_worst_step") < 1e-10, "{told:?}");
 }

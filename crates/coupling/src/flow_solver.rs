@@ -48,6 +48,8 @@ pub trait FlowSolver<const D: usize>: Checkpoint {
     fn velocity(&self) -> &Velocity<D>;
     /// The same, to be changed.
     fn velocity_mut(&mut self) -> &mut Velocity<D>;
+    /// Component `c` of the velocity at the start of the last step \[m/s\].
+    fn before(&self, c: usize) -> &Field<D>;
     /// The pressure \[Pa\].
     fn pressure(&self) -> &Field<D>;
     /// Component `c` of the velocity at the centres of the cells.
@@ -125,6 +127,9 @@ macro_rules! forward {
         }
         fn velocity_mut(&mut self) -> &mut Velocity<D> {
             $flow::velocity_mut(self)
+        }
+        fn before(&self, c: usize) -> &Field<D> {
+            $flow::before(self, c)
         }
         fn pressure(&self) -> &Field<D> {
             $flow::pressure(self)

@@ -3,7 +3,7 @@ use crate::particles::Stake;
 use crate::{CouplingError, FlowSolver, Immersed, Observer, Particles, Simulation, StepInfo, Strategy};
 use fv_mesh::SidePower;
 use ibm::Forcing;
-use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Twist, Vector, Wrench};
+use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Twist, Vector, VelocityField, Wrench};
 
 /// Keeps, step by step, the momentum of fluid and bodies against the impulses on them, the kinetic
 /// energy against work and dissipation, and the divergence.
@@ -65,10 +65,15 @@ pub struct LedgerReport {
     pub side_work: f64,
     /// Work of what holds or drives bodies that are not free \[J\].
     pub driving_work: f64,
+    /// Work that bodies do on the fluid inside them beyond what a rigid body would take, Σ ½(Uⁿ + Uⁿ⁺¹)·(Iⁿ⁺¹ − Iⁿ) − Δ½(ρ/ρ_s)(mU² + ΩIΩ) \[J\]:
+    /// it lags behind bodies that turn.
+    pub inner_work: f64,
     /// Viscous dissipation \[J\].
     pub dissipation: f64,
     /// What an eddy viscosity took \[J\].
     pub eddy_dissipation: f64,
+    /// What the forcing took of the kinetic energy, see [`Forcing::inelastic_loss`] \[J\].
+    pub forcing_loss: f64,
     /// Work of contacts on the bodies \[J\]: negative while it is stored or lost in them.
     pub contact_work: f64,
     /// Kinetic energy that bodies brought which came, less what those took along that went \[J\].
@@ -92,6 +97,14 @@ pub trait Accounts {
     fn hidden_dissipation(&self) -> f64 {
         0.0
     }
+    /// See [`Forcing::inelastic_loss`]; the velocity was `before`.
+    fn inelastic_loss(&self, _before: &[&[f64]], _velocity: &dyn VelocityField) -> f64 {
+        0.0
+    }
+    /// See [`Forcing::surface_work`].
+    fn surface_work(&self) -> f64 {
+        0.0
+    }
 }
 
 impl Accounts for () {}
@@ -110,6 +123,10 @@ pub struct Account {
     contact: Wrench,
     /// Of what holds or drives it.
     held: Wrench,
+    /// On the fluid inside it: what its momentum gained.
+    inner: Wrench,
+    /// Kinetic energy that the fluid inside would have gained, had it moved with the body \[J\].
+    carried: f64,
     /// Before and after the step.
     twists: [Twist; 2],
 }
@@ -136,11 +153,26 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Accounts for Particles<F, B, S> {
             in_transit: self.momentum_in_transit(b).force.norm(),
             contact: self.bodies.contact_impulse(b),
             held: self.constraint_impulse(b),
+            inner: self.inner_impulse(b),
+            carried: self.carried(b),
             twists: [self.twist_before(b), self.bodies.twist(b)],
         }
     }
     fn hidden_dissipation(&self) -> f64 {
         self.forcing.hidden_dissipation()
+    }
+    fn inelastic_loss(&self, before: &[&[f64]], velocity: &dyn VelocityField) -> f64 {
+        let mean = |b| {
+            let [before, after] = [self.twist_before(b), self.bodies.twist(b)];
+            Twist {
+                linear: 0.5 * (before.linear + after.linear),
+                angular: 0.5 * (before.angular + after.angular),
+            }
+        };
+        self.forcing.inelastic_loss(before, velocity, &self.bodies, &mean)
+    }
+    fn surface_work(&self) -> f64 {
+        self.forcing.surface_work(&self.bodies)
     }
 }
 
@@ -257,13 +289,14 @@ where
         let (walls, sources) = (flow.wall_impulse(), flow.source_work());
         let brought = self.turnover(immersed);
         let (mut contacts, mut weight, mut held) = (Vector::zeros(), Vector::zeros(), Vector::zeros());
-        let (mut contact_work, mut driving_work, mut sum) = (0.0, 0.0, 0.0);
+        let (mut contact_work, mut driving_work, mut inner_work, mut sum) = (0.0, 0.0, 0.0, 0.0);
         for (_, one) in accounts(immersed) {
             contacts += one.contact.force;
             weight += dt * one.weight;
             held += one.held.force;
             contact_work += one.work(one.contact);
             driving_work += one.work(one.held);
+            inner_work += one.work(one.inner) - one.carried;
             sum += one.contact.force.norm();
         }
         let impulse = weight + body_force + sources.impulse + contacts + walls + held;
@@ -282,27 +315,30 @@ where
         r.work += 0.5 * dt * (last.power + books.power) + sources.work;
         r.side_work += 0.5 * dt * (last.sides[0] + books.sides[0]) + dt * sides.pressure;
         r.side_work += books.sides[1] - last.sides[1];
-        r.driving_work += driving_work;
+        r.driving_work += driving_work + immersed.surface_work();
+        r.inner_work += inner_work;
         r.dissipation += 0.5 * dt * (last.dissipation + books.dissipation) + immersed.hidden_dissipation();
+        let before: [&[f64]; D] = std::array::from_fn(|c| flow.before(c).data());
+        r.forcing_loss += immersed.inelastic_loss(&before, flow.velocity());
         r.eddy_dissipation += sources.eddy_dissipation;
         r.contact_work += contact_work;
         r.brought += brought.energy;
         r.energy[1] = books.energy;
         let gained = r.energy[1] - r.energy[0] - r.brought;
-        let work = r.work + r.side_work + r.driving_work + r.contact_work;
-        r.energy_residual = gained - work + r.dissipation + r.eddy_dissipation;
+        let work = r.work + r.side_work + r.driving_work + r.contact_work + r.inner_work;
+        r.energy_residual = gained - work + r.dissipation + r.eddy_dissipation + r.forcing_loss;
         Ok(())
     }
 }
 
 impl LedgerReport {
     /// All numbers.
-    const LENGTH: usize = 21;
+    const LENGTH: usize = 23;
 
     fn numbers(&self) -> [f64; Self::LENGTH] {
         let Self { divergence, momentum_step, momentum_total, impulses, in_transit, .. } = *self;
         let Self { work, dissipation, contact_work, energy_residual, brought, .. } = *self;
-        let Self { side_work, driving_work, eddy_dissipation, .. } = *self;
+        let Self { side_work, driving_work, inner_work, eddy_dissipation, forcing_loss, .. } = *self;
         let (flow, [before, now], residual) = (self.volume_flow, self.energy, self.residual);
         [
             divergence,
@@ -326,6 +362,8 @@ impl LedgerReport {
             side_work,
             driving_work,
             eddy_dissipation,
+            inner_work,
+            forcing_loss,
         ]
     }
     fn of(n: &[f64]) -> Self {
@@ -346,6 +384,8 @@ impl LedgerReport {
             side_work: n[18],
             driving_work: n[19],
             eddy_dissipation: n[20],
+            inner_work: n[21],
+            forcing_loss: n[22],
         }
     }
 }

@@ -303,6 +303,17 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
             energy: 0.5 * (1.0 - self.displaced(b) / inertia.mass) * s.momentum.dot(&s.before),
         }
     }
+    /// What the momentum of the fluid inside body `b` gained in the last step.
+    pub(crate) fn inner_impulse(&self, b: BodyId) -> Wrench {
+        let [now, before] = self.states[b.0].internal;
+        wrench(now - before)
+    }
+    /// Kinetic energy that this fluid would have gained, had it moved with the body \[J\]: Δ½(ρ/ρ_s)(mU² + ΩIΩ).
+    pub(crate) fn carried(&self, b: BodyId) -> f64 {
+        let (s, now) = (&self.states[b.0], self.velocity(b));
+        let gained = now.dot(&(self.mass_matrix(b) * now)) - s.momentum.dot(&s.before);
+        0.5 * self.displaced(b) / self.bodies.inertia(b).mass * gained
+    }
     /// Velocity of body `b` before the last step.
     pub(crate) fn twist_before(&self, b: BodyId) -> Twist {
         let Wrench { force: linear, torque: angular } = wrench(self.states[b.0].before);

@@ -116,6 +116,10 @@ where
     pub fn velocity_mut(&mut self) -> &mut Velocity<D> {
         self.flow.velocity_mut()
     }
+    /// Component `c` of the velocity at the start of the last step \[m/s\].
+    pub fn before(&self, c: usize) -> &Field<D> {
+        self.flow.before(c)
+    }
     /// The pressure \[Pa\].
     pub fn pressure(&self) -> &Field<D> {
         self.flow.pressure()

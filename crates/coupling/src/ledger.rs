@@ -10,12 +10,23 @@ use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Twist, Vector, Velo
 ///
 /// Momentum: P = ρ∫_Ω u dV − ΣI + Σ(mU + δ), with I the fluid inside a body and δ what is on its
 /// way between the two (see [`Particles`]). Impulses: net weight, forces of the body of the fluid, contacts with walls,
-/// what holds or drives bodies that are not free, what the box's own sides do to the fluid, and an eddy viscosity's friction there. Energy: E = ½ρ∫_Ω u² + Σ½(1 − ρ/ρ_s)(mU² + ΩIΩ)
-/// against the work of net weight, forces, contacts, sides and of what drives bodies (−F·U − T·Ω of the fluid's load and the change of their own energy), less the viscous dissipation ρν∫|∇u|²
-/// (trapezoidal in time), what an eddy viscosity takes and what the forcing [hides](ibm::Forcing::hidden_dissipation). What bodies bring that are put into the flow, and take along that are taken out, is no residual. (The fluid that a
-/// [`MovingWindow`](crate::MovingWindow) leaves behind is, and of the energy what a scheme takes by itself: upwind convection, Euler's scheme in time, boundary values that jump. Momentum of a
+/// what holds or drives bodies that are not free, what the box's own sides do to the fluid, and an eddy viscosity's friction there.
+///
+/// Energy: E = ½ρ∫_Ω u² + Σ½(1 − ρ/ρ_s)(mU² + ΩIΩ). With v̄ = ½(vⁿ + vⁿ⁺¹) of a body and ū = ½(uⁿ + uⁿ⁺¹) of the fluid a step makes
+///
+/// ```text
+/// ΔE = W + W_sides + Σ v̄·(J_contact + J_held) + Σ [v̄·Δ(I − δ) − Δ½(ρ/ρ_s)(mU² + ΩIΩ)] − D − D_t − (hidden + lost)
+/// hidden + lost = ∫ f_ib·(v̄ − ū) dV dt
+/// ```
+///
+/// W is the work of net weight and forces, W_sides that of the sides, the bracket the [work inside](LedgerReport::inner_work), D = ∫ρν∫|∇u|² dV dt (trapezoidal, as W is), D_t what an eddy viscosity
+/// takes; the last two are what the forcing [hides](ibm::Forcing::hidden_dissipation) of the dissipation, in D, and [loses](ibm::Forcing::inelastic_loss). All are measured by themselves; what is left is of second order in the step for
+/// a [`Projection`](fv_mesh::Projection) with central convection from a smooth start, and else what a scheme takes by itself: upwind convection, Euler's scheme in time, boundary values that jump (first order), forcings that do not tell their loss
+/// ([`Hfdib`](ibm::Hfdib)).
+///
+/// What bodies bring that are put into the flow, and take along that are taken out, is no residual. The fluid that a [`MovingWindow`](crate::MovingWindow) leaves behind is. Momentum of a
 /// [`Piso`](fv_mesh::Piso) is kept to its tolerances by Euler's scheme,
-/// between walls to what its last correction leaves; by BDF2 it is not a difference of two times, and the books do not close. Walls by cut links are not in the books.)
+/// between walls to what its last correction leaves; by BDF2 it is not a difference of two times, and the books do not close. Walls by cut links are not in the books.
 ///
 /// The books open where a run begins. Those of an interrupted run go on, bit for bit, if they are saved beside the simulation and restored
 /// before the next.
@@ -63,22 +74,22 @@ pub struct LedgerReport {
     pub work: f64,
     /// Work of the sides of the box \[J\]: what enters and leaves, and walls that move.
     pub side_work: f64,
-    /// Work of what holds or drives bodies that are not free \[J\].
+    /// Work of what holds or drives bodies that are not free, and of the motion that surfaces have of their own \[J\].
     pub driving_work: f64,
-    /// Work that bodies do on the fluid inside them beyond what a rigid body would take, Σ ½(Uⁿ + Uⁿ⁺¹)·(Iⁿ⁺¹ − Iⁿ) − Δ½(ρ/ρ_s)(mU² + ΩIΩ) \[J\]:
-    /// it lags behind bodies that turn.
+    /// Work of bodies on the fluid inside them beyond what a rigid body would take, and on what is on its way, Σ v̄·Δ(I − δ) − Δ½(ρ/ρ_s)(mU² + ΩIΩ) \[J\]: that fluid lags behind
+    /// bodies that turn, and takes ρVU² of a body put into fluid at rest with the speed U.
     pub inner_work: f64,
     /// Viscous dissipation \[J\].
     pub dissipation: f64,
     /// What an eddy viscosity took \[J\].
     pub eddy_dissipation: f64,
-    /// What the forcing took of the kinetic energy, see [`Forcing::inelastic_loss`] \[J\].
+    /// What the forcing took of the kinetic energy, numerically or where a body meets the fluid with another velocity: see [`Forcing::inelastic_loss`] \[J\].
     pub forcing_loss: f64,
     /// Work of contacts on the bodies \[J\]: negative while it is stored or lost in them.
     pub contact_work: f64,
     /// Kinetic energy that bodies brought which came, less what those took along that went \[J\].
     pub brought: f64,
-    /// Energy gained − all work + both dissipations − brought \[J\].
+    /// Energy gained − all work + both dissipations + the forcing's loss − brought \[J\].
     pub energy_residual: f64,
     residual: Vector,
 }
@@ -123,7 +134,7 @@ pub struct Account {
     contact: Wrench,
     /// Of what holds or drives it.
     held: Wrench,
-    /// On the fluid inside it: what its momentum gained.
+    /// On the fluid inside it, and what is on its way.
     inner: Wrench,
     /// Kinetic energy that the fluid inside would have gained, had it moved with the body \[J\].
     carried: f64,

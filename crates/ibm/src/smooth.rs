@@ -356,7 +356,9 @@ impl Forcing for SmoothForcing {
                 found.iter_mut().zip(&old).for_each(|(now, old)| *now = 0.5 * (*now + old));
             }
             let mean = mean(BodyId(b));
-            let missing = |m: usize| markers.masses[m] * markers.slip.given[m].dot(&markers.missing(m, &mean, &found, dim));
+            let missing = |m: usize| {
+                markers.masses[m] * markers.slip.given[m].dot(&markers.missing(m, &mean, &found, dim))
+            };
             (0..markers.arms.len()).map(missing).sum::<f64>()
         };
         self.bodies.iter().enumerate().map(lost).sum()

@@ -185,7 +185,7 @@ impl RunResult {
         mut self,
         elapsed: Elapsed,
         threads: usize,
-        output: f64,
+        [output, ledger]: [f64; 2],
         view: &dyn View,
     ) -> Self {
         let modules: serde_json::Map<String, Value> =
@@ -195,6 +195,7 @@ impl RunResult {
             "cpu": elapsed.cpu,
             "threads": threads,
             "output": output,
+            "ledger": ledger,
             "modules": modules,
         });
         self

@@ -1,5 +1,5 @@
 //! The books of momentum and energy.
-use crate::particles::Stake;
+use crate::particles::{Stake, wrench};
 use crate::{CouplingError, FlowSolver, Immersed, Observer, Particles, Simulation, StepInfo, Strategy};
 use fv_mesh::SidePower;
 use ibm::Forcing;
@@ -109,7 +109,7 @@ pub trait Accounts {
         0.0
     }
     /// See [`Forcing::inelastic_loss`]; the velocity was `before`.
-    fn inelastic_loss(&self, _before: &[&[f64]], _velocity: &dyn VelocityField) -> f64 {
+    fn inelastic_loss(&mut self, _before: &[&[f64]], _velocity: &dyn VelocityField) -> f64 {
         0.0
     }
     /// See [`Forcing::surface_work`].
@@ -172,15 +172,16 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Accounts for Particles<F, B, S> {
     fn hidden_dissipation(&self) -> f64 {
         self.forcing.hidden_dissipation()
     }
-    fn inelastic_loss(&self, before: &[&[f64]], velocity: &dyn VelocityField) -> f64 {
-        let mean = |b| {
-            let [before, after] = [self.twist_before(b), self.bodies.twist(b)];
+    fn inelastic_loss(&mut self, before: &[&[f64]], velocity: &dyn VelocityField) -> f64 {
+        let Self { forcing, bodies, states, .. } = self;
+        let mean = |b: BodyId| {
+            let (before, after) = (wrench(states[b.0].before), bodies.twist(b));
             Twist {
-                linear: 0.5 * (before.linear + after.linear),
-                angular: 0.5 * (before.angular + after.angular),
+                linear: 0.5 * (before.force + after.linear),
+                angular: 0.5 * (before.torque + after.angular),
             }
         };
-        self.forcing.inelastic_loss(before, velocity, &self.bodies, &mean)
+        forcing.inelastic_loss(before, velocity, &*bodies, &mean)
     }
     fn surface_work(&self) -> f64 {
         self.forcing.surface_work(&self.bodies)
@@ -314,7 +315,13 @@ where
         sum += weight.norm() + body_force.norm() + sources.impulse.norm() + walls.norm() + held.norm();
         let residual = books.momentum - last.momentum - brought.momentum - impulse;
 
+        let surfaces = immersed.surface_work();
+        let hidden = immersed.hidden_dissipation();
+        let before: [&[f64]; D] = std::array::from_fn(|c| flow.before(c).data());
+        let lost = simulation.particles.inelastic_loss(&before, flow.velocity());
+
         let r = &mut self.report;
+        r.forcing_loss += lost;
         r.residual += residual;
         r.impulses += sum;
         if sum > 0.0 {
@@ -326,11 +333,9 @@ where
         r.work += 0.5 * dt * (last.power + books.power) + sources.work;
         r.side_work += 0.5 * dt * (last.sides[0] + books.sides[0]) + dt * sides.pressure;
         r.side_work += books.sides[1] - last.sides[1];
-        r.driving_work += driving_work + immersed.surface_work();
+        r.driving_work += driving_work + surfaces;
         r.inner_work += inner_work;
-        r.dissipation += 0.5 * dt * (last.dissipation + books.dissipation) + immersed.hidden_dissipation();
-        let before: [&[f64]; D] = std::array::from_fn(|c| flow.before(c).data());
-        r.forcing_loss += immersed.inelastic_loss(&before, flow.velocity());
+        r.dissipation += 0.5 * dt * (last.dissipation + books.dissipation) + hidden;
         r.eddy_dissipation += sources.eddy_dissipation;
         r.contact_work += contact_work;
         r.brought += brought.energy;

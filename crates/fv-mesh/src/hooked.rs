@@ -68,11 +68,12 @@ where
     pub fn project(&mut self, dt: f64) -> Result<(), FlowError> {
         self.flow.project(dt)
     }
-    /// Tells the closure where bodies are that it sees as walls, before a step and when they have moved in it.
+    /// Tells scalars and closure where the bodies are, before a step and when they have moved in it.
     ///
     /// # Errors
-    /// What the closure answers.
+    /// What they answer.
     pub fn follow_walls(&mut self, bodies: &dyn Bodies) -> Result<(), FlowError> {
+        self.hooks.scalars.follow(&self.flow, bodies)?;
         self.hooks.closure.follow(&self.flow, bodies)
     }
     /// Ends a step of `dt`; the closure follows the flow.

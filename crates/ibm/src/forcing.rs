@@ -118,7 +118,7 @@ pub trait Forcing: Send {
     /// [hidden dissipation](Self::hidden_dissipation) and less what the fluid got, ρ∫ f_ib·½(uⁿ + uⁿ⁺¹) dV dt. The velocity is now `velocity`, and was `before` at the step's start.
     /// Vanishes with the step, unless the fluid is still to be made to follow at once. Nothing where it is not known.
     fn inelastic_loss(
-        &self,
+        &mut self,
         _before: &[&[f64]],
         _velocity: &dyn VelocityField,
         _bodies: &dyn Kinematics,

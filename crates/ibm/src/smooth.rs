@@ -341,27 +341,28 @@ impl Forcing for SmoothForcing {
     }
 
     fn inelastic_loss(
-        &self,
+        &mut self,
         before: &[&[f64]],
         velocity: &dyn VelocityField,
         bodies: &dyn Kinematics,
         mean: &dyn Fn(BodyId) -> Twist,
     ) -> f64 {
-        let (dim, mut found, mut old) = (velocity.dim(), [const { Vec::new() }; 3], Vec::new());
+        let Self { bodies: all, values: found, outside: [old, ..], .. } = self;
+        let dim = velocity.dim();
         let lost = |(b, markers): (usize, &Markers)| {
             for (c, found) in found.iter_mut().enumerate().take(dim) {
                 let (lattice, who) = (velocity.lattice(c), (bodies, BodyId(b)));
                 markers.read(c, lattice, velocity.component(c), who, found);
-                markers.read(c, lattice, before[c], who, &mut old);
-                found.iter_mut().zip(&old).for_each(|(now, old)| *now = 0.5 * (*now + old));
+                markers.read(c, lattice, before[c], who, old);
+                found.iter_mut().zip(&*old).for_each(|(now, old)| *now = 0.5 * (*now + old));
             }
             let mean = mean(BodyId(b));
             let missing = |m: usize| {
-                markers.masses[m] * markers.slip.given[m].dot(&markers.missing(m, &mean, &found, dim))
+                markers.masses[m] * markers.slip.given[m].dot(&markers.missing(m, &mean, &found[..], dim))
             };
             (0..markers.arms.len()).map(missing).sum::<f64>()
         };
-        self.bodies.iter().enumerate().map(lost).sum()
+        all.iter().enumerate().map(lost).sum()
     }
 
     fn surface_work(&self, bodies: &dyn Kinematics) -> f64 {

@@ -3,8 +3,8 @@ use crate::build::BuildError;
 use crate::setup::{ForcingChoice, ModelChoice, ScalarSetup, ScaleChoice, Setup};
 use coupling::Walled;
 use fv_mesh::{
-    BodyForce, Boussinesq, CartesianGrid, Field, FlowError, Hooked, Hooks, Modelled, Projection, Scalar,
-    ScalarTransport, Sides, TransportParams, Velocity,
+    BodyForce, Boussinesq, CartesianGrid, Diffusion, Field, FlowError, Hooked, Hooks, Modelled, Projection,
+    Scalar, ScalarTransport, Sides, TransportParams, Velocity,
 };
 use ibm::{Given, IbmError, ImmersedScalar, StaticBodies, WallDistance};
 use interfaces::{Bodies, BodyId, Checkpoint, Closure, Kinematics, Lattice, RestartError, SolveError};
@@ -187,6 +187,10 @@ impl Setup {
             }
             scalar.set(value);
             let held = setup.bodies.as_ref().map(|_| ImmersedScalar::new(Given::Value));
+            if held.is_some() {
+                // Surface cells get values beyond the surface's: near its limit, explicit diffusion is unstable with them.
+                scalar = scalar.with_diffusion(Diffusion::Implicit);
+            }
             let mut one = Carried { scalar, setup: setup.clone(), held };
             one.place(&lattice, &all.bodies)?;
             one.hold(&all.bodies, 0.0);

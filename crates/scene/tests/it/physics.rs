@@ -146,7 +146,11 @@ fn a_warm_disc_that_moves_warms_as_one_in_a_stream() {
     let (moving, most) = heat("moves", &["bodies.0.motion={type='prescribed', shift=['-0.5*t', 0.0]}"]);
     let (stream, _) = heat("stream", &["initial.velocity=[0.5, 0.0]"]);
     let (still, _) = heat("still", &[]);
-    assert!((moving / stream - 1.0).abs() < 0.02, "{moving} {stream} {still}");
+    assert!((moving / stream - 1.0).abs() < 0.01, "{moving} {stream} {still}");
+    // Near the limit of explicit diffusion, which does not bear what holds the surface.
+    let (finer, most_of_finer) =
+        heat("finer", &["initial.velocity=[0.5, 0.0]", "grid.cells=[128, 64]", "time.dt=2.5e-3"]);
+    assert!((stream / finer - 1.0).abs() < 0.05 && most_of_finer < 1.6, "{stream} {finer} {most_of_finer}");
     // The wake takes more than conduction, and nothing is warmer than the disc but for the profile's end inside.
     assert!(moving > 1.2 * still && most < 1.6, "{moving} {still} {most}");
 }

@@ -142,17 +142,22 @@ fn a_warm_disc_that_moves_warms_as_one_in_a_stream() {
         // Less what is in the disc.
         (2.0 * mean - 1.2 * std::f64::consts::PI * 0.15_f64.powi(2), most)
     };
-    // By 16 cells.
-    let (moving, most) = heat("moves", &["bodies.0.motion={type='prescribed', shift=['-0.5*t', 0.0]}"]);
-    let (stream, _) = heat("stream", &["initial.velocity=[0.5, 0.0]"]);
+    let [to_left, to_right] =
+        ["bodies.0.motion={type='prescribed', shift=['-0.5*t', 0.0]}", "initial.velocity=[0.5, 0.0]"];
     let (still, _) = heat("still", &[]);
-    assert!((moving / stream - 1.0).abs() < 0.01, "{moving} {stream} {still}");
-    // Near the limit of explicit diffusion, which does not bear what holds the surface.
-    let (finer, most_of_finer) =
-        heat("finer", &["initial.velocity=[0.5, 0.0]", "grid.cells=[128, 64]", "time.dt=2.5e-3"]);
-    assert!((stream / finer - 1.0).abs() < 0.05 && most_of_finer < 1.6, "{stream} {finer} {most_of_finer}");
-    // The wake takes more than conduction, and nothing is warmer than the disc but for the profile's end inside.
-    assert!(moving > 1.2 * still && most < 1.6, "{moving} {still} {most}");
+    // The finer steps are near the limit of explicit diffusion, which does not bear what holds the surface.
+    for (fine, off) in [
+        (["time.dt=5e-3", "grid.cells=[64, 32]"], 0.015),
+        (["time.dt=2.5e-3", "grid.cells=[128, 64]"], 0.007),
+    ] {
+        let [(moving, most), (stream, other)] = [("moves", to_left), ("stream", to_right)]
+            .map(|(name, how)| heat(name, &[&fine[..], &[how]].concat()));
+        assert!((moving / stream - 1.0).abs() < off, "{fine:?}: {moving} {stream} {still}");
+        // Nothing is warmer than the disc but for the profile's end inside.
+        assert!(most.max(other) < 1.5, "{fine:?}: {most} {other}");
+        // Conduction alone does not tell the two from each other.
+        assert!((moving - stream).abs() < 0.25 * (moving - still), "{fine:?}: {moving} {stream} {still}");
+    }
 }
 
 /// A steady channel with a wall inside, by k–ω SST: it slows the fluid down, and its drag is told.

@@ -76,7 +76,7 @@ fn a_run_with_a_closure_a_scalar_and_a_ball_goes_on_as_if_it_had_not_stopped() {
 fn parts_make_a_whole_step() {
     let closure = |n| Smagorinsky::new(SmagorinskyConstants::default(), n).unwrap();
     let (mut parts, whole) = (build(closure).flow, build(closure).flow);
-    let Hooked { mut flow, mut hooks } = whole;
+    let Hooked { mut flow, mut hooks, .. } = whole;
     for _ in 0..3 {
         let dt = parts.stable_dt(0.3);
         parts.predict(dt, [0.0; 3]).unwrap();

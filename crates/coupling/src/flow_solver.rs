@@ -1,7 +1,7 @@
 //! What is asked of a flow.
 use fv_mesh::{
     BodyForce, CartesianGrid, ClosureSlot, Field, FlowError, FlowStatistics, Fluid, Hooked, Piso, Projection,
-    ScalarTransport, Sides, Velocity,
+    ScalarTransport, SidePower, Sides, SourceWork, Velocity,
 };
 use ibm::ViscousStep;
 use interfaces::{Bodies, Checkpoint, Vector};
@@ -48,6 +48,8 @@ pub trait FlowSolver<const D: usize>: Checkpoint {
     fn velocity(&self) -> &Velocity<D>;
     /// The same, to be changed.
     fn velocity_mut(&mut self) -> &mut Velocity<D>;
+    /// Component `c` of the velocity at the start of the last step \[m/s\].
+    fn before(&self, c: usize) -> &Field<D>;
     /// The pressure \[Pa\].
     fn pressure(&self) -> &Field<D>;
     /// Component `c` of the velocity at the centres of the cells.
@@ -56,6 +58,16 @@ pub trait FlowSolver<const D: usize>: Checkpoint {
     fn statistics(&mut self) -> FlowStatistics;
     /// Impulse of the bounded sides on the fluid during the last step \[N s\].
     fn wall_impulse(&self) -> Vector;
+    /// What the bounded sides do to the kinetic energy of the fluid, as it is now.
+    fn side_power(&self) -> SidePower;
+    /// What acts on the fluid by itself ([`Hooked`]), the same everywhere, in the last step \[m/s²\].
+    fn own_force(&self) -> [f64; D] {
+        [0.0; D]
+    }
+    /// What else acts on it by itself, in the last step.
+    fn source_work(&self) -> SourceWork {
+        SourceWork::default()
+    }
     /// Time \[s\].
     fn time(&self) -> f64;
     /// Sets the clock exactly.
@@ -116,6 +128,9 @@ macro_rules! forward {
         fn velocity_mut(&mut self) -> &mut Velocity<D> {
             $flow::velocity_mut(self)
         }
+        fn before(&self, c: usize) -> &Field<D> {
+            $flow::before(self, c)
+        }
         fn pressure(&self) -> &Field<D> {
             $flow::pressure(self)
         }
@@ -127,6 +142,9 @@ macro_rules! forward {
         }
         fn wall_impulse(&self) -> Vector {
             $flow::wall_impulse(self)
+        }
+        fn side_power(&self) -> SidePower {
+            $flow::side_power(self)
         }
         fn time(&self) -> f64 {
             $flow::time(self)
@@ -186,6 +204,12 @@ where
     forward!(Hooked);
     fn project(&mut self, dt: f64) -> Result<(), FlowError> {
         Hooked::project(self, dt)
+    }
+    fn own_force(&self) -> [f64; D] {
+        Hooked::own_force(self)
+    }
+    fn source_work(&self) -> SourceWork {
+        Hooked::source_work(self)
     }
     fn follow_walls(&mut self, bodies: &dyn Bodies) -> Result<(), FlowError> {
         Hooked::follow_walls(self, bodies)

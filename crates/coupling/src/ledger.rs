@@ -1,19 +1,32 @@
 //! The books of momentum and energy.
-use crate::particles::Stake;
-use crate::{CouplingError, FlowSolver, Observer, Particles, Simulation, StepInfo, Strategy};
+use crate::particles::{Stake, wrench};
+use crate::{CouplingError, FlowSolver, Immersed, Observer, Particles, Simulation, StepInfo, Strategy};
+use fv_mesh::SidePower;
 use ibm::Forcing;
-use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Vector};
+use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Twist, Vector, VelocityField, Wrench};
 
 /// Keeps, step by step, the momentum of fluid and bodies against the impulses on them, the kinetic
 /// energy against work and dissipation, and the divergence.
 ///
 /// Momentum: P = ρ∫_Ω u dV − ΣI + Σ(mU + δ), with I the fluid inside a body and δ what is on its
-/// way between the two (see [`Particles`]). Impulses: net weight, body force, contacts with walls,
-/// what holds bodies that are not free, and what the box's own walls do to the fluid. Energy: E = ½ρ∫_Ω u² + Σ½(1 − ρ/ρ_s)(mU² + ΩIΩ)
-/// against the work of net weight, body force and contacts less the viscous dissipation ρν∫|∇u|²
-/// (trapezoidal in time) and what the forcing [hides](ibm::Forcing::hidden_dissipation). What bodies bring that are put into the flow, and take along that are taken out, is no residual. (The fluid that a [`MovingWindow`](crate::MovingWindow) leaves behind is, and so is what a [`Hooked`](fv_mesh::Hooked) flow's own hooks do: forces that differ
-/// from place to place, an eddy viscosity. Momentum of a [`Piso`](fv_mesh::Piso) is kept to its tolerances by Euler's scheme,
-/// between walls to what its last correction leaves; by BDF2 it is not a difference of two times, and the books do not close.)
+/// way between the two (see [`Particles`]). Impulses: net weight, forces of the body of the fluid, contacts with walls,
+/// what holds or drives bodies that are not free, what the box's own sides do to the fluid, and an eddy viscosity's friction there.
+///
+/// Energy: E = ½ρ∫_Ω u² + Σ½(1 − ρ/ρ_s)(mU² + ΩIΩ). With v̄ = ½(vⁿ + vⁿ⁺¹) of a body and ū = ½(uⁿ + uⁿ⁺¹) of the fluid a step makes
+///
+/// ```text
+/// ΔE = W + W_sides + Σ v̄·(J_contact + J_held) + Σ [v̄·Δ(I − δ) − Δ½(ρ/ρ_s)(mU² + ΩIΩ)] − D − D_t − (hidden + lost)
+/// hidden + lost = ∫ f_ib·(v̄ − ū) dV dt
+/// ```
+///
+/// W is the work of net weight and forces, W_sides that of the sides, the bracket the [work inside](LedgerReport::inner_work), D = ∫ρν∫|∇u|² dV dt (trapezoidal, as W is), D_t what an eddy viscosity
+/// takes; the last two are what the forcing [hides](ibm::Forcing::hidden_dissipation) of the dissipation, in D, and [loses](ibm::Forcing::inelastic_loss). All are measured by themselves; what is left is of second order in the step for
+/// a [`Projection`](fv_mesh::Projection) with central convection from a smooth start, and else what a scheme takes by itself: upwind convection, Euler's scheme in time, boundary values that jump (first order), forcings that do not tell their loss
+/// ([`Hfdib`](ibm::Hfdib)).
+///
+/// What bodies bring that are put into the flow, and take along that are taken out, is no residual. The fluid that a [`MovingWindow`](crate::MovingWindow) leaves behind is. Momentum of a
+/// [`Piso`](fv_mesh::Piso) is kept to its tolerances by Euler's scheme,
+/// between walls to what its last correction leaves; by BDF2 it is not a difference of two times, and the books do not close. Walls by cut links are not in the books.
 ///
 /// The books open where a run begins. Those of an interrupted run go on, bit for bit, if they are saved beside the simulation and restored
 /// before the next.
@@ -33,9 +46,11 @@ pub struct Ledger {
 struct Books {
     momentum: Vector,
     energy: f64,
-    /// Power of net weight and body force \[W\].
+    /// Power of net weight and uniform forces \[W\].
     power: f64,
     dissipation: f64,
+    /// Of the sides: power of what they carry \[W\], and energy of their own nodes \[J\].
+    sides: [f64; 2],
 }
 
 /// What the books say.
@@ -55,17 +70,139 @@ pub struct LedgerReport {
     pub volume_flow: Vector,
     /// Kinetic energy \[J\] at the start and now.
     pub energy: [f64; 2],
-    /// Work of net weight and body force \[J\].
+    /// Work of net weight and of forces of the body of the fluid, buoyancy for one \[J\].
     pub work: f64,
+    /// Work of the sides of the box \[J\]: what enters and leaves, and walls that move.
+    pub side_work: f64,
+    /// Work of what holds or drives bodies that are not free, and of the motion that surfaces have of their own \[J\].
+    pub driving_work: f64,
+    /// Work of bodies on the fluid inside them beyond what a rigid body would take, and on what is on its way, Σ v̄·Δ(I − δ) − Δ½(ρ/ρ_s)(mU² + ΩIΩ) \[J\]: that fluid lags behind
+    /// bodies that turn, and takes ρVU² of a body put into fluid at rest with the speed U.
+    pub inner_work: f64,
     /// Viscous dissipation \[J\].
     pub dissipation: f64,
+    /// What an eddy viscosity took \[J\].
+    pub eddy_dissipation: f64,
+    /// What the forcing took of the kinetic energy, numerically or where a body meets the fluid with another velocity: see [`Forcing::inelastic_loss`] \[J\].
+    pub forcing_loss: f64,
     /// Work of contacts on the bodies \[J\]: negative while it is stored or lost in them.
     pub contact_work: f64,
     /// Kinetic energy that bodies brought which came, less what those took along that went \[J\].
     pub brought: f64,
-    /// Energy gained − work − contact work + dissipation − brought \[J\].
+    /// Energy gained − all work + both dissipations + the forcing's loss − brought \[J\].
     pub energy_residual: f64,
     residual: Vector,
+}
+
+/// What the books have to know of what is immersed, body by body. Nothing is the answer of what has no part in them.
+pub trait Accounts {
+    /// How many bodies.
+    fn n_accounts(&self) -> usize {
+        0
+    }
+    /// That of body number `b`.
+    fn account(&self, _b: BodyId) -> Account {
+        Account::default()
+    }
+    /// See [`Forcing::hidden_dissipation`].
+    fn hidden_dissipation(&self) -> f64 {
+        0.0
+    }
+    /// See [`Forcing::inelastic_loss`]; the velocity was `before`.
+    fn inelastic_loss(&mut self, _before: &[&[f64]], _velocity: &dyn VelocityField) -> f64 {
+        0.0
+    }
+    /// See [`Forcing::surface_work`].
+    fn surface_work(&self) -> f64 {
+        0.0
+    }
+}
+
+impl Accounts for () {}
+
+/// A body in the books: what it has now, and the impulses on it in the last step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Account {
+    /// None for one that was put in since.
+    serial: Option<u64>,
+    stake: Stake,
+    /// What it brought, if it was put in at the start of the last step.
+    brought: Stake,
+    /// Weight less buoyancy \[N\].
+    weight: Vector,
+    in_transit: f64,
+    contact: Wrench,
+    /// Of what holds or drives it.
+    held: Wrench,
+    /// On the fluid inside it, and what is on its way.
+    inner: Wrench,
+    /// Kinetic energy that the fluid inside would have gained, had it moved with the body \[J\].
+    carried: f64,
+    /// Before and after the step.
+    twists: [Twist; 2],
+}
+
+impl Account {
+    /// What an impulse does to the kinetic energy: its product with the mean velocity.
+    fn work(&self, impulse: Wrench) -> f64 {
+        let [before, after] = self.twists;
+        0.5 * (impulse.force.dot(&(before.linear + after.linear))
+            + impulse.torque.dot(&(before.angular + after.angular)))
+    }
+}
+
+impl<F: Forcing, B: Dynamics, S: Strategy> Accounts for Particles<F, B, S> {
+    fn n_accounts(&self) -> usize {
+        self.bodies.n_bodies()
+    }
+    fn account(&self, b: BodyId) -> Account {
+        Account {
+            serial: self.serial(b),
+            stake: self.stake(b),
+            brought: self.stake_brought(b),
+            weight: self.weight(b),
+            in_transit: self.momentum_in_transit(b).force.norm(),
+            contact: self.bodies.contact_impulse(b),
+            held: self.constraint_impulse(b),
+            inner: self.inner_impulse(b),
+            carried: self.carried(b),
+            twists: [self.twist_before(b), self.bodies.twist(b)],
+        }
+    }
+    fn hidden_dissipation(&self) -> f64 {
+        self.forcing.hidden_dissipation()
+    }
+    fn inelastic_loss(&mut self, before: &[&[f64]], velocity: &dyn VelocityField) -> f64 {
+        let Self { forcing, bodies, states, .. } = self;
+        let mean = |b: BodyId| {
+            let (before, after) = (wrench(states[b.0].before), bodies.twist(b));
+            Twist {
+                linear: 0.5 * (before.force + after.linear),
+                angular: 0.5 * (before.torque + after.angular),
+            }
+        };
+        forcing.inelastic_loss(before, velocity, &*bodies, &mean)
+    }
+    fn surface_work(&self) -> f64 {
+        self.forcing.surface_work(&self.bodies)
+    }
+}
+
+fn accounts(immersed: &impl Accounts) -> impl Iterator<Item = (BodyId, Account)> {
+    (0..immersed.n_accounts()).map(|b| (BodyId(b), immersed.account(BodyId(b))))
+}
+
+/// The volume of the fluid whose velocity along each axis is an unknown \[m³\]: the nodes on bounded sides are not.
+fn moved<const D: usize>(flow: &impl FlowSolver<D>) -> Vector {
+    let grid = flow.grid();
+    Vector::from_fn(|a, _| {
+        if a >= D || flow.sides().periodic(a) {
+            return grid.volume();
+        }
+        let axis = grid.axis(a);
+        let ends = 0.5 * (axis.width(0) + axis.width(axis.cells() - 1));
+        grid.volume() * (1.0 - ends / axis.length())
+    })
 }
 
 impl Ledger {
@@ -78,16 +215,15 @@ impl Ledger {
         &self.report
     }
 
-    fn note_stakes<F: Forcing, B: Dynamics, S: Strategy>(&mut self, particles: &Particles<F, B, S>) {
+    fn note_stakes(&mut self, immersed: &impl Accounts) {
         std::mem::swap(&mut self.stakes, &mut self.last_stakes);
-        let ids = (0..particles.bodies.n_bodies()).map(BodyId);
         self.stakes.clear();
-        self.stakes.extend(ids.filter_map(|b| Some((particles.serial(b)?, particles.stake(b)))));
+        self.stakes.extend(accounts(immersed).filter_map(|(_, one)| Some((one.serial?, one.stake))));
     }
 
     /// What those brought that came since the last books, less what those had that went.
-    fn turnover<F: Forcing, B: Dynamics, S: Strategy>(&mut self, particles: &Particles<F, B, S>) -> Stake {
-        self.note_stakes(particles);
+    fn turnover(&mut self, immersed: &impl Accounts) -> Stake {
+        self.note_stakes(immersed);
         let mut brought = Stake::default();
         // Both lists ascend.
         let mut old = self.last_stakes.iter().peekable();
@@ -97,7 +233,7 @@ impl Ledger {
                 brought.energy -= gone.energy;
             }
             if old.next_if(|(s, _)| s == serial).is_none() {
-                let new = particles.stake_brought(BodyId(b));
+                let new = immersed.account(BodyId(b)).brought;
                 brought.momentum += new.momentum;
                 brought.energy += new.energy;
             }
@@ -109,79 +245,83 @@ impl Ledger {
         brought
     }
 
-    fn balance<const D: usize, F: Forcing, B: Dynamics, S: Strategy, A: FlowSolver<D>>(
-        simulation: &mut Simulation<D, Particles<F, B, S>, A>,
-    ) -> (Books, LedgerReport) {
-        let force = simulation.body_force();
+    fn balance<const D: usize, P: Accounts, A: FlowSolver<D>>(
+        simulation: &mut Simulation<D, P, A>,
+    ) -> (Books, LedgerReport, SidePower) {
+        let force = uniform_force(simulation);
         let flow = simulation.flow.statistics();
-        let (particles, density) = (&simulation.particles, simulation.flow.fluid().density);
+        let (sides, density) = (simulation.flow.side_power(), simulation.flow.fluid().density);
         let mut report = LedgerReport { volume_flow: flow.volume_flow, ..LedgerReport::default() };
+        let free = flow.volume_flow - sides.given_flow;
         let mut books = Books {
-            momentum: density * flow.volume_flow,
+            momentum: density * free,
             energy: flow.kinetic_energy,
-            power: density * force.dot(&flow.volume_flow),
+            power: density * force.dot(&free),
             dissipation: flow.dissipation,
+            sides: [sides.carried, sides.given],
         };
-        for b in (0..particles.bodies.n_bodies()).map(BodyId) {
-            let Stake { momentum, energy } = particles.stake(b);
-            books.momentum += momentum;
-            books.energy += energy;
-            books.power += particles.weight(b).dot(&particles.bodies.twist(b).linear);
-            report.in_transit += particles.momentum_in_transit(b).force.norm();
+        for (_, one) in accounts(&simulation.particles) {
+            books.momentum += one.stake.momentum;
+            books.energy += one.stake.energy;
+            books.power += one.weight.dot(&one.twists[1].linear);
+            report.in_transit += one.in_transit;
         }
         report.divergence = flow.divergence;
-        (books, report)
+        (books, report, sides)
     }
 }
 
-impl<const D: usize, F, B, S, A> Observer<Simulation<D, Particles<F, B, S>, A>> for Ledger
+/// Per mass \[m/s²\], of the last step.
+fn uniform_force<const D: usize, P, A: FlowSolver<D>>(simulation: &Simulation<D, P, A>) -> Vector {
+    let own = simulation.flow.own_force();
+    simulation.body_force() + Vector::from_fn(|a, _| own.get(a).copied().unwrap_or(0.0))
+}
+
+impl<const D: usize, P, A> Observer<Simulation<D, P, A>> for Ledger
 where
-    F: Forcing,
-    B: Dynamics,
-    S: Strategy,
+    P: Accounts + Immersed<D, A>,
     A: FlowSolver<D>,
 {
-    fn begin(&mut self, simulation: &mut Simulation<D, Particles<F, B, S>, A>) {
+    fn begin(&mut self, simulation: &mut Simulation<D, P, A>) {
         if std::mem::take(&mut self.resumed) {
             return;
         }
-        let (books, report) = Self::balance(simulation);
+        let (books, report, _) = Self::balance(simulation);
         self.report = LedgerReport { energy: [books.energy; 2], divergence: 0.0, ..report };
         self.last = Some(books);
         self.note_stakes(&simulation.particles);
     }
 
-    fn step(
-        &mut self,
-        simulation: &mut Simulation<D, Particles<F, B, S>, A>,
-        info: &StepInfo,
-    ) -> Result<(), CouplingError> {
-        let (books, now) = Self::balance(simulation);
+    fn step(&mut self, simulation: &mut Simulation<D, P, A>, info: &StepInfo) -> Result<(), CouplingError> {
+        let (books, now, sides) = Self::balance(simulation);
         let Some(last) = self.last.replace(books) else { return Ok(()) };
         let dt = info.dt;
-        let (flow, particles) = (&simulation.flow, &simulation.particles);
-        let body_force = dt * flow.fluid().density * flow.grid().volume() * simulation.body_force();
-        let walls = flow.wall_impulse();
-        let brought = self.turnover(particles);
+        let (flow, immersed) = (&simulation.flow, &simulation.particles);
+        let body_force = dt * flow.fluid().density * moved(flow).component_mul(&uniform_force(simulation));
+        let (walls, sources) = (flow.wall_impulse(), flow.source_work());
+        let brought = self.turnover(immersed);
         let (mut contacts, mut weight, mut held) = (Vector::zeros(), Vector::zeros(), Vector::zeros());
-        let (mut contact_work, mut sum) = (0.0, 0.0);
-        for b in (0..particles.bodies.n_bodies()).map(BodyId) {
-            let (impulse, twist) = (particles.bodies.contact_impulse(b), particles.bodies.twist(b));
-            contacts += impulse.force;
-            weight += dt * particles.weight(b);
-            held += particles.constraint_impulse(b).force;
-            // What an impulse does to the kinetic energy: its product with the mean velocity.
-            let before = particles.twist_before(b);
-            contact_work += 0.5 * impulse.force.dot(&(before.linear + twist.linear));
-            contact_work += 0.5 * impulse.torque.dot(&(before.angular + twist.angular));
-            sum += impulse.force.norm();
+        let (mut contact_work, mut driving_work, mut inner_work, mut sum) = (0.0, 0.0, 0.0, 0.0);
+        for (_, one) in accounts(immersed) {
+            contacts += one.contact.force;
+            weight += dt * one.weight;
+            held += one.held.force;
+            contact_work += one.work(one.contact);
+            driving_work += one.work(one.held);
+            inner_work += one.work(one.inner) - one.carried;
+            sum += one.contact.force.norm();
         }
-        let hidden = particles.forcing.hidden_dissipation();
-        let impulse = weight + body_force + contacts + walls + held;
-        sum += weight.norm() + body_force.norm() + walls.norm() + held.norm();
+        let impulse = weight + body_force + sources.impulse + contacts + walls + held;
+        sum += weight.norm() + body_force.norm() + sources.impulse.norm() + walls.norm() + held.norm();
         let residual = books.momentum - last.momentum - brought.momentum - impulse;
 
+        let surfaces = immersed.surface_work();
+        let hidden = immersed.hidden_dissipation();
+        let before: [&[f64]; D] = std::array::from_fn(|c| flow.before(c).data());
+        let lost = simulation.particles.inelastic_loss(&before, flow.velocity());
+
         let r = &mut self.report;
+        r.forcing_loss += lost;
         r.residual += residual;
         r.impulses += sum;
         if sum > 0.0 {
@@ -190,23 +330,31 @@ where
         r.momentum_total = r.residual.norm() / r.impulses.max(f64::MIN_POSITIVE);
         r.divergence = r.divergence.max(now.divergence * dt);
         (r.in_transit, r.volume_flow) = (now.in_transit, now.volume_flow);
-        r.work += 0.5 * dt * (last.power + books.power);
+        r.work += 0.5 * dt * (last.power + books.power) + sources.work;
+        r.side_work += 0.5 * dt * (last.sides[0] + books.sides[0]) + dt * sides.pressure;
+        r.side_work += books.sides[1] - last.sides[1];
+        r.driving_work += driving_work + surfaces;
+        r.inner_work += inner_work;
         r.dissipation += 0.5 * dt * (last.dissipation + books.dissipation) + hidden;
+        r.eddy_dissipation += sources.eddy_dissipation;
         r.contact_work += contact_work;
         r.brought += brought.energy;
         r.energy[1] = books.energy;
-        r.energy_residual = r.energy[1] - r.energy[0] - r.work - r.contact_work + r.dissipation - r.brought;
+        let gained = r.energy[1] - r.energy[0] - r.brought;
+        let work = r.work + r.side_work + r.driving_work + r.contact_work + r.inner_work;
+        r.energy_residual = gained - work + r.dissipation + r.eddy_dissipation + r.forcing_loss;
         Ok(())
     }
 }
 
 impl LedgerReport {
     /// All numbers.
-    const LENGTH: usize = 18;
+    const LENGTH: usize = 23;
 
     fn numbers(&self) -> [f64; Self::LENGTH] {
         let Self { divergence, momentum_step, momentum_total, impulses, in_transit, .. } = *self;
         let Self { work, dissipation, contact_work, energy_residual, brought, .. } = *self;
+        let Self { side_work, driving_work, inner_work, eddy_dissipation, forcing_loss, .. } = *self;
         let (flow, [before, now], residual) = (self.volume_flow, self.energy, self.residual);
         [
             divergence,
@@ -227,6 +375,11 @@ impl LedgerReport {
             residual.y,
             residual.z,
             brought,
+            side_work,
+            driving_work,
+            eddy_dissipation,
+            inner_work,
+            forcing_loss,
         ]
     }
     fn of(n: &[f64]) -> Self {
@@ -244,6 +397,11 @@ impl LedgerReport {
             energy_residual: n[13],
             residual: Vector::new(n[14], n[15], n[16]),
             brought: n[17],
+            side_work: n[18],
+            driving_work: n[19],
+            eddy_dissipation: n[20],
+            inner_work: n[21],
+            forcing_loss: n[22],
         }
     }
 }
@@ -253,7 +411,7 @@ impl Checkpoint for Ledger {
         sink("report", &self.report.numbers());
         let last = self.last.map(|l| {
             let p = l.momentum;
-            [p.x, p.y, p.z, l.energy, l.power, l.dissipation]
+            [p.x, p.y, p.z, l.energy, l.power, l.dissipation, l.sides[0], l.sides[1]]
         });
         sink("last", last.as_ref().map_or(&[], |l| &l[..]));
         let row =
@@ -267,11 +425,12 @@ impl Checkpoint for Ledger {
         let stakes = source("stakes").ok_or_else(|| missing("stakes"))?;
         let last = match last {
             [] => None,
-            &[x, y, z, energy, power, dissipation] => {
-                Some(Books { momentum: Vector::new(x, y, z), energy, power, dissipation })
+            &[x, y, z, energy, power, dissipation, carried, given] => {
+                let (momentum, sides) = (Vector::new(x, y, z), [carried, given]);
+                Some(Books { momentum, energy, power, dissipation, sides })
             }
             other => {
-                return Err(RestartError::Length { name: "last".into(), expected: 6, found: other.len() });
+                return Err(RestartError::Length { name: "last".into(), expected: 8, found: other.len() });
             }
         };
         let (rows, rest) = stakes.as_chunks::<5>();

@@ -50,7 +50,7 @@ pub use checkpoint::{CheckpointError, load, previous, save};
 pub use error::CouplingError;
 pub use flow_solver::FlowSolver;
 pub use grains::Grains;
-pub use ledger::{Ledger, LedgerReport};
+pub use ledger::{Account, Accounts, Ledger, LedgerReport};
 pub use moving_window::MovingWindow;
 pub use output::FileOutput;
 pub use particles::{BodyReport, Particles};

@@ -303,6 +303,20 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
             energy: 0.5 * (1.0 - self.displaced(b) / inertia.mass) * s.momentum.dot(&s.before),
         }
     }
+    /// What the momentum of the fluid inside body `b` gained in the last step, less what came to be [on its way](Self::momentum_in_transit): what neither the fluid outside nor
+    /// the body has of the impulses.
+    pub(crate) fn inner_impulse(&self, b: BodyId) -> Wrench {
+        let s = &self.states[b.0];
+        let given = self.last_dt * self.pull(b) + six(self.bodies.contact_impulse(b)) + s.constraint;
+        let gained = self.mass_matrix(b) * self.velocity(b) - s.momentum;
+        wrench(gained - given - six(self.forcing.reaction(b)))
+    }
+    /// Kinetic energy that the fluid inside would have gained, had it moved with the body \[J\]: Δ½(ρ/ρ_s)(mU² + ΩIΩ).
+    pub(crate) fn carried(&self, b: BodyId) -> f64 {
+        let (s, now) = (&self.states[b.0], self.velocity(b));
+        let gained = now.dot(&(self.mass_matrix(b) * now)) - s.momentum.dot(&s.before);
+        0.5 * self.displaced(b) / self.bodies.inertia(b).mass * gained
+    }
     /// Velocity of body `b` before the last step.
     pub(crate) fn twist_before(&self, b: BodyId) -> Twist {
         let Wrench { force: linear, torque: angular } = wrench(self.states[b.0].before);

@@ -4,7 +4,7 @@ use crate::grid::GHOSTS;
 use crate::metrics::Metrics;
 use crate::per_dimension::per_dimension;
 use crate::statistics::{self, Measure};
-use crate::{CartesianGrid, Field, FlowError, FlowStatistics, Fluid, Side, Sides, Velocity};
+use crate::{CartesianGrid, Field, FlowError, FlowStatistics, Fluid, Side, SidePower, Sides, Velocity};
 use interfaces::RestartError;
 
 /// A fluid in a box: its sides, velocity and pressure, and the clock.
@@ -153,6 +153,12 @@ impl<const D: usize> FlowState<D> {
         self.measure.of(&self.grid, &self.metrics, &self.velocity.components, fluid, &mut self.row)
     }
 
+    /// What the bounded sides do to the kinetic energy.
+    pub(crate) fn side_power(&self) -> SidePower {
+        let Self { grid, metrics, velocity, pressure, fluid, .. } = self;
+        self.measure.side_power(grid, metrics, &velocity.components, pressure, *fluid)
+    }
+
     /// Hands velocity, pressure, sides and clock to `sink`.
     pub(crate) fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         for (c, component) in self.velocity.components.iter().enumerate() {
@@ -219,6 +225,10 @@ macro_rules! show_state {
         /// Sums and extremes of the velocity, as it is now.
         pub fn statistics(&mut self) -> $crate::FlowStatistics {
             self.state.statistics()
+        }
+        /// What the bounded sides do to the kinetic energy of the fluid, as it is now.
+        pub fn side_power(&self) -> $crate::SidePower {
+            self.state.side_power()
         }
         /// The grid.
         pub fn grid(&self) -> &$crate::CartesianGrid<D> {

@@ -1,7 +1,7 @@
 //! A flow together with what acts on it.
 use crate::{
     BodyForce, CartesianGrid, ClosureSlot, Field, FlowError, FlowStatistics, Fluid, Hooks, Projection,
-    ScalarTransport, Sides, Velocity,
+    ScalarTransport, SidePower, Sides, SourceWork, Velocity,
 };
 use interfaces::{Bodies, Checkpoint, RestartError, Vector};
 
@@ -30,6 +30,8 @@ pub struct Hooked<const D: usize, B = (), C = (), S = ()> {
     pub flow: Projection<D>,
     /// What acts on it.
     pub hooks: Hooks<B, (), C, S>,
+    /// The part of the hooks' force that is the same everywhere, of the last step.
+    own: [f64; D],
 }
 
 impl<const D: usize, B, C, S> Hooked<D, B, C, S>
@@ -40,7 +42,7 @@ where
 {
     /// The two together.
     pub fn new(flow: Projection<D>, hooks: Hooks<B, (), C, S>) -> Self {
-        Self { flow, hooks }
+        Self { flow, hooks, own: [0.0; D] }
     }
 
     /// First part of a step of `dt` \[s\] under `force` per mass \[m/s²\] and the hooks' own: scalars and velocity move on.
@@ -48,8 +50,16 @@ where
     /// # Errors
     /// See [`Projection::predict`], and what the hooks answer.
     pub fn predict(&mut self, dt: f64, force: [f64; D]) -> Result<(), FlowError> {
-        let own = self.flow.prepare(dt, &mut self.hooks)?;
-        self.flow.predict(dt, std::array::from_fn(|a| force[a] + own[a]))
+        self.own = self.flow.prepare(dt, &mut self.hooks)?;
+        self.flow.predict(dt, std::array::from_fn(|a| force[a] + self.own[a]))
+    }
+    /// The part of the hooks' force per mass \[m/s²\] that is the same everywhere, in the last step.
+    pub fn own_force(&self) -> [f64; D] {
+        self.own
+    }
+    /// What else the hooks did in the last step.
+    pub fn source_work(&self) -> SourceWork {
+        self.flow.source_work()
     }
     /// See [`Projection::project`].
     ///
@@ -58,11 +68,12 @@ where
     pub fn project(&mut self, dt: f64) -> Result<(), FlowError> {
         self.flow.project(dt)
     }
-    /// Tells the closure where bodies are that it sees as walls, before a step and when they have moved in it.
+    /// Tells scalars and closure where the bodies are, before a step and when they have moved in it.
     ///
     /// # Errors
-    /// What the closure answers.
+    /// What they answer.
     pub fn follow_walls(&mut self, bodies: &dyn Bodies) -> Result<(), FlowError> {
+        self.hooks.scalars.follow(&self.flow, bodies)?;
         self.hooks.closure.follow(&self.flow, bodies)
     }
     /// Ends a step of `dt`; the closure follows the flow.
@@ -106,6 +117,10 @@ where
     pub fn velocity_mut(&mut self) -> &mut Velocity<D> {
         self.flow.velocity_mut()
     }
+    /// Component `c` of the velocity at the start of the last step \[m/s\].
+    pub fn before(&self, c: usize) -> &Field<D> {
+        self.flow.before(c)
+    }
     /// The pressure \[Pa\].
     pub fn pressure(&self) -> &Field<D> {
         self.flow.pressure()
@@ -117,6 +132,10 @@ where
     /// Sums and extremes.
     pub fn statistics(&mut self) -> FlowStatistics {
         self.flow.statistics()
+    }
+    /// What the bounded sides do to the kinetic energy of the fluid, as it is now.
+    pub fn side_power(&self) -> SidePower {
+        self.flow.side_power()
     }
     /// Impulse of the bounded sides on the fluid during the last step \[N s\].
     pub fn wall_impulse(&self) -> Vector {

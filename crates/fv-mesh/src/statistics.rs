@@ -23,17 +23,7 @@ pub struct FlowStatistics {
 const LANES: usize = 8;
 
 #[inline(always)]
-fn lanes(n: usize, mut term: impl FnMut(usize) -> f64) -> f64 {
-    let mut sum = [0.0; LANES];
-    let whole = n - n % LANES;
-    for i in (0..whole).step_by(LANES) {
-        for l in 0..LANES {
-            sum[l] += term(i + l);
-        }
-    }
-    for i in whole..n {
-        sum[i - whole] += term(i);
-    }
+fn total(sum: &[f64; LANES]) -> f64 {
     ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]))
 }
 
@@ -55,7 +45,15 @@ pub(crate) fn worst_cell<const D: usize>(velocity: &[Field<D>; D]) -> [usize; 3]
 /// Are all cells' values finite?
 pub(crate) fn is_finite<const D: usize>(u: &Field<D>) -> bool {
     // 0·x is 0 for every finite x and NaN for the others.
-    (0..u.n_rows()).map(|r| u.row(r).iter().map(|x| 0.0 * x).sum::<f64>()).sum::<f64>() == 0.0
+    let mut check = [0.0; LANES];
+    for r in 0..u.n_rows() {
+        let (whole, rest) = u.row(r).as_chunks::<LANES>();
+        for row in whole {
+            check.iter_mut().zip(row).for_each(|(sum, x)| *sum += 0.0 * x);
+        }
+        check.iter_mut().zip(rest).for_each(|(sum, x)| *sum += 0.0 * x);
+    }
+    total(&check) == 0.0
 }
 
 /// Largest |u_c|/h over all cells, h the distance of the nodes along c \[1/s\], or NaN if any value is not finite.
@@ -110,9 +108,9 @@ impl<const D: usize> WithSimd for LargestRate<'_, D> {
 #[derive(Clone, Debug)]
 pub(crate) struct Measure<const D: usize> {
     /// Per component and axis: width of the part of the control volume inside the box, nodes 0 to n.
-    volumes: [[Vec<f64>; D]; D],
+    pub(crate) volumes: [[Vec<f64>; D]; D],
     /// Per component and axis: 1/distance of node i − 1 and node i, or the part of it that is inside the box.
-    gaps: [[Vec<f64>; D]; D],
+    pub(crate) gaps: [[Vec<f64>; D]; D],
 }
 
 impl<const D: usize> Measure<D> {
@@ -190,26 +188,96 @@ impl<const D: usize> WithSimd for Row<'_, D> {
         let (volumes, gaps) = (&measure.volumes[c], &measure.gaps[c]);
         let o = grid.base() + (1..D).map(|b| at[b] * s[b]).sum::<usize>();
         let n = grid.cells()[0] + 1;
-        let (here, along) = (&u[o..][..n], &volumes[0][..n]);
         let across: f64 = (1..D).map(|b| volumes[b][at[b]]).product();
-        let mut sums = Sums {
-            flow: across * lanes(n, |i| along[i] * here[i]),
-            square: across * lanes(n, |i| along[i] * here[i] * here[i]),
-            gradient: 0.0,
-        };
-        for b in 0..D {
-            let below = &u[o - s[b]..][..n];
-            let difference = |i: usize| (here[i] - below[i]) * (here[i] - below[i]);
-            if b == 0 {
-                let gaps = &gaps[0][..n];
-                sums.gradient += across * lanes(n, |i| gaps[i] * difference(i));
-            } else {
-                let others: f64 = (1..D).filter(|&d| d != b).map(|d| volumes[d][at[d]]).product();
-                let weight = gaps[b][at[b]] * others;
-                sums.gradient += weight * lanes(n, |i| along[i] * difference(i));
+        let mut sums = [[0.0; LANES]; 2];
+        let mut gradients = [[0.0; LANES]; D];
+        let below: [_; D] = std::array::from_fn(|b| u[o - s[b]..][..n].as_chunks::<LANES>());
+        let [here, along, gap] = [&u[o..], &volumes[0], &gaps[0]].map(|x| x[..n].as_chunks::<LANES>());
+        // Whole chunks first: the inner loops fit vector registers.
+        for k in 0..n / LANES {
+            let (here, along) = (&here.0[k], &along.0[k]);
+            for l in 0..LANES {
+                sums[0][l] += along[l] * here[l];
+                sums[1][l] += along[l] * here[l] * here[l];
+            }
+            for (b, (sum, below)) in gradients.iter_mut().zip(&below).enumerate() {
+                let (weight, below) = (if b == 0 { &gap.0[k] } else { along }, &below.0[k]);
+                for l in 0..LANES {
+                    sum[l] += weight[l] * ((here[l] - below[l]) * (here[l] - below[l]));
+                }
             }
         }
-        sums
+        for (l, (here, along)) in here.1.iter().zip(along.1).enumerate() {
+            sums[0][l] += along * here;
+            sums[1][l] += along * here * here;
+            for (b, (sum, below)) in gradients.iter_mut().zip(&below).enumerate() {
+                let weight = if b == 0 { gap.1[l] } else { *along };
+                sum[l] += weight * ((here - below.1[l]) * (here - below.1[l]));
+            }
+        }
+        let gradient = |b: usize| {
+            let others: f64 = (1..D).filter(|&d| d != b).map(|d| volumes[d][at[d]]).product();
+            let weight = if b == 0 { across } else { gaps[b][at[b]] * others };
+            weight * total(&gradients[b])
+        };
+        Sums {
+            flow: across * total(&sums[0]),
+            square: across * total(&sums[1]),
+            gradient: (0..D).map(gradient).sum(),
+        }
+    }
+}
+
+/// Σ V s and Σ V s u over the unknowns of component `c`: what the acceleration `source` does to momentum and energy, per density.
+pub(crate) fn acted<const D: usize>(
+    grid: &CartesianGrid<D>,
+    metrics: &Metrics<D>,
+    c: usize,
+    [source, u]: [&Field<D>; 2],
+) -> [f64; 2] {
+    let first = usize::from(!metrics.periodic[c]);
+    let volume = |b: usize, i: usize| metrics.of(Some(c), b).volume[GHOSTS + i];
+    let mut sums = [0.0; 2];
+    for r in 0..u.n_rows() {
+        let at = kernels::row_place(grid, r);
+        if c > 0 && at[c] < first {
+            continue;
+        }
+        let skip = if c == 0 { first } else { 0 };
+        let (source, u, n) = (&source.row(r)[skip..], &u.row(r)[skip..], u.row(r).len() - skip);
+        let along = &metrics.of(Some(c), 0).volume[GHOSTS + skip..][..n];
+        let across: f64 = (1..D).map(|b| volume(b, at[b])).product();
+        let [impulse, power] = Arch::new().dispatch(Acted { along, source, u });
+        sums[0] += across * impulse;
+        sums[1] += across * power;
+    }
+    sums
+}
+
+/// The same of one row, but for its extent across.
+struct Acted<'a> {
+    along: &'a [f64],
+    source: &'a [f64],
+    u: &'a [f64],
+}
+
+impl WithSimd for Acted<'_> {
+    type Output = [f64; 2];
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> [f64; 2] {
+        let mut sums = [[0.0; LANES]; 2];
+        let mut take = |along: &[f64], source: &[f64], u: &[f64]| {
+            for (l, ((along, source), u)) in along.iter().zip(source).zip(u).enumerate() {
+                sums[0][l] += along * source;
+                sums[1][l] += along * source * u;
+            }
+        };
+        let [along, source, u] = [self.along, self.source, self.u].map(<[f64]>::as_chunks::<LANES>);
+        for ((along, source), u) in along.0.iter().zip(source.0).zip(u.0) {
+            take(along, source, u);
+        }
+        take(along.1, source.1, u.1);
+        sums.each_ref().map(total)
     }
 }
 
@@ -228,11 +296,15 @@ impl<const D: usize> WithSimd for Divergence<'_, D> {
     fn with_simd<S: Simd>(self, _: S) -> f64 {
         let Self { grid, metrics, velocity, r, scratch } = self;
         kernels::divergence_row(grid, metrics, r, velocity, 1.0, scratch);
-        let mut top = 0.0;
-        for d in scratch.iter() {
-            let d = d.abs();
-            top = if d > top { d } else { top };
-        }
-        top
+        let mut top = [0.0; LANES];
+        let mut take = |row: &[f64]| {
+            for (top, d) in top.iter_mut().zip(row) {
+                *top = if d.abs() > *top { d.abs() } else { *top };
+            }
+        };
+        let (whole, rest) = scratch.as_chunks::<LANES>();
+        whole.iter().for_each(|row| take(row));
+        take(rest);
+        top.into_iter().fold(0.0, f64::max)
     }
 }

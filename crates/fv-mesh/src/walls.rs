@@ -52,7 +52,7 @@ pub(crate) fn thrust<const D: usize>(
 
 /// Calls `f` with the storage index of every cell at the lower side of axis `a` whose node of
 /// component `c` is an unknown, its place, and the area across `a` of that node's control volume.
-fn each_boundary_cell<const D: usize>(
+pub(crate) fn each_boundary_cell<const D: usize>(
     grid: &CartesianGrid<D>,
     metrics: &Metrics<D>,
     a: usize,

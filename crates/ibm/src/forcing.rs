@@ -1,6 +1,6 @@
 //! What every immersed boundary offers.
 use crate::IbmError;
-use interfaces::{Bodies, BodyId, Kinematics, Renumbering, Vector, VelocityField, Wrench};
+use interfaces::{Bodies, BodyId, Kinematics, Renumbering, Twist, Vector, VelocityField, Wrench};
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
 /// How the fluid that a forcing drags along resists a change of a body's motion: with generalised
@@ -111,6 +111,24 @@ pub trait Forcing: Send {
 
     /// What was dissipated in the last step where the forcing blurs the flow, besides what the flow itself shows \[J\].
     fn hidden_dissipation(&self) -> f64 {
+        0.0
+    }
+
+    /// What was lost in the last step because the forcing pushes the fluid inelastically \[J\]: what bodies of the `mean` velocity ½(vⁿ + vⁿ⁺¹) gave, ∫ f_ib·v dV dt, less the
+    /// [hidden dissipation](Self::hidden_dissipation) and less what the fluid got, ρ∫ f_ib·½(uⁿ + uⁿ⁺¹) dV dt. The velocity is now `velocity`, and was `before` at the step's start.
+    /// Vanishes with the step, unless the fluid is still to be made to follow at once. Nothing where it is not known.
+    fn inelastic_loss(
+        &mut self,
+        _before: &[&[f64]],
+        _velocity: &dyn VelocityField,
+        _bodies: &dyn Kinematics,
+        _mean: &dyn Fn(BodyId) -> Twist,
+    ) -> f64 {
+        0.0
+    }
+
+    /// Work in the last step of the motion that surfaces have of their own \[J\].
+    fn surface_work(&self, _bodies: &dyn Kinematics) -> f64 {
         0.0
     }
 

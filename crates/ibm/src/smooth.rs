@@ -10,7 +10,7 @@ use crate::forcing::LayerSums;
 use crate::solid_fraction::check;
 use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction, ViscousStep};
 use clearance::Clearance;
-use interfaces::{Bodies, BodyId, Kinematics, Point, Renumbering, Vector, VelocityField, Wrench};
+use interfaces::{Bodies, BodyId, Kinematics, Point, Renumbering, Twist, Vector, VelocityField, Wrench};
 use markers::Markers;
 
 /// Smooth direct forcing (Uhlmann 2005; several passes as in Wang et al. 2008; a smooth [`Kernel`] as Yang et al. 2009) with markers on the surface that make up for what
@@ -338,6 +338,42 @@ impl Forcing for SmoothForcing {
 
     fn hidden_dissipation(&self) -> f64 {
         self.bodies.iter().map(|m| m.slip.hidden(&m.masses)).sum()
+    }
+
+    fn inelastic_loss(
+        &mut self,
+        before: &[&[f64]],
+        velocity: &dyn VelocityField,
+        bodies: &dyn Kinematics,
+        mean: &dyn Fn(BodyId) -> Twist,
+    ) -> f64 {
+        let Self { bodies: all, values: found, outside: [old, ..], .. } = self;
+        let dim = velocity.dim();
+        let lost = |(b, markers): (usize, &Markers)| {
+            for (c, found) in found.iter_mut().enumerate().take(dim) {
+                let (lattice, who) = (velocity.lattice(c), (bodies, BodyId(b)));
+                markers.read(c, lattice, velocity.component(c), who, found);
+                markers.read(c, lattice, before[c], who, old);
+                found.iter_mut().zip(&*old).for_each(|(now, old)| *now = 0.5 * (*now + old));
+            }
+            let mean = mean(BodyId(b));
+            let missing = |m: usize| {
+                markers.masses[m] * markers.slip.given[m].dot(&markers.missing(m, &mean, &found[..], dim))
+            };
+            (0..markers.arms.len()).map(missing).sum::<f64>()
+        };
+        all.iter().enumerate().map(lost).sum()
+    }
+
+    fn surface_work(&self, bodies: &dyn Kinematics) -> f64 {
+        let work = |(b, markers): (usize, &Markers)| {
+            let given = markers.arms.iter().zip(&markers.masses).zip(&markers.slip.given);
+            let power = |((arm, mass), given): ((&Vector, &f64), &Vector)| {
+                mass * given.dot(&bodies.surface_motion(BodyId(b), *arm).unwrap_or_default())
+            };
+            given.map(power).sum::<f64>()
+        };
+        self.bodies.iter().enumerate().map(work).sum()
     }
 
     fn reaction(&self, b: BodyId) -> Wrench {

@@ -121,6 +121,8 @@ pub(crate) struct Look<'a, K> {
     pub(crate) only_end: bool,
     /// Wall seconds spent on states.
     pub(crate) output: f64,
+    /// And on the books.
+    pub(crate) ledger: f64,
 }
 
 impl<K: Checkpoint> Look<'_, K> {
@@ -150,7 +152,9 @@ impl<S: Show, K: Books<S>> Observer<S> for Look<'_, K> {
         self.books.begin(simulation);
     }
     fn step(&mut self, simulation: &mut S, info: &StepInfo) -> Result<(), CouplingError> {
+        let start = Instant::now();
         self.books.step(simulation, info)?;
+        self.ledger += start.elapsed().as_secs_f64();
         let [low, high, courant] = self.extremes.0;
         self.extremes.0 = [low.min(info.dt), high.max(info.dt), courant.max(info.courant)];
         let mut seen = simulation.see(self.setup);

@@ -3,11 +3,11 @@ use crate::build::BuildError;
 use crate::setup::{ForcingChoice, ModelChoice, ScalarSetup, ScaleChoice, Setup};
 use coupling::Walled;
 use fv_mesh::{
-    BodyForce, Boussinesq, CartesianGrid, Field, FlowError, Hooked, Hooks, Modelled, Projection, Scalar,
-    ScalarTransport, Sides, TransportParams, Velocity,
+    BodyForce, Boussinesq, CartesianGrid, Diffusion, Field, FlowError, Hooked, Hooks, Modelled, Projection,
+    Scalar, ScalarTransport, Sides, TransportParams, Velocity,
 };
-use ibm::{Given, ImmersedScalar, StaticBodies, WallDistance};
-use interfaces::{BodyId, Checkpoint, Closure, Kinematics, RestartError};
+use ibm::{Given, IbmError, ImmersedScalar, StaticBodies, WallDistance};
+use interfaces::{Bodies, BodyId, Checkpoint, Closure, Kinematics, Lattice, RestartError, SolveError};
 use turb::{
     Inflow, KEpsilon, KOmega, KOmegaSst, Law, Realizable, RealizableKEpsilon, Smagorinsky,
     SmagorinskyConstants, Sst, StandardKEpsilon, TwoEquation, Wale, WaleConstants, Wilcox, YPlus,
@@ -59,9 +59,13 @@ impl<const D: usize> BodyForce<D, Scalars<D>> for Lift {
 pub(crate) struct Scalars<const D: usize> {
     list: Vec<Carried<D>>,
     bodies: StaticBodies,
+    /// Do bodies move? Then they are told, and hold the scalars when they have moved in the step.
+    moving: bool,
+    /// Time that the scalars have come to without being held yet \[s\].
+    ahead: Option<f64>,
 }
 
-/// A scalar, and what bodies at rest do to it.
+/// A scalar, and what bodies do to it.
 struct Carried<const D: usize> {
     scalar: Scalar<D>,
     setup: ScalarSetup,
@@ -77,12 +81,31 @@ impl<const D: usize> Scalars<D> {
 
 impl<const D: usize> ScalarTransport<D> for Scalars<D> {
     fn advance(&mut self, velocity: &Velocity<D>, time: f64, dt: f64) -> Result<(), FlowError> {
-        let bodies = &self.bodies;
-        self.list.iter_mut().try_for_each(|one| {
+        let Self { list, bodies, moving, ahead } = self;
+        *ahead = moving.then_some(time + dt);
+        list.iter_mut().try_for_each(|one| {
             one.scalar.advance(velocity, time, dt)?;
-            one.hold(bodies, time + dt);
+            if !*moving {
+                one.hold(bodies, time + dt);
+            }
             Ok(())
         })
+    }
+    fn follow(&mut self, flow: &Projection<D>, bodies: &dyn Bodies) -> Result<(), FlowError> {
+        if !self.moving {
+            return Ok(());
+        }
+        let (lattice, time) = (flow.grid().lattice(None, flow.sides()), self.ahead.take());
+        for one in &mut self.list {
+            one.place(&lattice, bodies).map_err(|e| FlowError::Closure {
+                time: flow.time(),
+                source: SolveError::Solver(e.to_string()),
+            })?;
+            if let Some(time) = time {
+                one.hold(bodies, time);
+            }
+        }
+        Ok(())
     }
     fn longest_step(&self) -> f64 {
         self.list.iter().map(|s| s.scalar.longest_step()).fold(f64::INFINITY, f64::min)
@@ -90,7 +113,11 @@ impl<const D: usize> ScalarTransport<D> for Scalars<D> {
 }
 
 impl<const D: usize> Carried<D> {
-    fn hold(&mut self, bodies: &StaticBodies, time: f64) {
+    fn place(&mut self, lattice: &Lattice, bodies: &dyn Bodies) -> Result<(), IbmError> {
+        let storage = self.scalar.field().data().len();
+        self.held.as_mut().map_or(Ok(()), |held| held.place(lattice, storage, bodies))
+    }
+    fn hold(&mut self, bodies: &dyn Bodies, time: f64) {
         if let (Some(held), Some(formula)) = (&self.held, &self.setup.bodies) {
             let value = formula.at(&[time]);
             self.scalar.impose(|field| {
@@ -141,7 +168,9 @@ impl Setup {
 
     fn scalars<const D: usize>(&self, flow: &Projection<D>) -> Result<Scalars<D>, BuildError> {
         let grid = flow.grid();
-        let mut all = Scalars { list: Vec::new(), bodies: self.still() };
+        let mut all =
+            Scalars { list: Vec::new(), bodies: self.still(), moving: self.bodies.any_moves(), ahead: None };
+        let lattice = grid.lattice(None, flow.sides());
         for setup in &self.scalars {
             let sides = std::array::from_fn(|a| setup.sides[a].clone());
             let mut scalar = Scalar::new(grid, sides, setup.diffusivity)?.with_convection(setup.convection);
@@ -157,16 +186,13 @@ impl Setup {
                 }
             }
             scalar.set(value);
-            let held = match &setup.bodies {
-                Some(_) if all.bodies.n_bodies() > 0 => {
-                    let lattice = grid.lattice(None, flow.sides());
-                    let mut held = ImmersedScalar::new(Given::Value);
-                    held.place(&lattice, scalar.field().data().len(), &all.bodies)?;
-                    Some(held)
-                }
-                _ => None,
-            };
+            let held = setup.bodies.as_ref().map(|_| ImmersedScalar::new(Given::Value));
+            if held.is_some() {
+                // Surface cells get values beyond the surface's: near its limit, explicit diffusion is unstable with them.
+                scalar = scalar.with_diffusion(Diffusion::Implicit);
+            }
             let mut one = Carried { scalar, setup: setup.clone(), held };
+            one.place(&lattice, &all.bodies)?;
             one.hold(&all.bodies, 0.0);
             all.list.push(one);
         }

@@ -148,7 +148,12 @@ impl RunResult {
                 "impulses": number(l.impulses),
                 "energy": l.energy,
                 "work": number(l.work),
+                "side_work": number(l.side_work),
+                "driving_work": number(l.driving_work),
+                "inner_work": number(l.inner_work),
                 "dissipation": number(l.dissipation),
+                "eddy_dissipation": number(l.eddy_dissipation),
+                "forcing_loss": number(l.forcing_loss),
                 "contact_work": number(l.contact_work),
                 "brought": number(l.brought),
                 "energy_residual": number(l.energy_residual),
@@ -180,7 +185,7 @@ impl RunResult {
         mut self,
         elapsed: Elapsed,
         threads: usize,
-        output: f64,
+        [output, ledger]: [f64; 2],
         view: &dyn View,
     ) -> Self {
         let modules: serde_json::Map<String, Value> =
@@ -190,6 +195,7 @@ impl RunResult {
             "cpu": elapsed.cpu,
             "threads": threads,
             "output": output,
+            "ledger": ledger,
             "modules": modules,
         });
         self

@@ -186,10 +186,7 @@ impl Stage<'_> {
         S: Strategy + Exchange<D, Physics<D>>,
         Population<L>: Checkpoint,
     {
-        // What acts on the flow beside bodies is not in the books.
-        let hooks =
-            self.setup.turbulence.is_some() || self.setup.scalars.iter().any(|s| s.buoyancy.is_some());
-        self.march(self.setup.simulation(flow, particles)?, (!hooks).then(Ledger::new))
+        self.march(self.setup.simulation(flow, particles)?, Some(Ledger::new()))
     }
 
     pub(crate) fn folder(&self) -> &Path {
@@ -299,6 +296,7 @@ impl Stage<'_> {
             saved: Instant::now(),
             only_end: setup.output.snapshots == 0,
             output: 0.0,
+            ledger: 0.0,
         };
         let summary = coupling::run(&mut simulation, &schedule, &mut look, self.stop);
         let summary = match summary {
@@ -314,7 +312,7 @@ impl Stage<'_> {
         if let Some(progress) = look.progress.take() {
             progress.finish(summary.steps, if summary.stopped { "stopped" } else { "done" });
         }
-        let Look { mut audience, books, extremes, mut log, output, .. } = look;
+        let Look { mut audience, books, extremes, mut log, output, ledger, .. } = look;
         let mut seen = simulation.see(setup);
         if summary.stopped {
             audience.flush()?;
@@ -324,7 +322,7 @@ impl Stage<'_> {
         let stopped = summary.stopped || self.stop.load(Ordering::Relaxed);
         let ending = if stopped { Ending::Stopped } else { Ending::Done };
         log.line(if stopped { "stopped; --resume goes on" } else { "done" })?;
-        let seconds = audience.seconds + output;
+        let seconds = [audience.seconds + output, ledger];
         let result =
             RunResult::new(setup, &mut seen, &extremes, books.report(), &audience, ending, self.folder());
         Ok(result.with_timings(watch.elapsed(), self.options.threads, seconds, &seen).write()?)

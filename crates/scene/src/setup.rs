@@ -221,13 +221,11 @@ impl Setup {
             }
         }
         if let Some(s) = self.scalars.iter().find(|s| s.bodies.is_some())
-            && (self.bodies.any_moves() || self.bodies.list.is_empty())
+            && self.bodies.list.is_empty()
+            && self.bodies.inflows.is_empty()
         {
-            let message = format!(
-                "scalars.{}.bodies is for bodies at rest, and there {}; leave it out, or hold the bodies",
-                s.name,
-                if self.bodies.list.is_empty() { "are no bodies" } else { "is one that moves" }
-            );
+            let message =
+                format!("scalars.{}.bodies is for bodies, and there are none; leave it out", s.name);
             return Err(root.fail("scalars", message));
         }
         if dim == 2 && self.bodies.lubrication.is_some() {

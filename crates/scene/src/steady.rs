@@ -128,7 +128,7 @@ impl Stage<'_> {
         audience.snapshot(&mut seen, 0, &info)?;
         audience.finish(&mut seen, self.stop)?;
         let extremes = Extremes::default();
-        let seconds = audience.seconds;
+        let seconds = [audience.seconds, 0.0];
         let mut result = RunResult::new(setup, &mut seen, &extremes, None, &audience, ending, self.folder());
         result.set("residual", residual.into());
         Ok(result.with_timings(watch.elapsed(), self.options.threads, seconds, &seen).write()?)

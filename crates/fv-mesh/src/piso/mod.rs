@@ -341,6 +341,11 @@ impl<const D: usize> Piso<D> {
         (courant / self.courant(1.0)).min(growth)
     }
 
+    /// Component `c` of the velocity at the start of the last step \[m/s\].
+    pub fn before(&self, c: usize) -> &Field<D> {
+        &self.old[c]
+    }
+
     /// Impulse of the bounded sides on the fluid during the last step \[N s\]: pressure, friction of the fluid's own viscosity, and what flows through.
     /// By it and by forces w₀Pⁿ⁺¹ + w₁Pⁿ + w₂Pⁿ⁻¹ differs from zero ([`weights`](Self::weights)), up to the tolerances and, between walls, what the last correction's neighbours do
     /// not answer any more. What [`impose`](Self::impose) takes is not in it.

@@ -15,6 +15,7 @@ impl<const D: usize> Checkpoint for Projection<D> {
         if let Some(walls) = &self.walls {
             walls.save(sink);
         }
+        self.sources.save(sink);
         sink("implicit", &self.diffusion.last.map(|i| f64::from(u8::from(i))));
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
@@ -32,7 +33,6 @@ impl<const D: usize> Checkpoint for Projection<D> {
         }
         let implicit = RestartError::take(source, "implicit", D)?;
         self.diffusion.last = std::array::from_fn(|a| implicit[a] != 0.0);
-        self.sources.forget();
-        Ok(())
+        self.sources.restore(source)
     }
 }

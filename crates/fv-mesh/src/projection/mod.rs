@@ -18,6 +18,7 @@ use crate::pressure::{Pressure, PressureSolver};
 use crate::{CartesianGrid, Convection, Diffusion, Field, FlowError, Fluid, Side, walls};
 use interfaces::Vector;
 pub use prediction::Prediction;
+pub use sources::SourceWork;
 use sources::Sources;
 
 /// Incompressible flow by incremental pressure projection on a staggered grid:
@@ -41,7 +42,10 @@ pub struct Projection<const D: usize> {
     momentum: Momentum<D>,
     diffusion: SplitDiffusion<D>,
     implicit: ImplicitDiffusion<D>,
+    /// Where the velocity goes in the predictor; then what it was before.
     next: [Field<D>; D],
+    /// φ, where implicit diffusion needs it as a field.
+    correction: Option<Field<D>>,
     tendency: [Field<D>; D],
     sources: Sources<D>,
     pressure_solver: Pressure<D>,
@@ -78,6 +82,7 @@ impl<const D: usize> Projection<D> {
             diffusion: SplitDiffusion::new(fluid.viscosity, wall_stiffness(&state.metrics, grid)),
             implicit: ImplicitDiffusion::new(grid),
             next: field(),
+            correction: None,
             tendency: field(),
             sources: Sources::default(),
             pressure_solver: Pressure::new(grid, &state.boundaries, PressureSolver::Auto)?,
@@ -183,6 +188,7 @@ impl<const D: usize> Projection<D> {
             };
             self.momentum.advance(c, k, velocity, pressure, &mut self.next[c], &mut self.tendency[c]);
         }
+        self.sources.act(density, dt, weights);
         if let Some(sources) = self.sources.take() {
             for (c, source) in sources.iter().enumerate() {
                 kernels::change(grid, weights[0] * dt, source, &mut self.next[c]);
@@ -279,7 +285,7 @@ impl<const D: usize> Projection<D> {
         let implicit = self.diffusion.last;
         if implicit.contains(&true) {
             let [_, nu] = self.diffusion.parts(implicit);
-            let phi = &mut self.next[0];
+            let phi = self.correction.get_or_insert_with(|| Field::zeros(grid));
             kernels::copy_dense(grid, &self.phi, phi);
             boundaries.fill_correction(phi);
             kernels::subtract_second_differences(grid, metrics, nu.map(|nu| 0.5 * dt * nu), phi, pressure);
@@ -340,6 +346,10 @@ impl<const D: usize> Projection<D> {
     show_state!();
     show_clock!();
 
+    /// Component `c` of the velocity at the start of the last step \[m/s\].
+    pub fn before(&self, c: usize) -> &Field<D> {
+        &self.next[c]
+    }
     /// Impulse of the bounded sides on the fluid during the last step \[N s\].
     pub fn wall_impulse(&self) -> Vector {
         self.wall_impulse

@@ -1,6 +1,27 @@
 //! Accelerations that vary in space.
 use super::Projection;
+use crate::flow_state::FlowState;
+use crate::statistics::acted;
 use crate::{CartesianGrid, EddyStress, Field, FlowError};
+use interfaces::{RestartError, Vector};
+
+/// What forces that vary in space and an eddy viscosity ([`Hooks`](crate::Hooks)) did to the fluid in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SourceWork {
+    /// Impulse of both \[N s\]; of an eddy viscosity that of walls whose friction a model gives, less the fluid's own friction there.
+    pub impulse: Vector,
+    /// Work of the forces \[J\].
+    pub work: f64,
+    /// Energy that the eddy viscosity took, less what walls that move gave by its friction \[J\].
+    pub eddy_dissipation: f64,
+}
+
+/// Per density and time: ∫ f dV, ∫ f·u dV of forces, and the same of the eddy viscosity's stress.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Rates {
+    impulse: Vector,
+    power: [f64; 2],
+}
 
 /// What accelerates the fluid in the next predictor step; its fields are made when first needed.
 #[derive(Default)]
@@ -10,9 +31,46 @@ pub(super) struct Sources<const D: usize> {
     given: bool,
     /// The largest Σ ν_t/h² of the last step with a closure \[1/s\].
     eddy_rate: f64,
+    /// Of what is given for the next step, and of what was for the last.
+    rates: [Rates; 2],
+    /// In the last step.
+    pub(super) done: SourceWork,
 }
 
 impl<const D: usize> Sources<D> {
+    /// Takes note of what the step of `dt` does with these weights of the tendencies.
+    pub(super) fn act(&mut self, density: f64, dt: f64, weights: [f64; 2]) {
+        let now = if self.given { self.rates[0] } else { Rates::default() };
+        let [a, b] = weights.map(|w| w * density * dt);
+        let last = std::mem::replace(&mut self.rates, [Rates::default(), now])[1];
+        self.done = SourceWork {
+            impulse: a * now.impulse + b * last.impulse,
+            work: a * now.power[0] + b * last.power[0],
+            eddy_dissipation: -(a * now.power[1] + b * last.power[1]),
+        };
+    }
+
+    /// What a restart needs of it; nothing where nothing acts.
+    pub(super) fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        let Rates { impulse: i, power: [work, stress] } = self.rates[1];
+        if self.rates[1] != Rates::default() {
+            sink("sources", &[i.x, i.y, i.z, work, stress]);
+        }
+    }
+    pub(super) fn restore<'a>(
+        &mut self,
+        source: &dyn Fn(&str) -> Option<&'a [f64]>,
+    ) -> Result<(), RestartError> {
+        self.forget();
+        self.rates = [Rates::default(); 2];
+        if source("sources").is_some()
+            && let &[x, y, z, work, stress] = RestartError::take(source, "sources", 5)?
+        {
+            self.rates[1] = Rates { impulse: Vector::new(x, y, z), power: [work, stress] };
+        }
+        Ok(())
+    }
+
     /// The largest Σ ν_t/h² that is given, or was in the last step \[1/s\].
     pub(super) fn eddy_rate(&self) -> f64 {
         self.eddy_rate
@@ -42,14 +100,36 @@ impl<const D: usize> Sources<D> {
 }
 
 impl<const D: usize> Projection<D> {
+    /// What forces that vary in space and an eddy viscosity did in the last step.
+    pub fn source_work(&self) -> SourceWork {
+        self.sources.done
+    }
+
     /// Lets `f` add accelerations that vary in space \[m/s²\] for the next predictor step.
     pub(crate) fn with_sources(&mut self, f: impl FnOnce(&Self, &mut [Field<D>; D])) {
+        self.gather(0, f);
+    }
+
+    /// The same on the account of forces (0) or of an eddy viscosity (1).
+    fn gather(&mut self, account: usize, f: impl FnOnce(&Self, &mut [Field<D>; D])) {
         let zeros = || Box::new(std::array::from_fn(|_| Field::zeros(&self.state.grid)));
         let mut fields = self.sources.fields.take().unwrap_or_else(zeros);
         if !self.sources.given {
             fields.iter_mut().for_each(|s| s.data_mut().fill(0.0));
+            self.sources.rates[0] = Rates::default();
         }
         f(self, &mut fields);
+        let FlowState { grid, metrics, velocity, .. } = &self.state;
+        let rates = &mut self.sources.rates[0];
+        let other = rates.power[1 - account];
+        *rates = Rates::default();
+        for (c, (source, u)) in fields.iter().zip(&velocity.components).enumerate() {
+            let [impulse, power] = acted(grid, metrics, c, [source, u]);
+            rates.impulse[c] = impulse;
+            rates.power[account] += power;
+        }
+        rates.power[account] -= other;
+        rates.power[1 - account] = other;
         self.sources.fields = Some(fields);
         self.sources.given = true;
     }
@@ -69,7 +149,7 @@ impl<const D: usize> Projection<D> {
         stress.eddy.check(&self.state.grid)?;
         self.sources.eddy_rate = stress.rate;
         self.choose_implicit(dt)?;
-        self.with_sources(|flow, sources| {
+        self.gather(1, |flow, sources| {
             sources.iter_mut().enumerate().for_each(|(c, source)| stress.add(c, &flow.state, source));
         });
         Ok(())

@@ -36,7 +36,11 @@ impl<const D: usize> Projection<D> {
     /// Puts all fields on the box's grid.
     pub(super) fn set_grid(&mut self) {
         let grid = &self.state.grid;
-        self.next.iter_mut().chain(&mut self.tendency).for_each(|field| field.set_grid(grid));
+        self.next
+            .iter_mut()
+            .chain(&mut self.tendency)
+            .chain(&mut self.correction)
+            .for_each(|field| field.set_grid(grid));
         self.sources.set_grid(grid);
     }
 }

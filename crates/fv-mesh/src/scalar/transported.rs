@@ -5,8 +5,10 @@ use super::{ScalarBoundaries, ScalarSide};
 use crate::diffusion::{SplitDiffusion, stiffness};
 use crate::metrics::Metrics;
 use crate::operators::{Carrier, integral};
-use crate::{CartesianGrid, Convection, Diffusion, Field, FlowError, Velocity, kernels, statistics};
-use interfaces::{Checkpoint, RestartError, VelocityField};
+use crate::{
+    CartesianGrid, Convection, Diffusion, Field, FlowError, Projection, Velocity, kernels, statistics,
+};
+use interfaces::{Bodies, Checkpoint, RestartError, VelocityField};
 
 /// Adams–Bashforth is used while a step is at most so many times longer than the last.
 const LONGEST_GROWTH: f64 = 10.0;
@@ -163,6 +165,14 @@ pub trait ScalarTransport<const D: usize> {
 
     /// The longest step \[s\] that diffusion allows.
     fn longest_step(&self) -> f64;
+
+    /// Bodies are where they are now: at the start, and when they have moved in a step, after [`advance`](Self::advance).
+    ///
+    /// # Errors
+    /// [`FlowError::Closure`] for bodies that cannot be represented on this grid.
+    fn follow(&mut self, _flow: &Projection<D>, _bodies: &dyn Bodies) -> Result<(), FlowError> {
+        Ok(())
+    }
 }
 
 impl<const D: usize> ScalarTransport<D> for () {

@@ -114,9 +114,11 @@ impl Markers {
         self.read(c, lattice, u, (bodies, b), values);
         let (twist, per_mass) = (bodies.twist(b), 1.0 / (density * self.cell));
         let (mut impulse, mut moment) = (0.0, Vector::zeros());
-        let weights = self.masses.iter().zip(&self.stencils.relax[c]);
-        for ((value, arm), (mass, relax)) in values.iter_mut().zip(&self.arms).zip(weights) {
-            let given = mass * relax * (twist.at(*arm)[c] - *value);
+        let weights = self.masses.iter().zip(&self.stencils.relax[c]).zip(&mut self.slip.given);
+        for ((value, arm), ((mass, relax), sum)) in values.iter_mut().zip(&self.arms).zip(weights) {
+            let change = relax * (twist.at(*arm)[c] - *value);
+            sum[c] += change;
+            let given = mass * change;
             impulse += given;
             moment += given * arm;
             *value = given * per_mass;

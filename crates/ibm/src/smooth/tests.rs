@@ -29,6 +29,31 @@ fn momentum_is_conserved() {
     assert!((gained + reaction).norm() < 1e-14 * 2.0 * 9.0, "{gained} {reaction}");
 }
 
+/// What bodies give the fluid is got, hidden or lost, and nothing else: an identity, with slip and without.
+#[test]
+fn what_bodies_give_is_got_hidden_or_lost() {
+    for step in [None, Some(ViscousStep { diffused: 1e-4, implicit: Vector::zeros() })] {
+        let (mut bodies, mut velocity, mut forcing) = scene(|x| [x[1].sin(), x[0].cos(), 0.0]);
+        // A surface that runs round the body.
+        bodies.motion = Some(Box::new(|arm| 0.8 * Vector::new(-arm.y, 0.5 * arm.x, 0.0)));
+        forcing.begin(step);
+        forcing.place(&velocity, &bodies).unwrap();
+        let energy =
+            |v: &Collocated| v.lattice.volume([0; 3]) * v.values.iter().flatten().map(|u| u * u).sum::<f64>();
+        let (before, had) = (velocity.values.clone(), energy(&velocity));
+        forcing.force(&mut velocity, &bodies);
+        let (reaction, twist) = (forcing.reaction(BodyId(0)), bodies.twists[0]);
+        let own = forcing.surface_work(&bodies);
+        let given = own - reaction.force.dot(&twist.linear) - reaction.torque.dot(&twist.angular);
+        let before: Vec<&[f64]> = before.iter().map(|u| &u[..]).collect();
+        let lost = forcing.inelastic_loss(&before, &velocity, &bodies, &|_| twist);
+        let (got, hidden) = (energy(&velocity) - had, forcing.hidden_dissipation());
+        assert!((given - got - hidden - lost).abs() < 1e-12 * had, "{given:e} {got:e} {hidden:e} {lost:e}");
+        assert!(own.abs() > 0.01 * given.abs());
+        assert!(lost > 0.1 * got.abs() && (hidden > 0.0) == step.is_some(), "{got:e} {hidden:e} {lost:e}");
+    }
+}
+
 /// More passes leave less slip; fluid that moves with the body is left alone.
 #[test]
 fn passes_remove_the_slip() {

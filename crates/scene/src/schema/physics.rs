@@ -135,7 +135,7 @@ pub(super) static SCALAR: Table = Table {
             "bodies",
             Kind::Formula(&["t"], "its unit"),
             "bodies have no part in it",
-            "Its value on and in all bodies, which have to be at rest.",
+            "Its value on and in all bodies; those that move leave it behind in the cells they come from.",
             "1.0",
         ),
         optional(

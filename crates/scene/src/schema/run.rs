@@ -93,6 +93,13 @@ pub(super) static OUTPUT: Table = Table {
             "The slice that pictures of scenes in space show.",
             "{ normal = \"y\", at = 0.05 }",
         ),
+        optional(
+            "region",
+            Kind::List(&Kind::List(&METRES, 2, 2), 2, 2),
+            "all of it",
+            "The part of the plane or slice that pictures show, from and to, across and up: the cells whose centres are in it.",
+            "[[0.1, 0.4], [0.0, 0.2]]",
+        ),
     ],
 };
 

@@ -3,6 +3,7 @@ use super::Context;
 use crate::problem::Problem;
 use crate::reader::Reader;
 use fv_mesh::{Axis, Side};
+use std::ops::Range;
 use std::path::PathBuf;
 
 /// Files of a run.
@@ -25,6 +26,17 @@ pub(crate) struct Images {
     pub(crate) limits: Option<[f64; 2]>,
     /// Axis that the slice is normal to, and where on it \[m\].
     pub(crate) slice: (usize, f64),
+    /// Its axes across and up, and the cells along them that are shown.
+    pub(crate) axes: [usize; 2],
+    pub(crate) region: [Range<usize>; 2],
+}
+
+impl Images {
+    /// What is shown of the values of a slice, which has so many cells across.
+    pub(crate) fn part(&self, slice: &[f64], across: usize) -> Vec<f64> {
+        let [i, j] = self.region.clone();
+        slice.chunks(across).skip(j.start).take(j.len()).flat_map(|row| &row[i.clone()]).copied().collect()
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -145,12 +157,49 @@ fn images(t: &Reader<'_>, axes: &[Axis], snapshots: usize) -> Result<Images, Pro
             (normal, at)
         }
     };
+    let shown = match slice.0 {
+        0 => [1, 2],
+        1 => [0, 2],
+        _ => [0, 1],
+    };
     Ok(Images {
         every: t.whole("image_every").unwrap_or((snapshots / PICTURES).max(1)),
         quantity,
         limits,
         slice,
+        axes: shown,
+        region: region(t, shown.map(|a| &axes[a]))?,
     })
+}
+
+/// The cells across and up whose centres are in the region; all, if none is given.
+fn region(t: &Reader<'_>, axes: [&Axis; 2]) -> Result<[Range<usize>; 2], Problem> {
+    let mut cells = axes.map(|axis| 0..axis.cells());
+    for ((axis, ends), cells) in axes.iter().zip(t.rows("region")).zip(&mut cells) {
+        let (lower, upper) = (axis.lower(), axis.upper());
+        let &[from, to] = &ends[..] else { continue };
+        if from >= to {
+            return Err(t.fail(
+                "region",
+                format!("from {from} to {to} m is nothing; the second has to be above the first"),
+            ));
+        }
+        if from < lower || to > upper {
+            let box_ = format!("the box reaches from {lower} to {upper} m there");
+            return Err(t.fail("region", format!("from {from} to {to} m is not inside the box: {box_}")));
+        }
+        let count =
+            |below: &dyn Fn(f64) -> bool| (0..axis.cells()).take_while(|&i| below(axis.centre(i))).count();
+        *cells = count(&|x| x < from)..count(&|x| x <= to);
+        if cells.start >= cells.end {
+            let width = axis.width(axis.locate(from).unwrap_or(0));
+            return Err(t.fail(
+                "region",
+                format!("from {from} to {to} m there is no cell's centre; cells are {width} m wide"),
+            ));
+        }
+    }
+    Ok(cells)
 }
 
 /// The key `name`, which becomes a file's.

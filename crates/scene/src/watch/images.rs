@@ -55,19 +55,24 @@ impl ImagesWatch {
     }
 }
 
-/// The axes across and up of a slice normal to an axis at a place on it, and the numbers of its cells, across fastest.
-pub(super) fn slice_of(view: &dyn View, (normal, at): (usize, f64)) -> ([usize; 2], Vec<usize>) {
+/// The numbers of the cells of the slice that is drawn, across fastest.
+pub(super) fn slice_of(view: &dyn View, images: &Images) -> Vec<usize> {
     let n: [usize; 3] = [0, 1, 2].map(|a| if a < view.dim() { view.axis(a).cells() } else { 1 });
-    let [a, b] = match normal {
-        0 => [1, 2],
-        1 => [0, 2],
-        _ => [0, 1],
-    };
+    let ([a, b], (normal, at)) = (images.axes, images.slice);
     let layer = if normal < view.dim() { view.axis(normal).locate(at).unwrap_or(0) } else { 0 };
     let stride = [1, n[0], n[0] * n[1]];
-    let cells = (0..n[b])
-        .flat_map(|j| (0..n[a]).map(move |i| i * stride[a] + j * stride[b] + layer * stride[normal]));
-    ([a, b], cells.collect())
+    (0..n[b])
+        .flat_map(|j| (0..n[a]).map(move |i| i * stride[a] + j * stride[b] + layer * stride[normal]))
+        .collect()
+}
+
+/// The part of it that is shown.
+pub(super) fn section_of<'a>(view: &'a dyn View, images: &Images) -> Section<'a> {
+    let faces = |i: usize| {
+        let (axis, cells) = (view.axis(images.axes[i]), &images.region[i]);
+        &axis.faces()[cells.start..=cells.end]
+    };
+    Section { across: faces(0), up: faces(1), names: images.axes.map(|a| ["x", "y", "z"][a]) }
 }
 
 impl Checkpoint for ImagesWatch {
@@ -94,7 +99,7 @@ impl Watch for ImagesWatch {
         if !index.is_multiple_of(self.images.every) {
             return Ok(());
         }
-        let ([a, b], cells) = slice_of(view, self.images.slice);
+        let (cells, [a, b]) = (slice_of(view, &self.images), self.images.axes);
         let slice = |field: &[f64]| -> Vec<f64> { cells.iter().map(|&c| field[c]).collect() };
         let dim = view.dim();
         let quantity = self.images.quantity.clone();
@@ -126,7 +131,9 @@ impl Watch for ImagesWatch {
                 Self::vorticity(view, [a, b], &u, &v, &mut self.values);
             }
         }
-        self.solid = slice(lambda);
+        let across = view.axis(a).cells();
+        self.values = self.images.part(&self.values, across);
+        self.solid = self.images.part(&slice(lambda), across);
         let signed = match &quantity {
             Quantity::Speed => false,
             Quantity::Field(_) => self.values.iter().any(|v| *v < 0.0),
@@ -148,9 +155,7 @@ impl Watch for ImagesWatch {
             Quantity::Pressure => "pressure in Pa",
             Quantity::Vorticity => "vorticity in 1/s",
         };
-        let names = ["x", "y", "z"];
-        let section =
-            Section { across: view.axis(a).faces(), up: view.axis(b).faces(), names: [names[a], names[b]] };
+        let section = section_of(view, &self.images);
         let solids = view.bodies().n_bodies() > 0;
         let layer = Layer {
             values: &self.values,

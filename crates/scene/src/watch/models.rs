@@ -1,12 +1,12 @@
 //! Reduced models of the run's snapshots.
 mod fitted;
 
-use super::images::slice_of;
+use super::images::{section_of, slice_of};
 use super::{Watch, output};
 use crate::setup::{Images, ModelSetup};
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
-use example_support::picture::section::{Layer, Section};
+use example_support::picture::section::Layer;
 use fitted::{Fitted, Story};
 use interfaces::{BodyId, Checkpoint, Pose, RestartError, SnapshotSink};
 use mor::snapshots::{NpyArray, NpyWriter, SnapshotAxis, SnapshotSource};
@@ -92,23 +92,19 @@ impl ModelsWatch {
     /// The picture: the field between two snapshots that made the model, as it is and as the model has it, and their difference.
     fn draw(&self, view: &dyn View, model: &Followed, story: &Story) -> Result<(), CouplingError> {
         let Some(images) = &self.images else { return Ok(()) };
-        let ([a, b], cells) = slice_of(view, images.slice);
+        let (cells, across) = (slice_of(view, images), view.axis(images.axes[0]).cells());
         let n = view.lattice().shape().iter().product::<usize>();
         // Of vectors their length.
         let slice = |field: &[f64]| -> Vec<f64> {
             let components = field.len() / n;
-            cells
-                .iter()
-                .map(|&c| match components {
-                    1 => field[c],
-                    _ => (0..components).map(|k| field[c + k * n].powi(2)).sum::<f64>().sqrt(),
-                })
-                .collect()
+            let value = |&c: &usize| match components {
+                1 => field[c],
+                _ => (0..components).map(|k| field[c + k * n].powi(2)).sum::<f64>().sqrt(),
+            };
+            images.part(&cells.iter().map(value).collect::<Vec<_>>(), across)
         };
         let off: Vec<f64> = story.predicted.iter().zip(&story.field).map(|(p, f)| p - f).collect();
-        let names = ["x", "y", "z"];
-        let section =
-            Section { across: view.axis(a).faces(), up: view.axis(b).faces(), names: [names[a], names[b]] };
+        let section = section_of(view, images);
         let truth = slice(&story.field);
         let ends = |values: &[f64]| {
             let least = values.iter().copied().fold(0.0, f64::min);

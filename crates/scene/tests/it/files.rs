@@ -1,6 +1,6 @@
 //! Folders that cannot be written to, and states of other scenes.
 use crate::physics::WARM;
-use crate::{folder, quiet, root};
+use crate::{folder, problems, quiet, root, run};
 use scene::{Ending, Options, Scene};
 use std::sync::atomic::AtomicBool;
 
@@ -51,4 +51,38 @@ fn a_full_disk_is_told_and_costs_nothing() {
     let rest = run(&Options { resume: true, ..quiet(&full) }).unwrap().result;
     assert_eq!(all, rest);
     [whole, full].iter().for_each(|out| std::fs::remove_dir_all(out).unwrap());
+}
+
+/// A part of the box in pictures fills them: eight cells across and four up. Parts that are not there are told.
+#[test]
+fn pictures_show_a_part() {
+    let size = |name: &str, more: &[&str]| {
+        let out = folder(name);
+        let once = ["time.end=0.01", "output.images=true", "output.snapshots=1"];
+        run(WARM, &[&once, more].concat(), &quiet(&out));
+        let png = std::fs::read(out.join("images/00001.png")).unwrap();
+        std::fs::remove_dir_all(&out).unwrap();
+        // The header of the first chunk holds width and height.
+        [16, 20].map(|at| f64::from(u32::from_be_bytes(png[at..at + 4].try_into().unwrap())))
+    };
+    let [whole, part] = [size("all", &[]), size("part", &["output.region=[[0.4, 1.2], [0.3, 0.7]]"])];
+    // Plots are at most 1100 wide and 820 high; what is around them is the same.
+    let around = [part[0] - 1100.0, whole[1] - 820.0];
+    let [width, height] = [whole[0] - around[0], part[1] - around[1]];
+    assert!(
+        (width / 820.0 - 4.0 / 3.0).abs() < 2e-3 && (1100.0 / height - 2.0).abs() < 1e-3,
+        "{whole:?} {part:?}"
+    );
+    for (region, told) in [
+        ("[[0.5, 0.25], [0.0, 1.0]]", "from 0.5 to 0.25 m is nothing"),
+        (
+            "[[0.25, 0.75], [0.0, 1.5]]",
+            "from 0 to 1.5 m is not inside the box: the box reaches from 0 to 1.2 m there",
+        ),
+        ("[[0.25, 0.75], [0.2501, 0.2502]]", "there is no cell's centre"),
+        ("[[0.25, 0.75]]", "output.region"),
+    ] {
+        let error = problems(WARM, &format!("output.region={region}"));
+        assert!(error.contains("output.region") && error.contains(told), "{region}: {error}");
+    }
 }

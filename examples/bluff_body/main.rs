@@ -33,10 +33,10 @@ struct Cli {
     /// Cells per diameter beside the body
     #[arg(long, default_value_t = 40)]
     cells: usize,
-    #[arg(long, default_value_t = 1000)]
+    #[arg(long, default_value_t = 1500)]
     iterations: usize,
     /// Relaxation factor of the velocity
-    #[arg(long, default_value_t = 0.95)]
+    #[arg(long, default_value_t = 0.9)]
     relaxation: f64,
     /// How far beside the body the cells are even, in diameters; three times as far behind it
     #[arg(long, default_value_t = 0.3)]

@@ -17,7 +17,7 @@ fn the_layer_of_a_cylinder_separates() {
     let (h, re) = (1.0 / 40.0, 1e4);
     let x = gathered(50.0, h, [9.2, 11.5], 1.1, 0.0).unwrap();
     let both = gathered(40.0, h, [19.2, 20.8], 1.1, 0.0).unwrap();
-    let y = both.faces().iter().map(|y| y - 20.0).filter(|y| *y > -1e-9).collect();
+    let y: Vec<_> = both.faces().iter().map(|y| y - 20.0).filter(|y| *y > -1e-9).collect();
     let grid = CartesianGrid::from_axes([x, Axis::from_faces(y).unwrap()]).unwrap();
     let inlet = Side::Inlet(Profile::Uniform([1.0, 0.0, 0.0]));
     let sides = [[inlet, Side::PressureOutlet(0.0)], Side::FreeSlip.both()];

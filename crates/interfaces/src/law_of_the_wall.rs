@@ -7,7 +7,7 @@
 /// u+ = ln(1 + κy+)/κ + ln(E/κ)/κ (1 − e^(−y+/11) − y+/11 e^(−y+/3))
 /// ```
 ///
-/// Far out this is ln(E y+)/κ, which is 3 % more at y+ 30 and 29 % at 11.
+/// Far out this is ln(E y+)/κ, which is 2 % more at y+ 30 and 29 % at 11.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LawOfTheWall {
     /// von Kármán's constant κ.

@@ -13,6 +13,7 @@ pub(super) struct Gradients<const D: usize> {
     terms: Vec<Term<D>>,
     /// Places on walls: the piece, and how far from it the node is taken to be \[m\].
     walls: Vec<(usize, f64)>,
+    at_walls: Vec<AtWall>,
     pub(super) values: Vec<[f64; D]>,
 }
 
@@ -117,9 +118,11 @@ impl<const D: usize> Gradients<D> {
     /// Looks at the flow; `at_wall`: what is so at a distance from a piece of wall.
     pub(super) fn update(&mut self, u: &Field<D>, at_wall: impl Fn(usize, f64) -> AtWall) {
         let u = u.data();
-        let at_walls: Vec<AtWall> = self.walls.iter().map(|&(piece, y)| at_wall(piece, y)).collect();
+        let Self { nodes, terms, walls, at_walls, values, .. } = self;
+        at_walls.clear();
+        at_walls.extend(walls.iter().map(|&(piece, y)| at_wall(piece, y)));
         let mut starts = [0; 2];
-        for (node, value) in self.nodes.iter().zip(&mut self.values) {
+        for (node, value) in nodes.iter().zip(values) {
             let walls = &at_walls[starts[1]..node.ends[1]];
             let share = walls.iter().map(|w| w.share).sum::<f64>() / walls.len().max(1) as f64;
             *value = [0.0; D];
@@ -127,7 +130,7 @@ impl<const D: usize> Gradients<D> {
                 (0..D).for_each(|a| value[a] += (weight.free[a] + share * weight.more[a]) * u);
             };
             add(&node.own, u[node.index]);
-            for term in &self.terms[starts[0]..node.ends[0]] {
+            for term in &terms[starts[0]..node.ends[0]] {
                 add(
                     &term.weight,
                     match term.point {
@@ -157,7 +160,7 @@ fn fit<const D: usize>(seen: &[(Point, [f64; D])]) -> Vec<[f64; D]> {
     seen.iter().map(|(_, step)| solve(normal, step.map(|s| weight(step) * s))).collect()
 }
 
-fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
+pub(super) fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     (0..D).map(|k| a[k] * b[k]).sum()
 }
 

@@ -228,7 +228,7 @@ impl<const D: usize> SimpleWalls<D> {
             for ghost in &self.ghosts[c] {
                 let there = |&(o, slot, step): &(usize, u32, [f64; D])| {
                     let gradient = &self.gradients[c].values[slot as usize];
-                    data[o] + (0..D).map(|a| gradient[a] * step[a]).sum::<f64>()
+                    data[o] + gradients::dot(gradient, &step)
                 };
                 data[ghost.node] = ghost.from.iter().map(there).sum::<f64>() / ghost.from.len() as f64;
             }

@@ -1,5 +1,5 @@
 //! The momentum equation of control volumes beside walls.
-use super::gradients::Gradients;
+use super::gradients::{Gradients, dot};
 use super::openings::Openings;
 use crate::linear::StencilMatrix;
 use crate::metrics::Metrics;
@@ -351,10 +351,6 @@ impl<const D: usize> Link<D> {
 fn directed<const D: usize>(b: usize, u: [f64; 2], g: [&[f64; D]; 2], step: &[f64; D]) -> f64 {
     let aside: f64 = (0..D).filter(|&a| a != b).map(|a| 0.5 * (g[0][a] + g[1][a]) * step[a]).sum();
     (u[1] - u[0] - aside) / step[b]
-}
-
-fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
-    (0..D).map(|k| a[k] * b[k]).sum()
 }
 
 fn coordinate<const D: usize>(grid: &CartesianGrid<D>, index: usize, a: usize) -> usize {

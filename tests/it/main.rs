@@ -3,6 +3,7 @@ mod bad_input;
 mod bluff_body;
 mod edges;
 mod files;
+mod flow_alone;
 mod frame;
 mod free_bodies;
 mod hooked;

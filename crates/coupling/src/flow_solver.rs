@@ -64,7 +64,9 @@ pub trait FlowSolver<const D: usize>: Checkpoint {
     fn own_force(&self) -> [f64; D] {
         [0.0; D]
     }
-    /// What else acts on it by itself, in the last step.
+    /// Has what else acts on it by itself measured from the next step on.
+    fn keep_books(&mut self) {}
+    /// What that did in the last step.
     fn source_work(&self) -> SourceWork {
         SourceWork::default()
     }
@@ -207,6 +209,9 @@ where
     }
     fn own_force(&self) -> [f64; D] {
         Hooked::own_force(self)
+    }
+    fn keep_books(&mut self) {
+        Hooked::keep_books(self);
     }
     fn source_work(&self) -> SourceWork {
         Hooked::source_work(self)

@@ -1,9 +1,9 @@
 //! The books of momentum and energy.
-use crate::particles::{Stake, wrench};
-use crate::{CouplingError, FlowSolver, Immersed, Observer, Particles, Simulation, StepInfo, Strategy};
+use crate::accounts::accounts;
+use crate::particles::Stake;
+use crate::{Accounts, CouplingError, FlowSolver, Immersed, Observer, Simulation, StepInfo};
 use fv_mesh::SidePower;
-use ibm::Forcing;
-use interfaces::{BodyId, Checkpoint, Dynamics, RestartError, Twist, Vector, VelocityField, Wrench};
+use interfaces::{BodyId, Checkpoint, RestartError, Vector};
 
 /// Keeps, step by step, the momentum of fluid and bodies against the impulses on them, the kinetic
 /// energy against work and dissipation, and the divergence.
@@ -46,7 +46,9 @@ pub struct Ledger {
 struct Books {
     momentum: Vector,
     energy: f64,
-    /// Power of net weight and uniform forces \[W\].
+    /// ρ∫u over what uniform forces act on \[kg m/s\].
+    moved: Vector,
+    /// Power of net weight \[W\].
     power: f64,
     dissipation: f64,
     /// Of the sides: power of what they carry \[W\], and energy of their own nodes \[J\].
@@ -92,104 +94,6 @@ pub struct LedgerReport {
     /// Energy gained − all work + both dissipations + the forcing's loss − brought \[J\].
     pub energy_residual: f64,
     residual: Vector,
-}
-
-/// What the books have to know of what is immersed, body by body. Nothing is the answer of what has no part in them.
-pub trait Accounts {
-    /// How many bodies.
-    fn n_accounts(&self) -> usize {
-        0
-    }
-    /// That of body number `b`.
-    fn account(&self, _b: BodyId) -> Account {
-        Account::default()
-    }
-    /// See [`Forcing::hidden_dissipation`].
-    fn hidden_dissipation(&self) -> f64 {
-        0.0
-    }
-    /// See [`Forcing::inelastic_loss`]; the velocity was `before`.
-    fn inelastic_loss(&mut self, _before: &[&[f64]], _velocity: &dyn VelocityField) -> f64 {
-        0.0
-    }
-    /// See [`Forcing::surface_work`].
-    fn surface_work(&self) -> f64 {
-        0.0
-    }
-}
-
-impl Accounts for () {}
-
-/// A body in the books: what it has now, and the impulses on it in the last step.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Account {
-    /// None for one that was put in since.
-    serial: Option<u64>,
-    stake: Stake,
-    /// What it brought, if it was put in at the start of the last step.
-    brought: Stake,
-    /// Weight less buoyancy \[N\].
-    weight: Vector,
-    in_transit: f64,
-    contact: Wrench,
-    /// Of what holds or drives it.
-    held: Wrench,
-    /// On the fluid inside it, and what is on its way.
-    inner: Wrench,
-    /// Kinetic energy that the fluid inside would have gained, had it moved with the body \[J\].
-    carried: f64,
-    /// Before and after the step.
-    twists: [Twist; 2],
-}
-
-impl Account {
-    /// What an impulse does to the kinetic energy: its product with the mean velocity.
-    fn work(&self, impulse: Wrench) -> f64 {
-        let [before, after] = self.twists;
-        0.5 * (impulse.force.dot(&(before.linear + after.linear))
-            + impulse.torque.dot(&(before.angular + after.angular)))
-    }
-}
-
-impl<F: Forcing, B: Dynamics, S: Strategy> Accounts for Particles<F, B, S> {
-    fn n_accounts(&self) -> usize {
-        self.bodies.n_bodies()
-    }
-    fn account(&self, b: BodyId) -> Account {
-        Account {
-            serial: self.serial(b),
-            stake: self.stake(b),
-            brought: self.stake_brought(b),
-            weight: self.weight(b),
-            in_transit: self.momentum_in_transit(b).force.norm(),
-            contact: self.bodies.contact_impulse(b),
-            held: self.constraint_impulse(b),
-            inner: self.inner_impulse(b),
-            carried: self.carried(b),
-            twists: [self.twist_before(b), self.bodies.twist(b)],
-        }
-    }
-    fn hidden_dissipation(&self) -> f64 {
-        self.forcing.hidden_dissipation()
-    }
-    fn inelastic_loss(&mut self, before: &[&[f64]], velocity: &dyn VelocityField) -> f64 {
-        let Self { forcing, bodies, states, .. } = self;
-        let mean = |b: BodyId| {
-            let (before, after) = (wrench(states[b.0].before), bodies.twist(b));
-            Twist {
-                linear: 0.5 * (before.force + after.linear),
-                angular: 0.5 * (before.torque + after.angular),
-            }
-        };
-        forcing.inelastic_loss(before, velocity, &*bodies, &mean)
-    }
-    fn surface_work(&self) -> f64 {
-        self.forcing.surface_work(&self.bodies)
-    }
-}
-
-fn accounts(immersed: &impl Accounts) -> impl Iterator<Item = (BodyId, Account)> {
-    (0..immersed.n_accounts()).map(|b| (BodyId(b), immersed.account(BodyId(b))))
 }
 
 /// The volume of the fluid whose velocity along each axis is an unknown \[m³\]: the nodes on bounded sides are not.
@@ -248,15 +152,15 @@ impl Ledger {
     fn balance<const D: usize, P: Accounts, A: FlowSolver<D>>(
         simulation: &mut Simulation<D, P, A>,
     ) -> (Books, LedgerReport, SidePower) {
-        let force = uniform_force(simulation);
         let flow = simulation.flow.statistics();
         let (sides, density) = (simulation.flow.side_power(), simulation.flow.fluid().density);
         let mut report = LedgerReport { volume_flow: flow.volume_flow, ..LedgerReport::default() };
-        let free = flow.volume_flow - sides.given_flow;
+        let moved = density * (flow.volume_flow - sides.given_flow);
         let mut books = Books {
-            momentum: density * free,
+            momentum: moved,
+            moved,
             energy: flow.kinetic_energy,
-            power: density * force.dot(&free),
+            power: 0.0,
             dissipation: flow.dissipation,
             sides: [sides.carried, sides.given],
         };
@@ -283,6 +187,7 @@ where
     A: FlowSolver<D>,
 {
     fn begin(&mut self, simulation: &mut Simulation<D, P, A>) {
+        simulation.flow.keep_books();
         if std::mem::take(&mut self.resumed) {
             return;
         }
@@ -297,7 +202,8 @@ where
         let Some(last) = self.last.replace(books) else { return Ok(()) };
         let dt = info.dt;
         let (flow, immersed) = (&simulation.flow, &simulation.particles);
-        let body_force = dt * flow.fluid().density * moved(flow).component_mul(&uniform_force(simulation));
+        let acceleration = uniform_force(simulation);
+        let body_force = dt * flow.fluid().density * moved(flow).component_mul(&acceleration);
         let (walls, sources) = (flow.wall_impulse(), flow.source_work());
         let brought = self.turnover(immersed);
         let (mut contacts, mut weight, mut held) = (Vector::zeros(), Vector::zeros(), Vector::zeros());
@@ -330,7 +236,8 @@ where
         r.momentum_total = r.residual.norm() / r.impulses.max(f64::MIN_POSITIVE);
         r.divergence = r.divergence.max(now.divergence * dt);
         (r.in_transit, r.volume_flow) = (now.in_transit, now.volume_flow);
-        r.work += 0.5 * dt * (last.power + books.power) + sources.work;
+        r.work += 0.5 * dt * (last.power + books.power + acceleration.dot(&(last.moved + books.moved)));
+        r.work += sources.work;
         r.side_work += 0.5 * dt * (last.sides[0] + books.sides[0]) + dt * sides.pressure;
         r.side_work += books.sides[1] - last.sides[1];
         r.driving_work += driving_work + surfaces;
@@ -410,8 +317,8 @@ impl Checkpoint for Ledger {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         sink("report", &self.report.numbers());
         let last = self.last.map(|l| {
-            let p = l.momentum;
-            [p.x, p.y, p.z, l.energy, l.power, l.dissipation, l.sides[0], l.sides[1]]
+            let (p, m) = (l.momentum, l.moved);
+            [p.x, p.y, p.z, m.x, m.y, m.z, l.energy, l.power, l.dissipation, l.sides[0], l.sides[1]]
         });
         sink("last", last.as_ref().map_or(&[], |l| &l[..]));
         let row =
@@ -425,12 +332,12 @@ impl Checkpoint for Ledger {
         let stakes = source("stakes").ok_or_else(|| missing("stakes"))?;
         let last = match last {
             [] => None,
-            &[x, y, z, energy, power, dissipation, carried, given] => {
-                let (momentum, sides) = (Vector::new(x, y, z), [carried, given]);
-                Some(Books { momentum, energy, power, dissipation, sides })
+            &[x, y, z, u, v, w, energy, power, dissipation, carried, given] => {
+                let (momentum, moved) = (Vector::new(x, y, z), Vector::new(u, v, w));
+                Some(Books { momentum, moved, energy, power, dissipation, sides: [carried, given] })
             }
             other => {
-                return Err(RestartError::Length { name: "last".into(), expected: 8, found: other.len() });
+                return Err(RestartError::Length { name: "last".into(), expected: 11, found: other.len() });
             }
         };
         let (rows, rest) = stakes.as_chunks::<5>();

@@ -30,6 +30,7 @@
 //! ```
 #![deny(missing_docs)]
 
+mod accounts;
 mod checkpoint;
 mod error;
 mod flow_solver;
@@ -46,11 +47,12 @@ mod snapshots;
 mod strategy;
 mod walled;
 
+pub use accounts::{Account, Accounts};
 pub use checkpoint::{CheckpointError, load, previous, save};
 pub use error::CouplingError;
 pub use flow_solver::FlowSolver;
 pub use grains::Grains;
-pub use ledger::{Account, Accounts, Ledger, LedgerReport};
+pub use ledger::{Ledger, LedgerReport};
 pub use moving_window::MovingWindow;
 pub use output::FileOutput;
 pub use particles::{BodyReport, Particles};

@@ -57,7 +57,11 @@ where
     pub fn own_force(&self) -> [f64; D] {
         self.own
     }
-    /// What else the hooks did in the last step.
+    /// See [`Projection::keep_books`].
+    pub fn keep_books(&mut self) {
+        self.flow.keep_books();
+    }
+    /// What else the hooks did in the last step, once books are kept.
     pub fn source_work(&self) -> SourceWork {
         self.flow.source_work()
     }

@@ -31,6 +31,8 @@ pub(super) struct Sources<const D: usize> {
     given: bool,
     /// The largest Σ ν_t/h² of the last step with a closure \[1/s\].
     eddy_rate: f64,
+    /// Is what they do measured?
+    counted: bool,
     /// Of what is given for the next step, and of what was for the last.
     rates: [Rates; 2],
     /// In the last step.
@@ -100,7 +102,12 @@ impl<const D: usize> Sources<D> {
 }
 
 impl<const D: usize> Projection<D> {
-    /// What forces that vary in space and an eddy viscosity did in the last step.
+    /// Has what forces that vary in space and an eddy viscosity do measured from the next step on: two sums over the fields.
+    pub fn keep_books(&mut self) {
+        self.sources.counted = true;
+    }
+
+    /// What these did in the last step, once [books are kept](Self::keep_books).
     pub fn source_work(&self) -> SourceWork {
         self.sources.done
     }
@@ -119,6 +126,15 @@ impl<const D: usize> Projection<D> {
             self.sources.rates[0] = Rates::default();
         }
         f(self, &mut fields);
+        if self.sources.counted {
+            self.count(account, &fields);
+        }
+        self.sources.fields = Some(fields);
+        self.sources.given = true;
+    }
+
+    /// Puts on an account what `fields` do beyond what is on the other one.
+    fn count(&mut self, account: usize, fields: &[Field<D>; D]) {
         let FlowState { grid, metrics, velocity, .. } = &self.state;
         let rates = &mut self.sources.rates[0];
         let other = rates.power[1 - account];
@@ -130,8 +146,6 @@ impl<const D: usize> Projection<D> {
         }
         rates.power[account] -= other;
         rates.power[1 - account] = other;
-        self.sources.fields = Some(fields);
-        self.sources.given = true;
     }
 
     /// Takes back accelerations that no predictor step used.

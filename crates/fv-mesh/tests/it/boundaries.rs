@@ -39,6 +39,23 @@ fn a_developed_flow_passes_both_outlets() {
     }
 }
 
+/// In steady flow what the sides do is what viscosity takes: the pressure, and the profile that enters otherwise than it leaves.
+#[test]
+fn the_work_of_inlets_and_outlets_is_what_viscosity_takes() {
+    for outlet in [Side::ConvectiveOutlet, Side::PressureOutlet(7.0)] {
+        let grid = CartesianGrid::new([24, 16], [3.0, 1.0]).unwrap();
+        let inlet = Side::Inlet(Profile::Uniform([1.0, 0.0, 0.0]));
+        let mut flow = Projection::new(grid, [[inlet, outlet.clone()], Side::WALL.both()], OIL).unwrap();
+        while flow.time() < 40.0 {
+            flow.advance(flow.stable_dt(0.4), [0.0; 2]).unwrap();
+        }
+        let (sides, taken) = (flow.side_power(), flow.statistics().dissipation);
+        let left = sides.carried + sides.pressure - taken;
+        assert!(left.abs() < 1e-9 * taken, "{outlet:?}: {left:e} of {taken} {sides:?}");
+        assert!(sides.carried.abs() > 0.05 * taken && sides.pressure > 0.5 * taken, "{taken} {sides:?}");
+    }
+}
+
 #[test]
 fn two_given_pressures_drive_a_channel() {
     let grid = CartesianGrid::new([24, 16], [3.0, 1.0]).unwrap();

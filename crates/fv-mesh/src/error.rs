@@ -112,6 +112,14 @@ pub enum FlowError {
         /// Why.
         source: interfaces::SolveError,
     },
+    /// A scalar could not be held where bodies are.
+    #[error("a scalar could not be held where the bodies are at t = {time} s: {source}")]
+    Scalar {
+        /// When \[s\].
+        time: f64,
+        /// Why.
+        source: interfaces::SolveError,
+    },
     /// A parameter of an algorithm makes no sense.
     #[error("{name} is {value}; it must be {range}")]
     Parameter {

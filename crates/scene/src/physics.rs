@@ -97,7 +97,7 @@ impl<const D: usize> ScalarTransport<D> for Scalars<D> {
         }
         let (lattice, time) = (flow.grid().lattice(None, flow.sides()), self.ahead.take());
         for one in &mut self.list {
-            one.place(&lattice, bodies).map_err(|e| FlowError::Closure {
+            one.place(&lattice, bodies).map_err(|e| FlowError::Scalar {
                 time: flow.time(),
                 source: SolveError::Solver(e.to_string()),
             })?;

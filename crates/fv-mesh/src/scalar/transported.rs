@@ -169,7 +169,7 @@ pub trait ScalarTransport<const D: usize> {
     /// Bodies are where they are now: at the start, and when they have moved in a step, after [`advance`](Self::advance).
     ///
     /// # Errors
-    /// [`FlowError::Closure`] for bodies that cannot be represented on this grid.
+    /// [`FlowError::Scalar`] for bodies that cannot be represented on this grid.
     fn follow(&mut self, _flow: &Projection<D>, _bodies: &dyn Bodies) -> Result<(), FlowError> {
         Ok(())
     }

@@ -18,11 +18,14 @@ pub struct LawOfTheWall {
 
 impl Default for LawOfTheWall {
     fn default() -> Self {
-        Self { kappa: 0.41, e: 9.8 }
+        Self::USUAL
     }
 }
 
 impl LawOfTheWall {
+    /// κ = 0.41, E = 9.8.
+    pub const USUAL: Self = Self { kappa: 0.41, e: 9.8 };
+
     /// u+ at y+.
     pub fn u_plus(&self, y_plus: f64) -> f64 {
         self.curve(y_plus).min(y_plus)

@@ -32,7 +32,7 @@ const SPEED: Key = optional(
 const WALLS: Key = optional(
     "walls",
     Kind::Word(&[
-        ("log-law", "the friction of the logarithmic layer"),
+        ("log-law", "the friction of the law of the wall, at any y+"),
         ("no-slip", "viscous friction: cells down to y+ of about 1"),
         ("slip", "none"),
     ]),

@@ -44,7 +44,8 @@ pub enum WallShear {
 
 impl Default for WallFunctions {
     fn default() -> Self {
-        Self { kappa: 0.41, e: 9.8, c_mu: 0.09, beta_1: 0.075, shear: WallShear::Mean }
+        let LawOfTheWall { kappa, e } = LawOfTheWall::USUAL;
+        Self { kappa, e, c_mu: 0.09, beta_1: 0.075, shear: WallShear::Mean }
     }
 }
 

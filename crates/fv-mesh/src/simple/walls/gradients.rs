@@ -73,11 +73,10 @@ impl<const D: usize> Gradients<D> {
         }
         let free = fit(&seen);
         let s = openings.grid.stride()[c];
-        for cell in [node - s, node].into_iter().filter(|_| nearest.is_some()) {
+        for (nearest, cell) in nearest.into_iter().flat_map(|nearest| [(nearest, node - s), (nearest, node)])
+        {
             let Some((piece, wall)) = openings.piece(cell) else { continue };
-            let y = norm2(&to_wall(wall, x))
-                .sqrt()
-                .max(nearest.unwrap_or_default() * openings.extent(cell, wall));
+            let y = norm2(&to_wall(wall, x)).sqrt().max(nearest * openings.extent(cell, wall));
             if y > 0.0 {
                 seen.push((Point::Wall(self.walls.len()), std::array::from_fn(|a| -y * wall.normal[a])));
                 self.walls.push((piece, y));

@@ -29,7 +29,7 @@ const RESOLVED: f64 = 30.0;
 
 impl WallStress {
     /// The usual law of the wall, seen from three quarters of a cell.
-    pub const LAW_OF_THE_WALL: Self = Self::Law { law: LawOfTheWall { kappa: 0.41, e: 9.8 }, distance: 0.75 };
+    pub const LAW_OF_THE_WALL: Self = Self::Law { law: LawOfTheWall::USUAL, distance: 0.75 };
 
     /// The least distance at which gradients see walls, in extents of the cell along the normal; none if they do not.
     pub(super) fn nearest(self) -> Option<f64> {
@@ -210,10 +210,10 @@ impl<const D: usize> Stresses<D> {
         let probe = &self.probes[piece];
         let velocity = probe.velocity[c];
         let speed = self.speed(piece);
-        let WallStress::Law { law, .. } = self.law else { return AtWall { velocity, share: 1.0 } };
-        if speed <= 0.0 {
-            return AtWall { velocity, share: 1.0 };
-        }
+        let law = match self.law {
+            WallStress::Law { law, .. } if speed > 0.0 => law,
+            _ => return AtWall { velocity, share: 1.0 },
+        };
         let plus = speed * y / nu;
         let slip = law.u_plus(plus) - plus * law.slope(plus);
         let share = 1.0 / (1.0 + (speed * probe.half / nu / RESOLVED).powi(2));

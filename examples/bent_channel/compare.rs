@@ -4,6 +4,7 @@ use example_support::Outcome;
 use example_support::picture::Domain;
 use example_support::picture::comparison::{Comparison, Curve, Panel};
 use siltflow::flow::{CartesianGrid, Simple};
+use siltflow::interfaces::WallPiece;
 use std::path::Path;
 
 /// The stations of the reference (`middle` has the name of its angle) and where they are: heights before the bend, parts of it, heights behind it and one.
@@ -49,6 +50,7 @@ fn between(
 struct Probe<'a> {
     flow: &'a Simple<2>,
     eddy: &'a [f64],
+    walls: &'a [WallPiece],
     duct: Duct,
 }
 
@@ -84,6 +86,20 @@ impl Probe<'_> {
         between(grid, self.duct, [false; 2], self.duct.point(s, r), |i, j| self.eddy[i + n * j])
     }
 
+    /// What the inner or the outer wall takes along the duct, over the density \[m²/s²\]: the mean over a tenth of the height.
+    fn friction(&self, s: f64, outer: bool) -> f64 {
+        let (mut sum, mut areas) = (0.0, 0.0);
+        for (wall, traction) in self.walls.iter().zip(self.flow.wall_tractions()) {
+            let [at, r] = self.duct.place([wall.foot.x, wall.foot.y]);
+            if (at - s).abs() < 0.05 && (r > 1.5) == outer {
+                let [t, n] = self.duct.along(s);
+                sum += wall.area * (traction.x * t + traction.y * n);
+                areas += wall.area;
+            }
+        }
+        sum / areas / self.flow.fluid().density
+    }
+
     fn mean_pressure(&self, s: f64) -> f64 {
         let at = |k: usize| {
             let x = self.duct.point(s, 1.0 + (k as f64 + 0.5) / 100.0);
@@ -104,11 +120,26 @@ fn read(duct: Duct, model: &str, station: &str) -> Outcome<Vec<Vec<f64>>> {
     Ok(text.lines().skip(1).map(row).collect::<Result<_, _>>()?)
 }
 
+/// What the wall of a reference takes over the density \[m²/s²\], of the cell beside it: C_μ^¼ √k u κ/ln(E y*).
+fn given_friction(row: &[f64], y: f64, nu: f64) -> f64 {
+    let speed = 0.09_f64.powf(0.25) * row[5].sqrt();
+    speed * row[3] * KAPPA / (E * speed * y / nu).ln()
+}
+
 /// Prints the differences and draws the profiles.
-pub(crate) fn report(flow: &Simple<2>, eddy: &[f64], duct: Duct, model: &str, out: &Path) -> Outcome<()> {
-    let probe = Probe { flow, eddy, duct };
+pub(crate) fn report(
+    flow: &Simple<2>,
+    eddy: &[f64],
+    walls: &[WallPiece],
+    duct: Duct,
+    model: &str,
+    out: &Path,
+) -> Outcome<()> {
+    let probe = Probe { flow, eddy, walls, duct };
     let mut panels = Vec::new();
-    println!("station   U_t off by [% of U_in]   ν_t off by [% of its rms]");
+    println!(
+        "station   U_t off by [% of U_in], ν_t [% of its rms], friction of the inner and the outer wall [%]"
+    );
     for (station, turns) in STATIONS {
         // `in` and `exit` are counted in heights from the ends of the bend.
         let length = 1.5 * duct.bend;
@@ -130,7 +161,14 @@ pub(crate) fn report(flow: &Simple<2>, eddy: &[f64], duct: Duct, model: &str, ou
             de += width * (probe.eddy(s, 1.0 + row[2]) - row[7]).powi(2);
             scale += width * row[7] * row[7];
         }
-        println!("{station:8}  {:.2}  {:.1}", 100.0 * du.sqrt(), 100.0 * (de / scale).sqrt());
+        let friction = [false, true].map(|outer| {
+            let row = &rows[if outer { rows.len() - 1 } else { 0 }];
+            let given = given_friction(row, row[2].min(1.0 - row[2]), flow.fluid().viscosity);
+            100.0 * (probe.friction(s, outer) / given - 1.0)
+        });
+        let [inner, outer] = friction;
+        let (u, e) = (100.0 * du.sqrt(), 100.0 * (de / scale).sqrt());
+        println!("{station:8}  {u:.2}  {e:.1}  {inner:+.1}  {outer:+.1}");
         let line = |f: &dyn Fn(f64) -> f64| {
             (0..=200).map(|k| (f64::from(k) / 200.0, f(1.0 + f64::from(k) / 200.0))).collect()
         };

@@ -1,6 +1,6 @@
 //! The duct: straight, bent by any angle about the origin, straight again; all turned about the origin.
 use siltflow::interfaces::{Aabb, Point, Solid, Vector};
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Everything outside a duct of height 1 m. Before it is turned, it comes along +x at y = −2 … −1, and bends between the radii 1
 /// and 2 about the origin.
@@ -41,6 +41,19 @@ impl Duct {
             [0, 1].map(|a| r * e[a] + (s - length) * t[a])
         })
     }
+    /// How far along the centreline a place in the duct or on its walls is, and at which radius.
+    pub(crate) fn place(&self, x: [f64; 2]) -> [f64; 2] {
+        let [x, y] = self.own(x);
+        let angle = (y.atan2(x) + FRAC_PI_2).rem_euclid(2.0 * PI);
+        let [e, t] = self.end();
+        if x < 0.0 && y < 0.0 {
+            [x, -y]
+        } else if angle < self.bend {
+            [1.5 * angle, x.hypot(y)]
+        } else {
+            [1.5 * self.bend + x * t[0] + y * t[1], x * e[0] + y * e[1]]
+        }
+    }
     /// The way along the duct there.
     pub(crate) fn along(&self, s: f64) -> [f64; 2] {
         let angle = (s / 1.5).clamp(0.0, self.bend);
@@ -48,10 +61,7 @@ impl Duct {
     }
     /// The way along the duct at a place in it.
     pub(crate) fn along_at(&self, x: [f64; 2]) -> [f64; 2] {
-        let [x, y] = self.own(x);
-        let angle =
-            if x < 0.0 && y < 0.0 { 0.0 } else { (y.atan2(x) + FRAC_PI_2).rem_euclid(4.0 * FRAC_PI_2) };
-        self.along(1.5 * angle.min(self.bend))
+        self.along(self.place(x)[0])
     }
     /// Distance from the nearest wall, positive in the fluid.
     pub(crate) fn distance(&self, x: [f64; 2]) -> f64 {
@@ -60,7 +70,7 @@ impl Duct {
         if x <= 0.0 {
             off = off.min((y + 1.5).abs());
         }
-        let angle = (y.atan2(x) + FRAC_PI_2).rem_euclid(4.0 * FRAC_PI_2);
+        let angle = (y.atan2(x) + FRAC_PI_2).rem_euclid(2.0 * PI);
         if angle <= self.bend {
             off = off.min((x.hypot(y) - 1.5).abs());
         }

@@ -171,7 +171,7 @@ fn run<C: Closure>(cli: &Cli, duct: Duct, grid: CartesianGrid<2>, closure: C, na
     println!("{seconds:.1} s, {cost:.2} µs per cell in the fluid and iteration");
     let eddy = model.closure.eddy_viscosity().unwrap_or_default();
     std::fs::create_dir_all(&cli.out)?;
-    compare::report(&flow, eddy, duct, name, &cli.out)?;
+    compare::report(&flow, eddy, &cuts.walls, duct, name, &cli.out)?;
     let centred = |c: usize| -> Vec<f64> {
         let (u, [_, rows]) = (flow.velocity().field(c), grid.cells());
         let mean = |k: usize| {

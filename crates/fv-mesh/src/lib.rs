@@ -36,6 +36,7 @@ mod hooked;
 mod hooks;
 mod implicit;
 mod kernels;
+mod least_squares;
 pub mod linear;
 mod mesh_geometry;
 mod metrics;

@@ -29,6 +29,8 @@ pub struct Equation<'a> {
     pub wall: Option<f64>,
     /// Time step \[s\], implicit Euler from the φ given; `None` for the steady equation.
     pub dt: Option<f64>,
+    /// φ goes like 1/y near walls at distance y, as ω and ε do: what is smooth there is φy.
+    pub inverse: bool,
     /// Under-relaxation α in (0, 1] towards the φ given (Patankar 1980); 1 is none.
     pub relax: f64,
 }

@@ -1,5 +1,6 @@
 //! Implicit transport of cell-centred quantities for turbulence models.
 mod kernels;
+mod near_solids;
 mod sides;
 #[cfg(test)]
 mod tests;
@@ -8,6 +9,7 @@ mod walls;
 
 pub(crate) use wall_faces::WallFaces;
 
+use crate::grid::GHOSTS;
 use crate::kernels::copy_dense;
 use crate::linear::{
     BiCgStabParams, BiCgStabScratch, Dilu, GaussSeidelParams, GaussSeidelScratch, GaussSeidelSweep,
@@ -17,6 +19,7 @@ use crate::operators::{Operators, fill_dense};
 use crate::{CartesianGrid, Convection, Field, FlowError, Sides, Velocity};
 use interfaces::{Equation, SolveError, SolveInfo, Transport};
 use kernels::{DotGradients, Neighbour};
+use near_solids::NearSolids;
 use sides::CellSides;
 
 /// How [`CellTransport`] discretises and solves.
@@ -97,6 +100,7 @@ pub struct CellTransport<const D: usize> {
     /// Axis and storage index of the faces of those cells, and the velocity without what it is on them.
     closed: Vec<(usize, usize)>,
     carrier: Option<Box<Velocity<D>>>,
+    near: Option<NearSolids<D>>,
     bicgstab: BiCgStabScratch,
     gauss_seidel: GaussSeidelScratch,
     /// Γ or a, φ or b, and two terms.
@@ -142,6 +146,7 @@ impl<const D: usize> CellTransport<D> {
             dry: Vec::new(),
             closed: Vec::new(),
             carrier: None,
+            near: None,
             bicgstab: BiCgStabScratch::new(n),
             gauss_seidel: GaussSeidelScratch::new(n),
             fields: std::array::from_fn(|_| Field::zeros(grid)),
@@ -162,22 +167,32 @@ impl<const D: usize> CellTransport<D> {
     pub(crate) fn set_walls(&mut self, dry: Vec<Dry>) {
         let (grid, periodic) = (self.ops.grid(), self.ops.metrics().periodic);
         let (n, s) = (grid.cells(), grid.stride());
-        self.closed.clear();
-        if dry.is_empty() {
-            self.carrier = None;
-        }
-        for &(cell, _) in &dry {
-            let (at, place) = (grid.cell(cell), grid.place(grid.cell(cell)));
-            for a in 0..D {
-                self.closed.extend([(a, place), (a, place + s[a])]);
-                // The same face beyond the other end.
-                if periodic[a] && at[a] == 0 {
-                    self.closed.push((a, place + n[a] * s[a]));
-                }
-                if periodic[a] && at[a] + 1 == n[a] {
-                    self.closed.push((a, place + s[a] - n[a] * s[a]));
-                }
+        let (closed, mut solid) = (&mut self.closed, vec![false; grid.n_cells()]);
+        closed.clear();
+        // The lower face of a cell, at both ends of a periodic axis.
+        let mut close = |a: usize, mut at: [usize; D]| {
+            if periodic[a] {
+                at[a] %= n[a];
             }
+            closed.push((a, grid.place(at)));
+            if periodic[a] && at[a] == 0 {
+                closed.push((a, grid.place(at) + n[a] * s[a]));
+            }
+        };
+        for &(cell, _) in &dry {
+            solid[cell] = true;
+            for a in 0..D {
+                let mut at = grid.cell(cell);
+                close(a, at);
+                at[a] += 1;
+                close(a, at);
+            }
+        }
+        (self.near, self.carrier) = (None, None);
+        if !dry.is_empty() && self.params.scheme != Convection::Upwind {
+            let near = NearSolids::new(&self.ops, &solid);
+            near.faces().for_each(|(a, above)| close(a, grid.cell(above)));
+            self.near = Some(near);
         }
         self.dry = dry;
     }
@@ -345,7 +360,9 @@ impl<const D: usize> CellTransport<D> {
         if second_order {
             self.carry(velocity);
         }
-        let Self { ops, sides, params, volume, matrix, b, fields, carrier, .. } = self;
+        let Self { ops, sides, params, volume, wall_distance, matrix, b, x, fields, carrier, near, .. } =
+            self;
+        let whole = velocity;
         // Else a difference could be taken from what the matrix does not bring.
         let velocity = carrier.as_deref().unwrap_or(velocity);
         let (grid, metrics) = (ops.grid(), ops.metrics());
@@ -370,7 +387,13 @@ impl<const D: usize> CellTransport<D> {
             ops.convection(velocity, carried, params.scheme, high)?;
             ops.convection(velocity, carried, Convection::Upwind, low)?;
             for (i, (high, low)) in high.values().zip(low.values()).enumerate() {
-                let rest = volume[i] * (high - low);
+                x[i] = volume[i] * (high - low);
+            }
+            if let Some(near) = near {
+                let distance = e.inverse.then_some(&wall_distance[..]);
+                near.add(whole, phi, distance, x);
+            }
+            for (i, &rest) in x.iter().enumerate() {
                 if rest < 0.0 && phi[i] > 0.0 {
                     centre[i] -= rest / phi[i];
                 } else {

@@ -308,7 +308,8 @@ impl<L: Law> TwoEquation<L> {
         self.pins.extend_from_slice(&self.layer.pins);
         self.pins.extend_from_slice(&self.given[1]);
         let blend = &self.layer.blends;
-        let equation = Equation { pinned: &self.pins, blend, ..equation(&terms, inlet, relax, dt) };
+        let equation =
+            Equation { pinned: &self.pins, blend, inverse: true, ..equation(&terms, inlet, relax, dt) };
         let solved = tolerant(flow.solve(&equation, &mut self.scale), dt);
         self.work.terms = terms;
         self.floored += floor(&mut self.scale);
@@ -346,7 +347,18 @@ impl<L: Law> TwoEquation<L> {
 
 fn equation(terms: &[Vec<f64>; 3], inlet: f64, relax: f64, dt: Option<f64>) -> Equation<'_> {
     let [diffusivity, source, sink] = terms;
-    Equation { diffusivity, source, sink, pinned: &[], blend: &[], inlet, wall: None, dt, relax }
+    Equation {
+        diffusivity,
+        source,
+        sink,
+        pinned: &[],
+        blend: &[],
+        inlet,
+        wall: None,
+        dt,
+        inverse: false,
+        relax,
+    }
 }
 
 /// `beside` a wall, `own` of the model: (1 − free) of the first and the rest of the second.

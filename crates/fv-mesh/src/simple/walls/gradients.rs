@@ -1,6 +1,8 @@
 //! Gradients beside walls.
 use super::openings::Openings;
 use crate::Field;
+pub(super) use crate::least_squares::dot;
+use crate::least_squares::{gradient_weights, norm2};
 use interfaces::WallPiece;
 use std::collections::HashMap;
 
@@ -71,6 +73,8 @@ impl<const D: usize> Gradients<D> {
             let y = openings.node(c, other);
             seen.push((Point::Node(other), std::array::from_fn(|a| y[a] - x[a])));
         }
+        let fit =
+            |seen: &[(Point, [f64; D])]| gradient_weights(&seen.iter().map(|s| s.1).collect::<Vec<_>>());
         let free = fit(&seen);
         let s = openings.grid.stride()[c];
         for (nearest, cell) in nearest.into_iter().flat_map(|nearest| [(nearest, node - s), (nearest, node)])
@@ -143,34 +147,10 @@ impl<const D: usize> Gradients<D> {
     }
 }
 
-/// What velocities at steps from a node, less the one there, add to the gradient.
-fn fit<const D: usize>(seen: &[(Point, [f64; D])]) -> Vec<[f64; D]> {
-    let scale = seen.iter().map(|t| norm2(&t.1)).fold(0.0, f64::max);
-    let weight = |step: &[f64; D]| 1.0 / norm2(step).max(1e-2 * scale);
-    let mut normal = [[0.0; D]; D];
-    for (_, step) in seen {
-        for a in 0..D {
-            (0..D).for_each(|b| normal[a][b] += weight(step) * step[a] * step[b]);
-        }
-    }
-    // Where nodes are on one line the gradient across it is none.
-    let trace: f64 = (0..D).map(|a| normal[a][a]).sum();
-    (0..D).for_each(|a| normal[a][a] += 1e-9 * trace + f64::MIN_POSITIVE);
-    seen.iter().map(|(_, step)| solve(normal, step.map(|s| weight(step) * s))).collect()
-}
-
-pub(super) fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
-    (0..D).map(|k| a[k] * b[k]).sum()
-}
-
 /// From `x` to the wall.
 pub(super) fn to_wall<const D: usize>(wall: &WallPiece, x: [f64; D]) -> [f64; D] {
     let y: f64 = (0..D).map(|a| (x[a] - wall.foot[a]) * wall.normal[a]).sum();
     std::array::from_fn(|a| -y.max(0.0) * wall.normal[a])
-}
-
-fn norm2<const D: usize>(x: &[f64; D]) -> f64 {
-    x.iter().map(|x| x * x).sum()
 }
 
 /// The block of nodes around one, itself included.
@@ -188,24 +168,4 @@ pub(super) fn around<const D: usize>(
         }
         (node as isize + offset) as usize
     })
-}
-
-/// Solves a small symmetric positive system.
-fn solve<const D: usize>(mut m: [[f64; D]; D], mut b: [f64; D]) -> [f64; D] {
-    for k in 0..D {
-        for i in k + 1..D {
-            let factor = m[i][k] / m[k][k];
-            for j in k..D {
-                m[i][j] -= factor * m[k][j];
-            }
-            b[i] -= factor * b[k];
-        }
-    }
-    for k in (0..D).rev() {
-        for j in k + 1..D {
-            b[k] -= m[k][j] * b[j];
-        }
-        b[k] /= m[k][k];
-    }
-    b
 }

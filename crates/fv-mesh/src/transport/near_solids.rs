@@ -1,0 +1,233 @@
+//! Convection near cells without fluid.
+use crate::Velocity;
+use crate::grid::GHOSTS;
+use crate::least_squares::gradient_weights;
+use crate::operators::Operators;
+
+/// Faces of cells that are at most as many steps from one without fluid are near it.
+const LAYERS: u8 = 4;
+/// Centres nearer to the wall than this share of a cell are taken to be there, as by the rows of walls.
+const NEAREST: f64 = 0.3;
+
+/// Convection of second order through the faces near cells without fluid: φ_f = φ + s·(x_f − x) from the side that the flow comes
+/// from, s the gradient by least squares over the cells with fluid around. Through a face of a cell without fluid comes what the
+/// cell on its other side says: so a field that changes across a wall only is not changed by a flow along it, wherever the wall
+/// lies on the grid.
+///
+/// What goes like 1/y at distance y from a wall changes too much from cell to cell for that. There φy is interpolated, and y:
+/// u·∇φ = (1/y) u·∇(φy) − (φ/y) u·∇y.
+#[derive(Clone, Debug)]
+pub(super) struct NearSolids<const D: usize> {
+    faces: Vec<Face>,
+    cells: Vec<Near<D>>,
+    /// Cells around, by their dense numbers, and their weights.
+    terms: Vec<(usize, [f64; D])>,
+    /// Values and gradients in the cells: of what is interpolated, and of y.
+    carried: Vec<(f64, [f64; D])>,
+    distance: Vec<(f64, [f64; D])>,
+    /// What is interpolated, in all cells.
+    dense: Vec<f64>,
+}
+
+/// A face, and the cells below and above it: their places in the list, and how far from their centres it is \[m\].
+#[derive(Clone, Debug)]
+struct Face {
+    axis: usize,
+    /// The cell above it, by its dense number, and its own storage index.
+    above: usize,
+    index: usize,
+    area: f64,
+    sides: [Option<(usize, f64)>; 2],
+}
+
+#[derive(Clone, Debug)]
+struct Near<const D: usize> {
+    /// Dense number.
+    cell: usize,
+    /// End of its terms.
+    end: usize,
+    width: [f64; D],
+}
+
+/// The neighbour of a cell along an axis.
+fn beside<const D: usize>(ops: &Operators<D>, mut at: [usize; D], axis: usize, up: bool) -> Option<usize> {
+    let n = ops.grid().cells()[axis];
+    at[axis] = match (at[axis], up) {
+        (0, false) if ops.metrics().periodic[axis] => n - 1,
+        (0, false) => return None,
+        (i, true) if i + 1 == n => {
+            if !ops.metrics().periodic[axis] {
+                return None;
+            }
+            0
+        }
+        (i, true) => i + 1,
+        (i, false) => i - 1,
+    };
+    Some(ops.grid().index(at))
+}
+
+/// How many steps cells are from one without fluid, up to one more than counts.
+fn layers<const D: usize>(ops: &Operators<D>, dry: &[bool]) -> Vec<u8> {
+    let mut layer: Vec<u8> = dry.iter().map(|&dry| if dry { 0 } else { u8::MAX }).collect();
+    let mut front: Vec<usize> = (0..layer.len()).filter(|&c| dry[c]).collect();
+    for step in 1..=LAYERS {
+        let mut next = Vec::new();
+        for &cell in &front {
+            for (axis, up) in (0..D).flat_map(|a| [(a, false), (a, true)]) {
+                if let Some(other) = beside(ops, ops.grid().cell(cell), axis, up)
+                    && layer[other] == u8::MAX
+                {
+                    layer[other] = step;
+                    next.push(other);
+                }
+            }
+        }
+        front = next;
+    }
+    layer
+}
+
+impl<const D: usize> NearSolids<D> {
+    pub(super) fn new(ops: &Operators<D>, dry: &[bool]) -> Self {
+        let grid = ops.grid();
+        let layer = layers(ops, dry);
+        let near = |cell: usize| (1..=LAYERS).contains(&layer[cell]);
+        let mut new = Self {
+            faces: Vec::new(),
+            cells: Vec::new(),
+            terms: Vec::new(),
+            carried: Vec::new(),
+            distance: Vec::new(),
+            dense: vec![0.0; dry.len()],
+        };
+        let mut places = vec![usize::MAX; dry.len()];
+        for upper in 0..dry.len() {
+            let at = grid.cell(upper);
+            for axis in 0..D {
+                let Some(lower) = beside(ops, at, axis, false) else { continue };
+                if !near(lower) && !near(upper) {
+                    continue;
+                }
+                let sides = [lower, upper].map(|cell| {
+                    let width = grid.axis(axis).width(grid.cell(cell)[axis]);
+                    (!dry[cell]).then(|| (new.place(ops, dry, &mut places, cell), 0.5 * width))
+                });
+                let across = (0..D).filter(|&b| b != axis).map(|b| grid.axis(b).width(at[b]));
+                let (index, area) = (grid.place(at), across.product());
+                new.faces.push(Face { axis, above: upper, index, area, sides });
+            }
+        }
+        new
+    }
+
+    /// The place of a cell in the list.
+    fn place(&mut self, ops: &Operators<D>, dry: &[bool], places: &mut [usize], cell: usize) -> usize {
+        if places[cell] == usize::MAX {
+            places[cell] = self.cells.len();
+            let (grid, metrics) = (ops.grid(), ops.metrics());
+            let at = grid.cell(cell);
+            let (mut found, mut steps) = (Vec::new(), Vec::new());
+            for turn in 0..3_usize.pow(D as u32) {
+                let (mut other, mut step, mut rest) = (Some(cell), [0.0; D], turn);
+                for a in 0..D {
+                    let up = rest % 3 == 2;
+                    if rest % 3 != 1 {
+                        other = other.and_then(|o| beside(ops, grid.cell(o), a, up));
+                        let gap = 1.0 / metrics.axes[a].centres.inv_gap[GHOSTS + at[a] + usize::from(up)];
+                        step[a] = if up { gap } else { -gap };
+                    }
+                    rest /= 3;
+                }
+                if let Some(other) = other.filter(|&o| o != cell && !dry[o]) {
+                    found.push(other);
+                    steps.push(step);
+                }
+            }
+            self.terms.extend(found.into_iter().zip(gradient_weights(&steps)));
+            let width = std::array::from_fn(|a| grid.axis(a).width(at[a]));
+            self.cells.push(Near { cell, end: self.terms.len(), width });
+        }
+        places[cell]
+    }
+
+    /// Axes of the faces, and the cells above them.
+    pub(super) fn faces(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.faces.iter().map(|face| (face.axis, face.above))
+    }
+
+    /// Values and gradients of `dense`.
+    fn look(&self, dense: &[f64], out: &mut Vec<(f64, [f64; D])>) {
+        out.clear();
+        let mut start = 0;
+        for near in &self.cells {
+            let here = dense[near.cell];
+            let mut slope = [0.0; D];
+            for &(other, weight) in &self.terms[start..near.end] {
+                (0..D).for_each(|a| slope[a] += weight[a] * (dense[other] - here));
+            }
+            out.push((here, slope));
+            start = near.end;
+        }
+    }
+
+    /// Adds to `out` what the faces bring to the cells \[m³/s φ\], less what upwind differences between cells with fluid bring.
+    /// With `distance` φ goes like 1/y, y the distance of every cell from the nearest wall.
+    pub(super) fn add(
+        &mut self,
+        velocity: &Velocity<D>,
+        phi: &[f64],
+        distance: Option<&[f64]>,
+        out: &mut [f64],
+    ) {
+        let mut dense = std::mem::take(&mut self.dense);
+        let (mut carried, mut apart) =
+            (std::mem::take(&mut self.carried), std::mem::take(&mut self.distance));
+        if let Some(distance) = distance {
+            dense.copy_from_slice(distance);
+            self.look(&dense, &mut apart);
+            for (near, (y, slope)) in self.cells.iter().zip(&apart) {
+                let norm = slope.iter().map(|s| s * s).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
+                let extent: f64 = (0..D).map(|a| slope[a].abs() / norm * near.width[a]).sum();
+                dense[near.cell] = y.max(NEAREST * extent);
+            }
+            self.look(&dense, &mut apart);
+            dense.iter_mut().zip(phi).for_each(|(y, phi)| *y *= phi);
+            self.look(&dense, &mut carried);
+        } else {
+            self.look(phi, &mut carried);
+        }
+        for face in &self.faces {
+            let flux = face.area * velocity.components[face.axis].data()[face.index];
+            let ends = if flux >= 0.0 { [0, 1] } else { [1, 0] };
+            // Where the flow comes from, or else the other side.
+            let Some(from) = ends.into_iter().find(|&end| face.sides[end].is_some()) else { continue };
+            let on_face = |values: &[(f64, [f64; D])]| {
+                face.sides[from].map_or(0.0, |(place, gap)| {
+                    let (value, slope) = &values[place];
+                    value + if from == 0 { gap } else { -gap } * slope[face.axis]
+                })
+            };
+            let g = on_face(&carried);
+            let y = distance.map(|_| on_face(&apart));
+            for (end, side) in face.sides.iter().enumerate() {
+                let Some((place, _)) = *side else { continue };
+                let cell = self.cells[place].cell;
+                let inflow = if end == 1 { flux } else { -flux };
+                let brought = match y {
+                    Some(y) => {
+                        let (own, _) = apart[place];
+                        ((g - carried[place].0) - phi[cell] * (y - own)) / own
+                    }
+                    None => g - phi[cell],
+                };
+                let upwind = match face.sides[1 - end] {
+                    Some((other, _)) if inflow > 0.0 => phi[self.cells[other].cell] - phi[cell],
+                    _ => 0.0,
+                };
+                out[cell] += inflow * (brought - upwind);
+            }
+        }
+        (self.dense, self.carried, self.distance) = (dense, carried, apart);
+    }
+}

@@ -10,7 +10,7 @@ const LAYERS: u8 = 4;
 const NEAREST: f64 = 0.3;
 
 /// Convection of second order through the faces near cells without fluid: φ_f = φ + s·(x_f − x) from the side that the flow comes
-/// from, s the gradient by least squares over the cells with fluid around. Through a face of a cell without fluid comes what the
+/// from, s the gradient by least squares over the cells with fluid around; of one sign, and at most 2φ. Through a face of a cell without fluid comes what the
 /// cell on its other side says: so a field that changes across a wall only is not changed by a flow along it, wherever the wall
 /// lies on the grid.
 ///
@@ -203,13 +203,15 @@ impl<const D: usize> NearSolids<D> {
             // Where the flow comes from, or else the other side.
             let Some(from) = ends.into_iter().find(|&end| face.sides[end].is_some()) else { continue };
             let on_face = |values: &[(f64, [f64; D])]| {
-                face.sides[from].map_or(0.0, |(place, gap)| {
+                face.sides[from].map_or([0.0; 2], |(place, gap)| {
                     let (value, slope) = &values[place];
-                    value + if from == 0 { gap } else { -gap } * slope[face.axis]
+                    [*value, if from == 0 { gap } else { -gap } * slope[face.axis]]
                 })
             };
-            let g = on_face(&carried);
-            let y = distance.map(|_| on_face(&apart));
+            let [g, more] = on_face(&carried);
+            // Nothing flows out that is not there.
+            let g = g + more.clamp(-g.abs(), g.abs());
+            let y = distance.map(|_| on_face(&apart).iter().sum::<f64>());
             for (end, side) in face.sides.iter().enumerate() {
                 let Some((place, _)) = *side else { continue };
                 let cell = self.cells[place].cell;

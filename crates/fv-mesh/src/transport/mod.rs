@@ -9,7 +9,6 @@ mod walls;
 
 pub(crate) use wall_faces::WallFaces;
 
-use crate::grid::GHOSTS;
 use crate::kernels::copy_dense;
 use crate::linear::{
     BiCgStabParams, BiCgStabScratch, Dilu, GaussSeidelParams, GaussSeidelScratch, GaussSeidelSweep,

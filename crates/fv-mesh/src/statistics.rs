@@ -224,10 +224,10 @@ impl<const D: usize> WithSimd for Layers<'_, D> {
             for row in 0..=rows {
                 let at = if D == 3 { [0, row, layer] } else { [0, layer, 0] };
                 for (c, sums) in sums.iter_mut().enumerate() {
-                    self.add(c, at, sums);
+                    self.add::<S>(c, at, sums);
                 }
                 if (1..D).all(|b| at[b] < n[b]) {
-                    self.diverge(at, &mut top);
+                    self.diverge::<S>(at, &mut top);
                 }
             }
         }
@@ -245,7 +245,7 @@ impl<const D: usize> WithSimd for Layers<'_, D> {
 impl<const D: usize> Layers<'_, D> {
     /// Adds a row of component `c`.
     #[inline(always)]
-    fn add(&self, c: usize, at: [usize; 3], out: &mut Lanes) {
+    fn add<S: Simd>(&self, c: usize, at: [usize; 3], out: &mut Lanes) {
         let (u, s) = (self.velocity[c].data(), self.grid.stride());
         let (volumes, gaps) = (&self.measure.volumes[c], &self.measure.gaps[c]);
         let o = self.grid.base() + (1..D).map(|b| at[b] * s[b]).sum::<usize>();
@@ -267,12 +267,13 @@ impl<const D: usize> Layers<'_, D> {
                 let here = &here[k];
                 for l in 0..LANES {
                     sums[0][l] += here[l];
-                    sums[1][l] += here[l] * here[l];
+                    sums[1][l] = fused::<S>(here[l], here[l], sums[1][l]);
                 }
                 for b in 0..D {
                     let below = &below[b][k];
                     for l in 0..LANES {
-                        gradients[b][l] += (here[l] - below[l]) * (here[l] - below[l]);
+                        let change = here[l] - below[l];
+                        gradients[b][l] = fused::<S>(change, change, gradients[b][l]);
                     }
                 }
             }
@@ -288,12 +289,13 @@ impl<const D: usize> Layers<'_, D> {
             for l in 0..LANES {
                 let part = along[l] * here[l];
                 sums[0][l] += part;
-                sums[1][l] += part * here[l];
+                sums[1][l] = fused::<S>(part, here[l], sums[1][l]);
             }
             for b in 0..D {
                 let (weight, below) = (if b == 0 { gap } else { along }, &below[b][k]);
                 for l in 0..LANES {
-                    gradients[b][l] += weight[l] * ((here[l] - below[l]) * (here[l] - below[l]));
+                    let change = here[l] - below[l];
+                    gradients[b][l] = fused::<S>(weight[l] * change, change, gradients[b][l]);
                 }
             }
         }
@@ -308,7 +310,7 @@ impl<const D: usize> Layers<'_, D> {
 
     /// The largest |∇·u| of a row of cells.
     #[inline(always)]
-    fn diverge(&self, at: [usize; 3], top: &mut [f64; LANES]) {
+    fn diverge<S: Simd>(&self, at: [usize; 3], top: &mut [f64; LANES]) {
         let (n, s) = (self.grid.cells()[0], self.grid.stride());
         let o = self.grid.base() + (1..D).map(|b| at[b] * s[b]).sum::<usize>();
         let lower: [_; D] = std::array::from_fn(|b| &self.velocity[b].data()[o..][..n]);
@@ -317,20 +319,26 @@ impl<const D: usize> Layers<'_, D> {
         let inv_b: [f64; D] =
             std::array::from_fn(|b| self.metrics.axes[b].centres.inv_volume[GHOSTS + at[b]]);
         if n < LANES {
-            (0..n).for_each(|i| largest::<1, D>(i, [&lower, &upper], inv, &inv_b, top));
+            (0..n).for_each(|i| largest::<S, 1, D>(i, [&lower, &upper], inv, &inv_b, top));
             return;
         }
         for first in 0..n / LANES {
-            largest::<LANES, D>(first * LANES, [&lower, &upper], inv, &inv_b, top);
+            largest::<S, LANES, D>(first * LANES, [&lower, &upper], inv, &inv_b, top);
         }
         // Some have been seen.
-        largest::<LANES, D>(n - LANES, [&lower, &upper], inv, &inv_b, top);
+        largest::<S, LANES, D>(n - LANES, [&lower, &upper], inv, &inv_b, top);
     }
+}
+
+/// a b + c, in one instruction where vectors have it.
+#[inline(always)]
+fn fused<S: Simd>(a: f64, b: f64, c: f64) -> f64 {
+    if S::IS_SCALAR { a * b + c } else { a.mul_add(b, c) }
 }
 
 /// The largest |∇·u| of `W` cells of a row.
 #[inline(always)]
-fn largest<const W: usize, const D: usize>(
+fn largest<S: Simd, const W: usize, const D: usize>(
     first: usize,
     [lower, upper]: [&[&[f64]; D]; 2],
     inv: &[f64],
@@ -343,11 +351,11 @@ fn largest<const W: usize, const D: usize>(
         if b == 0 {
             let inv = &inv[first..][..W];
             for l in 0..W {
-                sum[l] += inv[l] * (upper[l] - lower[l]);
+                sum[l] = inv[l] * (upper[l] - lower[l]);
             }
         } else {
             for l in 0..W {
-                sum[l] += inv_b[b] * (upper[l] - lower[l]);
+                sum[l] = fused::<S>(inv_b[b], upper[l] - lower[l], sum[l]);
             }
         }
     }

@@ -227,7 +227,8 @@ impl<const D: usize> WithSimd for Layers<'_, D> {
                     self.add::<S>(c, at, sums);
                 }
                 if (1..D).all(|b| at[b] < n[b]) {
-                    self.diverge::<S>(at, &mut top);
+                    let row = self.diverge::<S>(at);
+                    top.iter_mut().zip(row).for_each(|(top, size)| *top = size.max(*top));
                 }
             }
         }
@@ -308,9 +309,9 @@ impl<const D: usize> Layers<'_, D> {
         }
     }
 
-    /// The largest |∇·u| of a row of cells.
+    /// The largest |∇·u| of a row of cells, in lanes.
     #[inline(always)]
-    fn diverge<S: Simd>(&self, at: [usize; 3], top: &mut [f64; LANES]) {
+    fn diverge<S: Simd>(&self, at: [usize; 3]) -> [f64; LANES] {
         let (n, s) = (self.grid.cells()[0], self.grid.stride());
         let o = self.grid.base() + (1..D).map(|b| at[b] * s[b]).sum::<usize>();
         let lower: [_; D] = std::array::from_fn(|b| &self.velocity[b].data()[o..][..n]);
@@ -318,15 +319,17 @@ impl<const D: usize> Layers<'_, D> {
         let inv = &self.metrics.axes[0].centres.inv_volume[GHOSTS..][..n];
         let inv_b: [f64; D] =
             std::array::from_fn(|b| self.metrics.axes[b].centres.inv_volume[GHOSTS + at[b]]);
+        // By value, which stays in registers.
+        let over = [&lower, &upper];
         if n < LANES {
-            (0..n).for_each(|i| largest::<S, 1, D>(i, [&lower, &upper], inv, &inv_b, top));
-            return;
+            return (0..n).fold([0.0; LANES], |top, i| largest::<S, 1, D>(i, over, inv, &inv_b, top));
         }
+        let mut top = [0.0; LANES];
         for first in 0..n / LANES {
-            largest::<S, LANES, D>(first * LANES, [&lower, &upper], inv, &inv_b, top);
+            top = largest::<S, LANES, D>(first * LANES, over, inv, &inv_b, top);
         }
         // Some have been seen.
-        largest::<S, LANES, D>(n - LANES, [&lower, &upper], inv, &inv_b, top);
+        largest::<S, LANES, D>(n - LANES, over, inv, &inv_b, top)
     }
 }
 
@@ -336,15 +339,15 @@ fn fused<S: Simd>(a: f64, b: f64, c: f64) -> f64 {
     if S::IS_SCALAR { a * b + c } else { a.mul_add(b, c) }
 }
 
-/// The largest |∇·u| of `W` cells of a row.
+/// The largest |∇·u| of `W` cells of a row, or what has been the largest.
 #[inline(always)]
 fn largest<S: Simd, const W: usize, const D: usize>(
     first: usize,
     [lower, upper]: [&[&[f64]; D]; 2],
     inv: &[f64],
     inv_b: &[f64; D],
-    top: &mut [f64; LANES],
-) {
+    mut top: [f64; LANES],
+) -> [f64; LANES] {
     let mut sum = [0.0; W];
     for b in 0..D {
         let (lower, upper) = (&lower[b][first..][..W], &upper[b][first..][..W]);
@@ -363,6 +366,7 @@ fn largest<S: Simd, const W: usize, const D: usize>(
         let size = sum[l].abs();
         top[l] = if size > top[l] { size } else { top[l] };
     }
+    top
 }
 
 /// Σ V s and Σ V s u over the unknowns of component `c`: what the acceleration `source` does to momentum and energy, per density.

@@ -305,9 +305,9 @@ fn a_scalar_by_piso_is_that_of_the_projection() {
         mean(&projection)
     );
     let of = |key: &str| piso["ledger"][key].as_f64().unwrap();
-    assert!(of("momentum_worst_step") < 0.1 && of("momentum_whole_run") < 0.1, "{}", piso["ledger"]);
+    assert!(of("momentum_worst_step") < 1e-3 && of("momentum_whole_run") < 1e-6, "{}", piso["ledger"]);
     let work = of("work") + of("driving_work");
-    assert!(of("energy_residual").abs() < 0.1 * work && work > 0.0, "{}", piso["ledger"]);
+    assert!(of("energy_residual").abs() < 0.02 * work && work > 0.0, "{}", piso["ledger"]);
     // None where they are switched off.
     let off = ["output.ledger=false", "time.end=0.05"];
     assert!(swing("off", &off)["ledger"].is_null());
@@ -323,10 +323,10 @@ fn a_flux_from_a_body_that_moves_is_all_there() {
         let flux = ["scalars.warmth.bodies_flux='0.2*t'", "coupling.forcing='smooth'"];
         swing(name, &[&flux, more].concat())["fields"]["warmth"]["mean"].as_f64().unwrap()
     };
-    // ½ 0.2 t² over the rim, by sums at the start of each step and Adams–Bashforth from the second on.
+    // ½ 0.2 t² over the rim, but for Euler's first step (2.5e-5).
     let given = 0.1 * 0.3 * std::f64::consts::PI;
     let moves = heat("flux", &[]);
-    assert!((moves / given - 1.0).abs() < 1e-3, "{moves} {given}");
+    assert!((moves / given - 1.0).abs() < 1e-4, "{moves} {given}");
     let still = heat("still-flux", &["bodies.0.motion='fixed'"]);
     assert!((moves / still - 1.0).abs() < 1e-12, "{moves} {still}");
     let both = problems(SWINGING, "scalars.warmth={diffusivity=1e-2, bodies=1.0, bodies_flux=1.0}");

@@ -103,74 +103,75 @@ pub trait FlowSolver<const D: usize>: Checkpoint {
     }
 }
 
-/// What the types have anyway.
+/// What the types have anyway: themselves, or the flow in them.
 macro_rules! forward {
-    ($flow:ident) => {
-        fn predict(&mut self, dt: f64, force: [f64; D]) -> Result<(), FlowError> {
-            $flow::predict(self, dt, force)
+    ($self:ident => $flow:expr) => {
+        fn finish(&mut $self, dt: f64) -> Result<(), FlowError> {
+            $flow.finish(dt)
         }
-        fn finish(&mut self, dt: f64) -> Result<(), FlowError> {
-            $flow::finish(self, dt)
+        fn grid(&$self) -> &CartesianGrid<D> {
+            $flow.grid()
         }
-        fn move_window(&mut self, axis: usize, cells: i64) -> Result<(), FlowError> {
-            $flow::move_window(self, axis, cells)
+        fn sides(&$self) -> &Sides<D> {
+            $flow.sides()
         }
-        fn grid(&self) -> &CartesianGrid<D> {
-            $flow::grid(self)
+        fn fluid(&$self) -> Fluid {
+            $flow.fluid()
         }
-        fn sides(&self) -> &Sides<D> {
-            $flow::sides(self)
+        fn velocity(&$self) -> &Velocity<D> {
+            $flow.velocity()
         }
-        fn fluid(&self) -> Fluid {
-            $flow::fluid(self)
+        fn velocity_mut(&mut $self) -> &mut Velocity<D> {
+            $flow.velocity_mut()
         }
-        fn velocity(&self) -> &Velocity<D> {
-            $flow::velocity(self)
+        fn before(&$self, c: usize) -> &Field<D> {
+            $flow.before(c)
         }
-        fn velocity_mut(&mut self) -> &mut Velocity<D> {
-            $flow::velocity_mut(self)
+        fn pressure(&$self) -> &Field<D> {
+            $flow.pressure()
         }
-        fn before(&self, c: usize) -> &Field<D> {
-            $flow::before(self, c)
+        fn centred_velocity(&$self, c: usize) -> impl Iterator<Item = f64> + '_ {
+            $flow.centred_velocity(c)
         }
-        fn pressure(&self) -> &Field<D> {
-            $flow::pressure(self)
+        fn statistics(&mut $self) -> FlowStatistics {
+            $flow.statistics()
         }
-        fn centred_velocity(&self, c: usize) -> impl Iterator<Item = f64> + '_ {
-            $flow::centred_velocity(self, c)
+        fn wall_impulse(&$self) -> Vector {
+            $flow.wall_impulse()
         }
-        fn statistics(&mut self) -> FlowStatistics {
-            $flow::statistics(self)
+        fn side_power(&$self) -> SidePower {
+            $flow.side_power()
         }
-        fn wall_impulse(&self) -> Vector {
-            $flow::wall_impulse(self)
+        fn time(&$self) -> f64 {
+            $flow.time()
         }
-        fn side_power(&self) -> SidePower {
-            $flow::side_power(self)
+        fn set_time(&mut $self, time: f64) {
+            $flow.set_time(time);
         }
-        fn time(&self) -> f64 {
-            $flow::time(self)
+        fn steps(&$self) -> u64 {
+            $flow.steps()
         }
-        fn set_time(&mut self, time: f64) {
-            $flow::set_time(self, time);
+        fn last_dt(&$self) -> f64 {
+            $flow.last_dt()
         }
-        fn steps(&self) -> u64 {
-            $flow::steps(self)
-        }
-        fn last_dt(&self) -> f64 {
-            $flow::last_dt(self)
-        }
-        fn courant(&self, dt: f64) -> f64 {
-            $flow::courant(self, dt)
-        }
-        fn stable_dt(&self, courant: f64) -> f64 {
-            $flow::stable_dt(self, courant)
+        fn courant(&$self, dt: f64) -> f64 {
+            $flow.courant(dt)
         }
     };
 }
+pub(crate) use forward;
 
 impl<const D: usize> FlowSolver<D> for Projection<D> {
-    forward!(Projection);
+    forward!(self => self);
+    fn predict(&mut self, dt: f64, force: [f64; D]) -> Result<(), FlowError> {
+        Projection::predict(self, dt, force)
+    }
+    fn move_window(&mut self, axis: usize, cells: i64) -> Result<(), FlowError> {
+        Projection::move_window(self, axis, cells)
+    }
+    fn stable_dt(&self, courant: f64) -> f64 {
+        Projection::stable_dt(self, courant)
+    }
     fn project(&mut self, dt: f64) -> Result<(), FlowError> {
         Projection::project(self, dt)
     }
@@ -185,7 +186,16 @@ impl<const D: usize> FlowSolver<D> for Projection<D> {
 }
 
 impl<const D: usize> FlowSolver<D> for Piso<D> {
-    forward!(Piso);
+    forward!(self => self);
+    fn predict(&mut self, dt: f64, force: [f64; D]) -> Result<(), FlowError> {
+        Piso::predict(self, dt, force)
+    }
+    fn move_window(&mut self, axis: usize, cells: i64) -> Result<(), FlowError> {
+        Piso::move_window(self, axis, cells)
+    }
+    fn stable_dt(&self, courant: f64) -> f64 {
+        Piso::stable_dt(self, courant)
+    }
     fn project(&mut self, dt: f64) -> Result<(), FlowError> {
         self.correct(dt)
     }
@@ -203,7 +213,16 @@ where
     C: ClosureSlot<D> + Checkpoint,
     S: ScalarTransport<D> + Checkpoint,
 {
-    forward!(Hooked);
+    forward!(self => self);
+    fn predict(&mut self, dt: f64, force: [f64; D]) -> Result<(), FlowError> {
+        Hooked::predict(self, dt, force)
+    }
+    fn move_window(&mut self, axis: usize, cells: i64) -> Result<(), FlowError> {
+        Hooked::move_window(self, axis, cells)
+    }
+    fn stable_dt(&self, courant: f64) -> f64 {
+        Hooked::stable_dt(self, courant)
+    }
     fn project(&mut self, dt: f64) -> Result<(), FlowError> {
         Hooked::project(self, dt)
     }

@@ -46,6 +46,7 @@ mod simulation;
 mod snapshots;
 mod strategy;
 mod walled;
+mod with_scalars;
 
 pub use accounts::{Account, Accounts};
 pub use checkpoint::{CheckpointError, load, previous, save};
@@ -62,3 +63,4 @@ pub use simulation::{Immersed, Module, Simulation, Timings, WeightBalance};
 pub use snapshots::{BodyPaths, Quantity, SnapshotFeed};
 pub use strategy::{Exchange, Explicit, Iterated, OneSolve, Strategy};
 pub use walled::Walled;
+pub use with_scalars::WithScalars;

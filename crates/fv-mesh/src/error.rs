@@ -120,6 +120,18 @@ pub enum FlowError {
         /// Why.
         source: interfaces::SolveError,
     },
+    /// A scalar did not come to its steady state.
+    #[error(
+        "a scalar is not steady after {iterations} iterations: its largest change in the last was {change:.1e} of its largest value, and {tolerance:.1e} is asked for; allow more iterations, or take upwind convection for it"
+    )]
+    ScalarNotSteady {
+        /// Iterations made.
+        iterations: usize,
+        /// Its largest change in the last one over its largest value.
+        change: f64,
+        /// What is asked for.
+        tolerance: f64,
+    },
     /// A parameter of an algorithm makes no sense.
     #[error("{name} is {value}; it must be {range}")]
     Parameter {

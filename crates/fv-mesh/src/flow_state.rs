@@ -27,8 +27,6 @@ pub(crate) struct FlowState<const D: usize> {
     /// Largest |u_c|/h_c \[1/s\], sides included.
     pub(crate) rates: [f64; D],
     measure: Measure<D>,
-    /// Scratch of one row.
-    row: Vec<f64>,
 }
 
 impl<const D: usize> FlowState<D> {
@@ -49,7 +47,6 @@ impl<const D: usize> FlowState<D> {
             boundaries: Boundaries::new(&grid, sides, &metrics)?,
             pressure: Field::zeros(&grid),
             measure: Measure::new(&grid, &metrics),
-            row: vec![0.0; grid.cells()[0]],
             time: 0.0,
             step: 0,
             last_dt: 0.0,
@@ -150,7 +147,7 @@ impl<const D: usize> FlowState<D> {
 
     fn measure_here(&mut self) -> FlowStatistics {
         let fluid = [self.fluid.density, self.fluid.viscosity];
-        self.measure.of(&self.grid, &self.metrics, &self.velocity.components, fluid, &mut self.row)
+        self.measure.of(&self.grid, &self.metrics, &self.velocity.components, fluid)
     }
 
     /// What the bounded sides do to the kinetic energy.

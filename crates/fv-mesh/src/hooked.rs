@@ -77,7 +77,8 @@ where
     /// # Errors
     /// What they answer.
     pub fn follow_walls(&mut self, bodies: &dyn Bodies) -> Result<(), FlowError> {
-        self.hooks.scalars.follow(&self.flow, bodies)?;
+        let Self { flow, hooks, .. } = &mut *self;
+        hooks.scalars.follow(flow.grid(), flow.sides(), flow.time(), bodies)?;
         self.hooks.closure.follow(&self.flow, bodies)
     }
     /// Ends a step of `dt`; the closure follows the flow.

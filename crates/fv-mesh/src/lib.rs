@@ -80,7 +80,7 @@ pub use piso::{Piso, PisoParams, TimeScheme};
 pub use pressure::PressureSolver;
 pub use projection::{Prediction, Projection, SourceWork};
 pub use sample::{Extreme, Integrals, Line, Norms, Plane, Probes, Quantity, SampleError, Sampler};
-pub use scalar::{Given, Scalar, ScalarBoundaries, ScalarPatch, ScalarSide, ScalarTransport};
+pub use scalar::{Given, Scalar, ScalarBoundaries, ScalarPatch, ScalarSide, ScalarTransport, Settling};
 pub use side_power::SidePower;
 pub use simple::{Simple, SimpleInfo, SimpleParams, WallStress};
 pub use statistics::FlowStatistics;

@@ -37,6 +37,7 @@ impl<const D: usize> Measure<D> {
             for c in 0..D {
                 let (u, inv_gap) = (velocity[c].data(), &metrics.of(Some(c), a).inv_gap);
                 let share = &metrics.axes[c].share;
+                let mut carried = 0.0;
                 each_boundary_cell(grid, metrics, a, c, |o, at, area| {
                     // Upwards through the side; of the component normal to it through the first cell.
                     let ends = [(usize::from(a == c), 1.0), (n[a], -1.0)];
@@ -51,9 +52,10 @@ impl<const D: usize> Measure<D> {
                             (carry, 0.5 * (below + here))
                         };
                         let slope = inv_gap[GHOSTS + i] * (here - below);
-                        out.carried += sign * area * (0.5 * carry * below * here - nu * slope * side);
+                        carried += sign * area * (0.5 * carry * below * here - nu * slope * side);
                     }
                 });
+                out.carried += carried;
             }
             each_boundary_cell(grid, metrics, a, a, |o, _, area| {
                 let top = o + n[a] * s[a];
@@ -73,26 +75,22 @@ impl<const D: usize> Measure<D> {
 
     /// Σ V u, Σ V u² and Σ V |∇u|² of the faces normal to axis `a` at place `i` on it.
     fn on_side(&self, grid: &CartesianGrid<D>, u: &[f64], a: usize, i: usize) -> [f64; 3] {
-        let (n, s) = (grid.cells(), grid.stride());
-        let nodes = |b: usize| if b >= D || b == a { 0..=0 } else { 0..=n[b] };
+        let (n, s, mut sums) = (grid.cells(), grid.stride(), [0.0; 3]);
         let (volumes, gaps) = (&self.volumes[a], &self.gaps[a]);
-        let mut sums = [0.0; 3];
-        for l in nodes(2) {
-            for k in nodes(1) {
-                for j in nodes(0) {
-                    let mut at = [j, k, l];
-                    at[a] = i;
-                    let o = grid.base() + (0..D).map(|b| at[b] * s[b]).sum::<usize>();
-                    let volume = |skip: usize| -> f64 {
-                        (0..D).filter(|&b| b != skip).map(|b| volumes[b][at[b]]).product()
-                    };
-                    sums[0] += volume(D) * u[o];
-                    sums[1] += volume(D) * u[o] * u[o];
-                    for b in (0..D).filter(|&b| b != a) {
-                        let difference = u[o] - u[o - s[b]];
-                        sums[2] += volume(b) * gaps[b][at[b]] * difference * difference;
-                    }
-                }
+        // The axes along the side; in the plane there is one.
+        let b = usize::from(a == 0);
+        let c = (D == 3).then(|| 3 - a - b);
+        for k in 0..=c.map_or(0, |c| n[c]) {
+            let step = c.map_or(0, |c| s[c]);
+            let [volume, gap] = [volumes, gaps].map(|of| volumes[a][i] * c.map_or(1.0, |c| of[c][k]));
+            let start = grid.base() + i * s[a] + k * step;
+            for j in 0..=n[b] {
+                let o = start + j * s[b];
+                let [along, across] = [u[o] - u[o - s[b]], u[o] - u[o - step]];
+                let part = volume * volumes[b][j] * u[o];
+                sums[0] += part;
+                sums[1] += part * u[o];
+                sums[2] += volume * gaps[b][j] * along * along + gap * volumes[b][j] * across * across;
             }
         }
         sums

@@ -52,6 +52,7 @@ pub(crate) fn thrust<const D: usize>(
 
 /// Calls `f` with the storage index of every cell at the lower side of axis `a` whose node of
 /// component `c` is an unknown, its place, and the area across `a` of that node's control volume.
+#[inline(always)]
 pub(crate) fn each_boundary_cell<const D: usize>(
     grid: &CartesianGrid<D>,
     metrics: &Metrics<D>,
@@ -63,15 +64,15 @@ pub(crate) fn each_boundary_cell<const D: usize>(
     let range = |b: usize| {
         if b >= D || b == a { 0..1 } else { usize::from(b == c && !metrics.periodic[b])..n[b] }
     };
+    let volume = |b: usize, i: usize| {
+        if b >= D || b == a { 1.0 } else { metrics.of(Some(c), b).volume[GHOSTS + i] }
+    };
     for k in range(2) {
         for j in range(1) {
+            let across = volume(1, j) * volume(2, k);
+            let start = grid.base() + (1..D).map(|b| [0, j, k][b] * s[b]).sum::<usize>();
             for i in range(0) {
-                let index = [i, j, k];
-                let area = (0..D)
-                    .filter(|&b| b != a)
-                    .map(|b| metrics.of(Some(c), b).volume[GHOSTS + index[b]])
-                    .product();
-                f(grid.base() + (0..D).map(|b| index[b] * s[b]).sum::<usize>(), index, area);
+                f(start + i, [i, j, k], volume(0, i) * across);
             }
         }
     }

@@ -52,6 +52,12 @@ impl ImmersedScalar {
         self.surface.apply(b, field, given);
     }
 
+    /// Storage indices of the cells of body `b` that [`apply`](Self::apply) sets.
+    pub fn held(&self, b: BodyId) -> impl Iterator<Item = usize> + '_ {
+        let inside = self.inside.nodes(b).iter().filter(|node| node.fraction >= 1.0);
+        inside.map(|node| node.index).chain(self.surface.cells(b).iter().map(|cell| cell.node.index))
+    }
+
     /// How many surface cells had to do with fewer fluid points than their profile takes, so far.
     pub fn lowered(&self) -> u64 {
         self.surface.lowered()

@@ -70,6 +70,7 @@ mod solid_fraction;
 mod static_bodies;
 mod subcells;
 mod surface;
+mod surface_flux;
 mod surface_stress;
 #[cfg(test)]
 mod testing;
@@ -95,6 +96,7 @@ pub use smooth::SmoothForcing;
 pub use solid_fraction::{FractionRule, SolidFraction, SolidNode};
 pub use static_bodies::StaticBodies;
 pub use surface::surface_elements;
+pub use surface_flux::SurfaceFlux;
 pub use surface_stress::{SurfaceLoads, SurfacePoint, SurfaceStress};
 pub use wall_distance::WallDistance;
 pub use wall_rows::{WallCell, WallRows};

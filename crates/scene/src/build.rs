@@ -1,8 +1,9 @@
 //! From a setup to what the libraries run.
 use crate::cast::Cast;
-use crate::physics::Physics;
+use crate::physics::{Physics, Segregated};
 use crate::setup::{Algorithm, Bodies, ContactLawChoice, ForcingChoice, InflowSetup, Motion, Setup};
 use crate::still::Still;
+use coupling::WithScalars;
 use dem::placing::{PlacingError, Region};
 use dem::{Chen, ContactLaw, DemError, Entrant, Inflow, Lubricated, Population, Repulsive, RigidBodies};
 use fv_mesh::{CartesianGrid, Diffusion, FlowError, Piso, PisoParams, Projection, Side, TimeScheme};
@@ -152,7 +153,7 @@ impl Setup {
     }
 
     /// PISO by Euler's scheme in time, as the paper has it.
-    pub(crate) fn piso<const D: usize>(&self) -> Result<Piso<D>, BuildError> {
+    pub(crate) fn piso<const D: usize>(&self) -> Result<Segregated<D>, BuildError> {
         self.check_memory()?;
         self.check_force()?;
         let grid = self.grid()?;
@@ -163,7 +164,22 @@ impl Setup {
         if let Some(u) = self.initial(&grid)? {
             flow.set_velocity(u);
         }
-        Ok(flow)
+        let scalars = self.scalars(flow.grid(), flow.sides())?;
+        Ok(WithScalars { flow, scalars })
+    }
+
+    /// Why no books are kept; nothing if they are.
+    pub(crate) fn why_no_books(&self) -> Option<&'static str> {
+        match self.flow.algorithm {
+            _ if self.fluid.is_none() => Some("no fluid"),
+            Algorithm::Simple => Some("a steady flow has none"),
+            _ if self.bodies.list.is_empty() && self.bodies.inflows.is_empty() => Some("no bodies"),
+            _ if self.bodies.forcing() == ForcingChoice::CutLinks => {
+                Some("what walls by cut links do is not in them")
+            }
+            _ if !self.output.ledger => Some("switched off by output.ledger"),
+            _ => None,
+        }
     }
 
     /// The bodies under a law of contact.
@@ -321,6 +337,17 @@ impl Setup {
                     format!("law {law}, {} walls", bodies.walls.len())
                 } else {
                     why_no_contact.into()
+                },
+            ),
+            (
+                "ledger",
+                self.why_no_books().is_none(),
+                match (self.why_no_books(), self.flow.algorithm) {
+                    (Some(why), _) => why.into(),
+                    (None, Algorithm::Piso) => {
+                        "momentum, to the tolerances of PISO's solvers, and energy, but for what Euler's scheme takes".into()
+                    }
+                    (None, _) => "momentum and energy, step by step".into(),
                 },
             ),
             (

@@ -1,12 +1,12 @@
 //! The flow of a scene and what acts on it.
 use crate::build::BuildError;
 use crate::setup::{ForcingChoice, ModelChoice, ScalarSetup, ScaleChoice, Setup};
-use coupling::Walled;
+use coupling::{Walled, WithScalars};
 use fv_mesh::{
-    BodyForce, Boussinesq, CartesianGrid, Diffusion, Field, FlowError, Hooked, Hooks, Modelled, Projection,
-    Scalar, ScalarTransport, Sides, TransportParams, Velocity,
+    BodyForce, Boussinesq, CartesianGrid, Diffusion, Field, FlowError, Hooked, Hooks, Modelled, Piso,
+    Projection, Scalar, ScalarTransport, Settling, Sides, TransportParams, Velocity,
 };
-use ibm::{Given, IbmError, ImmersedScalar, StaticBodies, WallDistance};
+use ibm::{Given, IbmError, ImmersedScalar, StaticBodies, SurfaceFlux, WallDistance};
 use interfaces::{Bodies, BodyId, Checkpoint, Closure, Kinematics, Lattice, RestartError, SolveError};
 use turb::{
     Inflow, KEpsilon, KOmega, KOmegaSst, Law, Realizable, RealizableKEpsilon, Smagorinsky,
@@ -16,6 +16,8 @@ use turb::{
 /// The flow, whatever acts on it: what a scene does not ask for is `None` or empty.
 pub(crate) type Physics<const D: usize> =
     Hooked<D, Option<Lift>, Option<Walled<D, Box<dyn SavedClosure>>>, Scalars<D>>;
+/// The segregated algorithm and what it carries.
+pub(crate) type Segregated<const D: usize> = WithScalars<Piso<D>, Scalars<D>>;
 /// A turbulence model, chosen at run time.
 pub(crate) type Model<const D: usize> = Modelled<D, Box<dyn SavedClosure>>;
 
@@ -59,6 +61,7 @@ impl<const D: usize> BodyForce<D, Scalars<D>> for Lift {
 pub(crate) struct Scalars<const D: usize> {
     list: Vec<Carried<D>>,
     bodies: StaticBodies,
+    surfaces: SurfaceFlux,
     /// Do bodies move? Then they are told, and hold the scalars when they have moved in the step.
     moving: bool,
     /// Time that the scalars have come to without being held yet \[s\].
@@ -77,13 +80,36 @@ impl<const D: usize> Scalars<D> {
     pub(crate) fn iter(&self) -> impl Iterator<Item = (&str, &str, &Field<D>)> {
         self.list.iter().map(|s| (s.setup.name.as_str(), s.setup.unit.as_str(), s.scalar.field()))
     }
+    fn any_flux(&self) -> bool {
+        self.list.iter().any(|one| one.setup.flux.is_some())
+    }
+    /// Brings them to their steady state in a steady flow.
+    pub(crate) fn settle(&mut self, velocity: &Velocity<D>, time: f64) -> Result<(), FlowError> {
+        let Self { list, bodies, .. } = self;
+        for Carried { scalar, setup, held } in list {
+            let all = || (0..bodies.n_bodies()).map(BodyId);
+            let cells: Vec<usize> = held.iter().flat_map(|held| all().flat_map(|b| held.held(b))).collect();
+            let value = setup.bodies.as_ref().map_or(0.0, |formula| formula.at(&[time]));
+            scalar.settle(velocity, time, Settling::default(), &cells, |field| {
+                for (held, b) in held.iter().flat_map(|held| all().map(move |b| (held, b))) {
+                    held.apply(b, field, |_, _| value, |_| value);
+                }
+            })?;
+        }
+        Ok(())
+    }
 }
 
 impl<const D: usize> ScalarTransport<D> for Scalars<D> {
     fn advance(&mut self, velocity: &Velocity<D>, time: f64, dt: f64) -> Result<(), FlowError> {
-        let Self { list, bodies, moving, ahead } = self;
+        let Self { list, bodies, surfaces, moving, ahead } = self;
         *ahead = moving.then_some(time + dt);
         list.iter_mut().try_for_each(|one| {
+            if let Some(flux) = &one.setup.flux {
+                let source = one.scalar.source_mut().data_mut();
+                source.fill(0.0);
+                surfaces.add(flux.at(&[time]), source);
+            }
             one.scalar.advance(velocity, time, dt)?;
             if !*moving {
                 one.hold(bodies, time + dt);
@@ -91,17 +117,24 @@ impl<const D: usize> ScalarTransport<D> for Scalars<D> {
             Ok(())
         })
     }
-    fn follow(&mut self, flow: &Projection<D>, bodies: &dyn Bodies) -> Result<(), FlowError> {
-        if !self.moving {
+    fn follow(
+        &mut self,
+        grid: &CartesianGrid<D>,
+        sides: &Sides<D>,
+        time: f64,
+        bodies: &dyn Bodies,
+    ) -> Result<(), FlowError> {
+        if !self.moving || self.list.is_empty() {
             return Ok(());
         }
-        let (lattice, time) = (flow.grid().lattice(None, flow.sides()), self.ahead.take());
+        let (lattice, ahead) = (grid.lattice(None, sides), self.ahead.take());
+        if self.any_flux() {
+            self.surfaces.place(&lattice, bodies);
+        }
         for one in &mut self.list {
-            one.place(&lattice, bodies).map_err(|e| FlowError::Scalar {
-                time: flow.time(),
-                source: SolveError::Solver(e.to_string()),
-            })?;
-            if let Some(time) = time {
+            one.place(&lattice, bodies)
+                .map_err(|e| FlowError::Scalar { time, source: SolveError::Solver(e.to_string()) })?;
+            if let Some(time) = ahead {
                 one.hold(bodies, time);
             }
         }
@@ -151,7 +184,7 @@ impl Setup {
 
     /// `flow` with all that acts on it.
     pub(crate) fn physics<const D: usize>(&self, flow: Projection<D>) -> Result<Physics<D>, BuildError> {
-        let scalars = self.scalars(&flow)?;
+        let scalars = self.scalars(flow.grid(), flow.sides())?;
         let lift = self.scalars.iter().enumerate().find_map(|(scalar, s)| {
             let (expansion, reference) = s.buoyancy?;
             Some(Lift { scalar, law: Boussinesq { expansion, reference, gravity: self.gravity } })
@@ -166,11 +199,15 @@ impl Setup {
         Ok(Hooked::new(flow, hooks))
     }
 
-    fn scalars<const D: usize>(&self, flow: &Projection<D>) -> Result<Scalars<D>, BuildError> {
-        let grid = flow.grid();
-        let mut all =
-            Scalars { list: Vec::new(), bodies: self.still(), moving: self.bodies.any_moves(), ahead: None };
-        let lattice = grid.lattice(None, flow.sides());
+    /// The scalars in a flow on `grid` between `sides`.
+    pub(crate) fn scalars<const D: usize>(
+        &self,
+        grid: &CartesianGrid<D>,
+        sides: &Sides<D>,
+    ) -> Result<Scalars<D>, BuildError> {
+        let (bodies, moving) = (self.still(), self.bodies.any_moves());
+        let mut all = Scalars { bodies, moving, ..Scalars::default() };
+        let lattice = grid.lattice(None, sides);
         for setup in &self.scalars {
             let sides = std::array::from_fn(|a| setup.sides[a].clone());
             let mut scalar = Scalar::new(grid, sides, setup.diffusivity)?.with_convection(setup.convection);
@@ -195,6 +232,9 @@ impl Setup {
             one.place(&lattice, &all.bodies)?;
             one.hold(&all.bodies, 0.0);
             all.list.push(one);
+        }
+        if all.any_flux() {
+            all.surfaces.place(&lattice, &all.bodies);
         }
         Ok(all)
     }

@@ -76,7 +76,7 @@ impl Setup {
             Algorithm::Simple => return stage.steady(self.steady::<D>()?),
             Algorithm::Piso if bodies => {
                 let particles = self.particles(self.hfdib(), self.cast(self.chen())?).with_strategy(Explicit);
-                return stage.march(self.simulation(self.piso::<D>()?, particles)?, ());
+                return stage.march(self.simulation(self.piso::<D>()?, particles)?, self.books());
             }
             Algorithm::Piso => {
                 return stage.march(self.simulation(self.piso::<D>()?, Still::default())?, ());
@@ -139,6 +139,11 @@ impl Setup {
         }
     }
 
+    /// The books, if they are kept.
+    fn books(&self) -> Option<Ledger> {
+        self.why_no_books().is_none().then(Ledger::new)
+    }
+
     fn particles<F: Forcing, L: ContactLaw>(&self, forcing: F, cast: Cast<L>) -> Particles<F, Cast<L>>
     where
         Population<L>: Checkpoint,
@@ -186,7 +191,7 @@ impl Stage<'_> {
         S: Strategy + Exchange<D, Physics<D>>,
         Population<L>: Checkpoint,
     {
-        self.march(self.setup.simulation(flow, particles)?, Some(Ledger::new()))
+        self.march(self.setup.simulation(flow, particles)?, self.setup.books())
     }
 
     pub(crate) fn folder(&self) -> &Path {

@@ -179,8 +179,29 @@ impl Setup {
                     "large eddies are not steady; take \"projection\", or a model of two equations such as \"sst\"",
                 ));
             }
-            Algorithm::Simple | Algorithm::Piso if !self.scalars.is_empty() => {
-                return Err(fail("algorithm", "scalars go with \"projection\" only"));
+            Algorithm::Simple | Algorithm::Piso if self.scalars.iter().any(|s| s.buoyancy.is_some()) => {
+                return Err(fail(
+                    "algorithm",
+                    "a scalar that is buoyant (`expansion`) drives the flow, which goes with \"projection\" only; take that, or leave out `expansion`",
+                ));
+            }
+            Algorithm::Simple if !self.scalars.is_empty() && self.turbulence.is_some() => {
+                return Err(fail(
+                    "algorithm",
+                    "what modelled eddies do to a scalar is not known here; take out the scalars or the model, or resolve the flow by \"projection\"",
+                ));
+            }
+            Algorithm::Simple if self.scalars.iter().any(|s| bodies && s.bodies.is_none()) => {
+                return Err(fail(
+                    "algorithm",
+                    "in a steady flow every scalar needs its value on bodies; give scalars.NAME.bodies, or take \"projection\"",
+                ));
+            }
+            Algorithm::Simple if self.scalars.iter().any(|s| !s.has_value()) => {
+                return Err(fail(
+                    "algorithm",
+                    "a steady scalar of which only gradients are given is known but for a constant; give its value at a side or on bodies",
+                ));
             }
             Algorithm::Piso if self.turbulence.is_some() => {
                 return Err(fail(
@@ -220,12 +241,20 @@ impl Setup {
                 );
             }
         }
-        if let Some(s) = self.scalars.iter().find(|s| s.bodies.is_some())
+        if self.scalars.iter().any(|s| s.flux.is_some())
+            && !(self.bodies.inflows.is_empty() && self.bodies.exits.is_empty())
+        {
+            let message = "`bodies_flux` is for bodies that stay; leave out inflows and exits, or give a value by `bodies`";
+            return Err(root.fail("scalars", message));
+        }
+        if let Some(s) = self.scalars.iter().find(|s| s.bodies.is_some() || s.flux.is_some())
             && self.bodies.list.is_empty()
             && self.bodies.inflows.is_empty()
         {
-            let message =
-                format!("scalars.{}.bodies is for bodies, and there are none; leave it out", s.name);
+            let message = format!(
+                "scalars.{}.bodies and bodies_flux are for bodies, and there are none; leave them out",
+                s.name
+            );
             return Err(root.fail("scalars", message));
         }
         if dim == 2 && self.bodies.lubrication.is_some() {

@@ -2,7 +2,7 @@
 use crate::build::BuildError;
 use crate::log::Log;
 use crate::look::Extremes;
-use crate::physics::Model;
+use crate::physics::{Model, Scalars};
 use crate::result::{Ending, RunResult};
 use crate::run::{RunError, Stage};
 use crate::setup::Setup;
@@ -20,6 +20,7 @@ use std::sync::atomic::Ordering;
 pub(crate) struct Steady<const D: usize> {
     pub(crate) flow: Simple<D>,
     pub(crate) model: Option<Model<D>>,
+    pub(crate) scalars: Scalars<D>,
     /// Of every body at rest \[N, N m\]: pressure and friction.
     pub(crate) loads: Vec<Wrench>,
     /// When the flow is said to be \[s\].
@@ -67,7 +68,8 @@ impl Setup {
         if let Some(model) = &mut model {
             self.stand_beside(model, flow.sides())?;
         }
-        Ok(Steady { flow, model, loads: Vec::new(), time: self.end })
+        let scalars = self.scalars(flow.grid(), flow.sides())?;
+        Ok(Steady { flow, model, scalars, loads: Vec::new(), time: self.end })
     }
 }
 
@@ -120,6 +122,9 @@ impl Stage<'_> {
         }
         log.line(&format!("{} iterations, residual {residual:.3e}", flow.flow.iterations()))?;
         flow.weigh();
+        if !matches!(ending, Ending::Stopped) {
+            flow.scalars.settle(flow.flow.velocity(), setup.end).map_err(BuildError::from)?;
+        }
         let still = Still(setup.still());
         let mut seen = Seen { flow: &mut flow, guests: &still, timings: coupling::Timings::default() };
         // One "step" of a second, whose impulses are the loads.

@@ -1,14 +1,14 @@
 //! A running simulation as those see it who look on, whatever its types.
 use crate::cast::Cast;
-use crate::physics::{Model, Physics};
+use crate::physics::{Model, Physics, Scalars, Segregated};
 use crate::steady::Steady;
 use crate::still::Still;
 use coupling::{Particles, StepInfo, Strategy, Timings};
 use dem::{ContactLaw, Population, RigidDynamics};
 use example_support::progress::Status;
 use fv_mesh::{
-    Axis, CartesianGrid, CellWriter, Field, FlowStatistics, Hooked, OutputError, Piso, SampleError, Sampler,
-    Sides, Velocity,
+    Axis, CartesianGrid, CellWriter, Field, FlowStatistics, Hooked, OutputError, SampleError, Sampler, Sides,
+    Velocity,
 };
 use ibm::Forcing;
 use interfaces::{Bodies, BodyId, Checkpoint, Closure, Lattice, Point, Wrench};
@@ -107,6 +107,11 @@ fn of_model<const D: usize>(model: Option<&Model<D>>) -> Vec<Other<'_>> {
     k.into_iter().chain(eddy).collect()
 }
 
+/// What the scalars have to show.
+fn of_scalars<const D: usize>(scalars: &Scalars<D>) -> impl Iterator<Item = Other<'_>> {
+    scalars.iter().map(|(name, unit, field)| Other { name, unit, values: Box::new(field.values()) })
+}
+
 /// A flow, whatever computes it.
 pub(crate) trait Flow<const D: usize> {
     fn grid(&self) -> &CartesianGrid<D>;
@@ -132,24 +137,24 @@ pub(crate) trait Flow<const D: usize> {
 
 /// What all flows have, by the part that keeps it.
 macro_rules! flow {
-    ($($part:ident)?) => {
+    ($part:ident) => {
         fn grid(&self) -> &CartesianGrid<D> {
-            self$(.$part)?.grid()
+            self.$part.grid()
         }
         fn sides(&self) -> &Sides<D> {
-            self$(.$part)?.sides()
+            self.$part.sides()
         }
         fn velocity(&self) -> &Velocity<D> {
-            self$(.$part)?.velocity()
+            self.$part.velocity()
         }
         fn pressure(&self) -> &Field<D> {
-            self$(.$part)?.pressure()
+            self.$part.pressure()
         }
         fn centred_velocity(&self, c: usize) -> impl Iterator<Item = f64> + '_ {
-            self$(.$part)?.centred_velocity(c)
+            self.$part.centred_velocity(c)
         }
         fn statistics(&mut self) -> FlowStatistics {
-            self$(.$part)?.statistics()
+            self.$part.statistics()
         }
     };
 }
@@ -169,23 +174,25 @@ impl<const D: usize> Flow<D> for Physics<D> {
         self.flow.wall_impulses()
     }
     fn others(&self) -> Vec<Other<'_>> {
-        let scalars = self.hooks.scalars.iter();
-        let scalars =
-            scalars.map(|(name, unit, field)| Other { name, unit, values: Box::new(field.values()) });
-        scalars.chain(of_model(self.hooks.closure.as_ref().map(|walled| &walled.model))).collect()
+        of_scalars(&self.hooks.scalars)
+            .chain(of_model(self.hooks.closure.as_ref().map(|walled| &walled.model)))
+            .collect()
     }
     fn y_plus(&self) -> Option<YPlus> {
         self.hooks.closure.as_ref()?.model.closure.y_plus()
     }
 }
 
-impl<const D: usize> Flow<D> for Piso<D> {
-    flow!();
+impl<const D: usize> Flow<D> for Segregated<D> {
+    flow!(flow);
     fn time(&self) -> f64 {
-        Piso::time(self)
+        self.flow.time()
     }
     fn steps(&self) -> u64 {
-        Piso::steps(self)
+        self.flow.steps()
+    }
+    fn others(&self) -> Vec<Other<'_>> {
+        of_scalars(&self.scalars).collect()
     }
     fn pressure_iterations(&self) -> usize {
         0
@@ -210,7 +217,7 @@ impl<const D: usize> Flow<D> for Steady<D> {
         &self.loads
     }
     fn others(&self) -> Vec<Other<'_>> {
-        of_model(self.model.as_ref())
+        of_scalars(&self.scalars).chain(of_model(self.model.as_ref())).collect()
     }
     fn y_plus(&self) -> Option<YPlus> {
         self.model.as_ref()?.closure.y_plus()

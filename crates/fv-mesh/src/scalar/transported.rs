@@ -5,9 +5,7 @@ use super::{ScalarBoundaries, ScalarSide};
 use crate::diffusion::{SplitDiffusion, stiffness};
 use crate::metrics::Metrics;
 use crate::operators::{Carrier, integral};
-use crate::{
-    CartesianGrid, Convection, Diffusion, Field, FlowError, Projection, Velocity, kernels, statistics,
-};
+use crate::{CartesianGrid, Convection, Diffusion, Field, FlowError, Sides, Velocity, kernels, statistics};
 use interfaces::{Bodies, Checkpoint, RestartError, VelocityField};
 
 /// Adams–Bashforth is used while a step is at most so many times longer than the last.
@@ -31,19 +29,19 @@ const LONGEST_GROWTH: f64 = 10.0;
 /// Ruuth & Spiteri 2003), if the velocity is free of divergence; Crank–Nicolson keeps bounds while Γdt ≤ h².
 #[derive(Clone, Debug)]
 pub struct Scalar<const D: usize> {
-    grid: CartesianGrid<D>,
-    metrics: Metrics<D>,
-    boundaries: ScalarBoundaries<D>,
-    carrier: Carrier<D>,
+    pub(super) grid: CartesianGrid<D>,
+    pub(super) metrics: Metrics<D>,
+    pub(super) boundaries: ScalarBoundaries<D>,
+    pub(super) carrier: Carrier<D>,
     implicit: ScalarDiffusion<D>,
-    diffusivity: f64,
+    pub(super) diffusivity: f64,
     diffusion: SplitDiffusion<D>,
-    phi: Field<D>,
-    next: Field<D>,
-    tendency: Field<D>,
-    source: Option<Field<D>>,
-    zeros: Vec<f64>,
-    step: u64,
+    pub(super) phi: Field<D>,
+    pub(super) next: Field<D>,
+    pub(super) tendency: Field<D>,
+    pub(super) source: Option<Field<D>>,
+    pub(super) zeros: Vec<f64>,
+    pub(super) step: u64,
     last_dt: f64,
 }
 
@@ -141,7 +139,7 @@ impl<const D: usize> Scalar<D> {
         self.diffusion.limit(0.0, &[false; D])
     }
 
-    fn check_velocity(&self, velocity: &Velocity<D>) -> Result<(), FlowError> {
+    pub(super) fn check_velocity(&self, velocity: &Velocity<D>) -> Result<(), FlowError> {
         velocity.components[0].check(&self.grid)?;
         let (own, flow) = (self.boundaries.periodic(), &velocity.lattice(0).axes);
         match (0..D).find(|&a| own[a] != flow[a].is_periodic()) {
@@ -166,11 +164,18 @@ pub trait ScalarTransport<const D: usize> {
     /// The longest step \[s\] that diffusion allows.
     fn longest_step(&self) -> f64;
 
-    /// Bodies are where they are now: at the start, and when they have moved in a step, after [`advance`](Self::advance).
+    /// Bodies are where they are now, at `time` \[s\] of a flow on `grid` between `sides`: at the start, and when they have moved in a step, after
+    /// [`advance`](Self::advance).
     ///
     /// # Errors
     /// [`FlowError::Scalar`] for bodies that cannot be represented on this grid.
-    fn follow(&mut self, _flow: &Projection<D>, _bodies: &dyn Bodies) -> Result<(), FlowError> {
+    fn follow(
+        &mut self,
+        _grid: &CartesianGrid<D>,
+        _sides: &Sides<D>,
+        _time: f64,
+        _bodies: &dyn Bodies,
+    ) -> Result<(), FlowError> {
         Ok(())
     }
 }

@@ -101,7 +101,7 @@ pub(super) static TURBULENCE: [(&str, &Table); 6] = [
 ];
 
 pub(super) static SCALAR: Table = Table {
-    about: "A scalar (temperature, concentration) that the flow carries (projection).",
+    about: "A scalar (temperature, concentration) that the flow carries. In a steady flow it is found at the end, from the flow.",
     keys: &[
         required("diffusivity", Kind::Number(Range::NotNegative, "m²/s"), "Its diffusivity.", "2e-5"),
         optional("unit", Kind::Text, "none", "Its unit, for tables and pictures.", "\"K\""),
@@ -135,14 +135,21 @@ pub(super) static SCALAR: Table = Table {
             "bodies",
             Kind::Formula(&["t"], "its unit"),
             "bodies have no part in it",
-            "Its value on and in all bodies; those that move leave it behind in the cells they come from.",
+            "Its value on and in all bodies; those that move leave it behind in the cells they come from. Steady flows with bodies need it.",
             "1.0",
+        ),
+        optional(
+            "bodies_flux",
+            Kind::Formula(&["t"], "its unit m/s"),
+            "none",
+            "What the surfaces of all bodies give off to it per area and time (of heat: W/m² over ρc). Bodies then conduct and store it as the fluid does. Not with bodies that come and go.",
+            "\"2e-4*min(t, 1)\"",
         ),
         optional(
             "expansion",
             Kind::Number(Range::Any, "1/its unit"),
             "not buoyant",
-            "Expansion coefficient β: −β(φ − φ₀)g drives the fluid (Boussinesq). One scalar may have it.",
+            "Expansion coefficient β: −β(φ − φ₀)g drives the fluid (Boussinesq; \"projection\" only). One scalar may have it.",
             "3.4e-3",
         ),
         optional(

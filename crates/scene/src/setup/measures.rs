@@ -14,6 +14,8 @@ pub(crate) struct Output {
     pub(crate) snapshots: usize,
     pub(crate) fields: bool,
     pub(crate) bodies: bool,
+    /// Are the books of momentum and energy kept?
+    pub(crate) ledger: bool,
     pub(crate) images: Option<Images>,
 }
 
@@ -111,6 +113,7 @@ pub(super) fn output(t: &Reader<'_>, name: &str, axes: &[Axis]) -> Result<Output
         snapshots,
         fields: flag("fields"),
         bodies: flag("bodies"),
+        ledger: flag("ledger"),
         images: flag("images").then(|| images(t, axes, snapshots)).transpose()?,
     })
 }

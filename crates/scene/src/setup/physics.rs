@@ -63,8 +63,17 @@ pub(crate) struct ScalarSetup {
     pub(crate) sides: Vec<[ScalarSide; 2]>,
     /// Its value on bodies, of the time.
     pub(crate) bodies: Option<Expression>,
+    /// What their surfaces give off per area and time, of the time.
+    pub(crate) flux: Option<Expression>,
     /// β and φ₀.
     pub(crate) buoyancy: Option<(f64, f64)>,
+}
+
+impl ScalarSetup {
+    /// Is its value given anywhere?
+    pub(crate) fn has_value(&self) -> bool {
+        self.bodies.is_some() || self.sides.iter().flatten().any(|side| matches!(side, ScalarSide::Value(_)))
+    }
 }
 
 pub(super) fn turbulence(root: &Reader<'_>, dim: usize) -> Result<Option<TurbulenceSetup>, Problem> {
@@ -124,6 +133,11 @@ pub(super) fn scalars(
         if buoyancy.is_some() && out.iter().any(|s: &ScalarSetup| s.buoyancy.is_some()) {
             return Err(t.fail("expansion", "another scalar is buoyant already; only one can be"));
         }
+        if t.has("bodies") && t.has("bodies_flux") {
+            return Err(
+                t.fail("bodies_flux", "`bodies` gives its value there already; leave out one of the two")
+            );
+        }
         out.push(ScalarSetup {
             name: name.into(),
             unit: t.text("unit").unwrap_or_default().into(),
@@ -137,6 +151,7 @@ pub(super) fn scalars(
             },
             sides: scalar_sides(&t, context, sides)?,
             bodies: t.formula("bodies", &["t"])?,
+            flux: t.formula("bodies_flux", &["t"])?,
             buoyancy,
         });
     }

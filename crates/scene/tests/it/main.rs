@@ -8,7 +8,7 @@ mod spoilt;
 
 use scene::{Options, RunResult, Scene, json_schema, manual};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 fn root() -> PathBuf {
@@ -52,10 +52,18 @@ fn coarse(text: &str) -> String {
     out + rest
 }
 
+/// A folder that no other test has, whatever its name: tests run beside one another and remove theirs.
 fn folder(name: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("siltflow-scene-{name}-{}", std::process::id()));
+    static MADE: AtomicUsize = AtomicUsize::new(0);
+    let number = MADE.fetch_add(1, Ordering::Relaxed);
+    let folder = std::env::temp_dir().join(format!("siltflow-scene-{name}-{}-{number}", std::process::id()));
     let _ = std::fs::remove_dir_all(&folder);
     folder
+}
+
+#[test]
+fn folders_of_one_name_are_two() {
+    assert_ne!(folder("same"), folder("same"));
 }
 
 fn quiet(out: &Path) -> Options {

@@ -253,3 +253,134 @@ fn a_model_of_two_equations_sees_a_body_that_moves() {
         assert!(found.contains(told), "{more}: {found}");
     }
 }
+
+/// A warm disc that swings in a closed box, by the paper's forcing.
+const SWINGING: &str = r#"
+    [grid]
+    cells = [40, 40]
+    size = [1.0, 1.0]
+    [sides]
+    x = "periodic"
+    y = "wall"
+    [fluid]
+    density = 1.0
+    nu = 1e-2
+    [scalars.warmth]
+    diffusivity = 1e-2
+    [coupling]
+    forcing = "hfdib"
+    [[bodies]]
+    shape = { type = "disc", radius = 0.15 }
+    position = [0.5, 0.45]
+    motion = { type = "prescribed", shift = ["0.2*(1-cos(3*t))", 0.0] }
+    [time]
+    end = 1.0
+    dt = 5e-3
+    [output]
+    snapshots = 1
+    images = false
+    fields = false
+    bodies = false
+"#;
+
+/// The results of that scene with `more` set.
+fn swing(name: &str, more: &[&str]) -> serde_json::Value {
+    let out = folder(name);
+    let all = run(SWINGING, more, &quiet(&out)).result;
+    std::fs::remove_dir_all(&out).unwrap();
+    all
+}
+
+/// PISO carries scalars as the projection does, and its books are kept, too.
+#[test]
+fn a_scalar_by_piso_is_that_of_the_projection() {
+    let [piso, projection] = ["piso", "projection"].map(|algorithm| {
+        swing(algorithm, &[&format!("flow.algorithm='{algorithm}'"), "scalars.warmth.bodies=1.0"])
+    });
+    let mean = |all: &serde_json::Value| all["fields"]["warmth"]["mean"].as_f64().unwrap();
+    assert!(
+        mean(&piso) > 0.15 && (mean(&piso) / mean(&projection) - 1.0).abs() < 0.01,
+        "{} {}",
+        mean(&piso),
+        mean(&projection)
+    );
+    let of = |key: &str| piso["ledger"][key].as_f64().unwrap();
+    assert!(of("momentum_worst_step") < 1e-3 && of("momentum_whole_run") < 1e-6, "{}", piso["ledger"]);
+    let work = of("work") + of("driving_work");
+    assert!(of("energy_residual").abs() < 0.02 * work && work > 0.0, "{}", piso["ledger"]);
+    // None where they are switched off.
+    let off = ["output.ledger=false", "time.end=0.05"];
+    assert!(swing("off", &off)["ledger"].is_null());
+    let scene = Scene::parse("swing.toml", SWINGING, &off.map(String::from)).unwrap();
+    let plan = scene.plan().unwrap().to_string();
+    assert!(plan.contains("switched off by output.ledger"), "{plan}");
+}
+
+/// What a disc gives off arrives, all of it, wherever it goes.
+#[test]
+fn a_flux_from_a_body_that_moves_is_all_there() {
+    let heat = |name: &str, more: &[&str]| {
+        let flux = ["scalars.warmth.bodies_flux='0.2*t'", "coupling.forcing='smooth'"];
+        swing(name, &[&flux, more].concat())["fields"]["warmth"]["mean"].as_f64().unwrap()
+    };
+    // ½ 0.2 t² over the rim, but for Euler's first step (2.5e-5).
+    let given = 0.1 * 0.3 * std::f64::consts::PI;
+    let moves = heat("flux", &[]);
+    assert!((moves / given - 1.0).abs() < 1e-4, "{moves} {given}");
+    let still = heat("still-flux", &["bodies.0.motion='fixed'"]);
+    assert!((moves / still - 1.0).abs() < 1e-12, "{moves} {still}");
+    let both = problems(SWINGING, "scalars.warmth={diffusivity=1e-2, bodies=1.0, bodies_flux=1.0}");
+    assert!(both.contains("leave out one of the two"), "{both}");
+    let leaving = ["scalars.warmth.bodies_flux=1.0", "exits=[{point=[0.0, 0.0], normal=[0.0, 1.0]}]"];
+    let told = Scene::parse("s.toml", SWINGING, &leaving.map(String::from)).err().map(|e| e.to_string());
+    assert!(told.as_ref().is_some_and(|t| t.contains("bodies that stay")), "{told:?}");
+}
+
+/// A warm disc in a channel: what the steady algorithm finds is what the other comes to.
+#[test]
+fn a_steady_scalar_is_what_an_unsteady_one_comes_to() {
+    let text = r#"
+        [grid]
+        cells = [60, 20]
+        size = [3.0, 1.0]
+        [sides]
+        x_min = { type = "inlet", velocity = ["6*y*(1-y)", 0.0] }
+        x_max = { type = "pressure" }
+        y = "wall"
+        [fluid]
+        density = 1.0
+        nu = 5e-2
+        [scalars.warmth]
+        diffusivity = 2e-2
+        bodies = 1.0
+        [[bodies]]
+        shape = { type = "disc", radius = 0.2 }
+        position = [1.0, 0.5]
+        motion = "fixed"
+        [time]
+        end = 12.0
+        [output]
+        snapshots = 1
+        images = false
+        fields = false
+    "#;
+    let mean = |name: &str, more: &[&str]| {
+        let out = folder(name);
+        let all = run(text, more, &quiet(&out)).result;
+        std::fs::remove_dir_all(&out).unwrap();
+        assert_eq!(all["complete"], true, "{name}: {}", all["residual"]);
+        all["fields"]["warmth"]["mean"].as_f64().unwrap()
+    };
+    let steady = mean("settled", &["flow.algorithm='simple'", "flow.tolerance=1e-7"]);
+    let unsteady = mean("unsettled", &[]);
+    assert!(steady > 0.1 && (steady / unsteady - 1.0).abs() < 0.02, "{steady} {unsteady}");
+    for (more, told) in [
+        ("scalars.warmth={diffusivity=1e-2, bodies=1.0, expansion=0.1}", "drives the flow"),
+        ("scalars.warmth={diffusivity=1e-2}", "give scalars.NAME.bodies"),
+        ("turbulence='sst'", "modelled eddies"),
+    ] {
+        let more = ["flow.algorithm='simple'", more].map(String::from);
+        let found = Scene::parse("s.toml", text, &more).err().map(|e| e.to_string()).unwrap_or_default();
+        assert!(found.contains(told), "{more:?}: {found}");
+    }
+}

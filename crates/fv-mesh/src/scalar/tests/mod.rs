@@ -1,5 +1,6 @@
 //! Boundary conditions and transport of scalars against exact solutions and conservation laws.
 mod diffusion;
+mod steady;
 mod transport;
 
 use crate::metrics::Metrics;

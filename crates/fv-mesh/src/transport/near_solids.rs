@@ -180,6 +180,8 @@ impl<const D: usize> NearSolids<D> {
         distance: Option<&[f64]>,
         out: &mut [f64],
     ) {
+        // Where no walls are known of.
+        let distance = distance.filter(|y| self.terms.iter().all(|&(cell, _)| y[cell].is_finite()));
         let mut dense = std::mem::take(&mut self.dense);
         let (mut carried, mut apart) =
             (std::mem::take(&mut self.carried), std::mem::take(&mut self.distance));
@@ -187,8 +189,11 @@ impl<const D: usize> NearSolids<D> {
             dense.copy_from_slice(distance);
             self.look(&dense, &mut apart);
             for (near, (y, slope)) in self.cells.iter().zip(&apart) {
-                let norm = slope.iter().map(|s| s * s).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
-                let extent: f64 = (0..D).map(|a| slope[a].abs() / norm * near.width[a]).sum();
+                let norm = slope.iter().map(|s| s * s).sum::<f64>().sqrt();
+                let extent = match norm > 0.0 {
+                    true => (0..D).map(|a| slope[a].abs() / norm * near.width[a]).sum(),
+                    false => near.width[0],
+                };
                 dense[near.cell] = y.max(NEAREST * extent);
             }
             self.look(&dense, &mut apart);

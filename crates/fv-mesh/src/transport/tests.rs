@@ -510,3 +510,25 @@ fn a_flow_along_a_wall_leaves_what_changes_across_it() {
         );
     }
 }
+
+/// Distances that nobody gave, or that are none, do no harm.
+#[test]
+fn without_distances_scalars_are_numbers() {
+    let grid = CartesianGrid::<2>::new([12, 8], [1.2, 0.8]).unwrap();
+    let inlet = Side::Inlet(Profile::Uniform([1.0, 0.0, 0.0]));
+    let sides = Sides::new([[inlet, Side::ConvectiveOutlet], Side::FreeSlip.both()]).unwrap();
+    let velocity = exact_velocity(&grid, &Metrics::new(&grid, [false; 2]), |_| [1.0, -0.5]);
+    let n = grid.n_cells();
+    for distance in [f64::INFINITY, 0.0] {
+        let mut cells = CellTransport::new(&grid, &sides, TransportParams::steady()).unwrap();
+        cells.wall_distance_mut().fill(distance);
+        cells.set_walls((0..n).filter(|&i| grid.cell(i)[1] < 2).map(|i| (i, Vec::new())).collect());
+        let (gamma, none) = (vec![1e-3; n], vec![0.0; n]);
+        let e = Equation { inlet: 1.0, inverse: true, ..equation(&gamma, &none, &none) };
+        let mut phi = vec![1.0; n];
+        for _ in 0..5 {
+            cells.on(&velocity).unwrap().solve(&e, &mut phi).unwrap();
+        }
+        assert!(phi.iter().all(|v| (v - 1.0).abs() < 1e-6), "{distance}: {phi:?}");
+    }
+}

@@ -86,6 +86,12 @@ impl Probe<'_> {
         between(grid, self.duct, [false; 2], self.duct.point(s, r), |i, j| self.eddy[i + n * j])
     }
 
+    /// Is the duct there, and not beside the outlet?
+    fn inside(&self, s: f64) -> bool {
+        let (grid, x) = (self.flow.grid(), self.duct.point(s, 1.5));
+        (0..2).all(|a| grid.axis(a).centre(0) < x[a] && x[a] < grid.axis(a).centre(grid.cells()[a] - 1))
+    }
+
     /// What the inner or the outer wall takes along the duct, over the density \[m²/s²\]: the mean over a tenth of the height.
     fn friction(&self, s: f64, outer: bool) -> f64 {
         let (mut sum, mut areas) = (0.0, 0.0);
@@ -161,14 +167,13 @@ pub(crate) fn report(
             de += width * (probe.eddy(s, 1.0 + row[2]) - row[7]).powi(2);
             scale += width * row[7] * row[7];
         }
-        let friction = [false, true].map(|outer| {
+        print!("{station:8}  {:.2}  {:.1}", 100.0 * du.sqrt(), 100.0 * (de / scale).sqrt());
+        for outer in [false, true].into_iter().filter(|_| probe.inside(s + 0.05)) {
             let row = &rows[if outer { rows.len() - 1 } else { 0 }];
             let given = given_friction(row, row[2].min(1.0 - row[2]), flow.fluid().viscosity);
-            100.0 * (probe.friction(s, outer) / given - 1.0)
-        });
-        let [inner, outer] = friction;
-        let (u, e) = (100.0 * du.sqrt(), 100.0 * (de / scale).sqrt());
-        println!("{station:8}  {u:.2}  {e:.1}  {inner:+.1}  {outer:+.1}");
+            print!("  {:+.1}", 100.0 * (probe.friction(s, outer) / given - 1.0));
+        }
+        println!();
         let line = |f: &dyn Fn(f64) -> f64| {
             (0..=200).map(|k| (f64::from(k) / 200.0, f(1.0 + f64::from(k) / 200.0))).collect()
         };
@@ -192,12 +197,8 @@ pub(crate) fn report(
     }
     if duct.bend > 0.0 {
         // The duct may be shorter behind the bend than that of the reference.
-        let grid = flow.grid();
-        let inside = |s: f64| {
-            let x = duct.point(s, 1.5);
-            (0..2).all(|a| grid.axis(a).centre(0) < x[a] && x[a] < grid.axis(a).centre(grid.cells()[a] - 1))
-        };
-        let rows: Vec<_> = read(duct, model, "pmean")?.into_iter().filter(|row| inside(row[0])).collect();
+        let rows: Vec<_> =
+            read(duct, model, "pmean")?.into_iter().filter(|row| probe.inside(row[0])).collect();
         let drop = |f: &dyn Fn(usize) -> f64| f(0) - f(rows.len() - 1);
         let (ours, given) = (drop(&|k| probe.mean_pressure(rows[k][0])), drop(&|k| rows[k][1]));
         let to = rows.last().map_or(0.0, |row| row[0]);

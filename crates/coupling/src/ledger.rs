@@ -9,7 +9,7 @@ use interfaces::{BodyId, Checkpoint, RestartError, Vector};
 /// energy against work and dissipation, and the divergence.
 ///
 /// Momentum: P = ρ∫_Ω u dV − ΣI + Σ(mU + δ), with I the fluid inside a body and δ what is on its
-/// way between the two (see [`Particles`]). Impulses: net weight, forces of the body of the fluid, contacts with walls,
+/// way between the two (see [`Particles`](crate::Particles)). Impulses: net weight, forces of the body of the fluid, contacts with walls,
 /// what holds or drives bodies that are not free, what the box's own sides do to the fluid, and an eddy viscosity's friction there.
 ///
 /// Energy: E = ½ρ∫_Ω u² + Σ½(1 − ρ/ρ_s)(mU² + ΩIΩ). With v̄ = ½(vⁿ + vⁿ⁺¹) of a body and ū = ½(uⁿ + uⁿ⁺¹) of the fluid a step makes
@@ -85,7 +85,7 @@ pub struct LedgerReport {
     pub dissipation: f64,
     /// What an eddy viscosity took \[J\].
     pub eddy_dissipation: f64,
-    /// What the forcing took of the kinetic energy, numerically or where a body meets the fluid with another velocity: see [`Forcing::inelastic_loss`] \[J\].
+    /// What the forcing took of the kinetic energy, numerically or where a body meets the fluid with another velocity: see [`Forcing::inelastic_loss`](ibm::Forcing::inelastic_loss) \[J\].
     pub forcing_loss: f64,
     /// Work of contacts on the bodies \[J\]: negative while it is stored or lost in them.
     pub contact_work: f64,

@@ -35,6 +35,24 @@ pub struct Equation<'a> {
     pub relax: f64,
 }
 
+impl<'a> Equation<'a> {
+    /// The steady one with nothing given, none flowing in, and no relaxation.
+    pub fn new(diffusivity: &'a [f64], source: &'a [f64], sink: &'a [f64]) -> Self {
+        Self {
+            diffusivity,
+            source,
+            sink,
+            pinned: &[],
+            blend: &[],
+            inlet: 0.0,
+            wall: None,
+            dt: None,
+            inverse: false,
+            relax: 1.0,
+        }
+    }
+}
+
 /// What a solve did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SolveInfo {

@@ -1,12 +1,16 @@
 //! Implicit transport of cell-centred quantities for turbulence models.
+mod dry;
 mod kernels;
 mod near_solids;
+mod neighbours;
 mod sides;
 #[cfg(test)]
 mod tests;
 mod wall_faces;
 mod walls;
 
+pub(crate) use dry::Dry;
+pub(crate) use near_solids::NEAREST;
 pub(crate) use wall_faces::WallFaces;
 
 use crate::kernels::copy_dense;
@@ -106,9 +110,6 @@ pub struct CellTransport<const D: usize> {
     fields: [Field<D>; 4],
 }
 
-/// A cell without fluid at its centre, and the weights of the cells around from which its value is taken.
-pub(crate) type Dry = (usize, Vec<(usize, f64)>);
-
 /// A [`CellTransport`] on a velocity: what a closure sees.
 #[derive(Debug)]
 pub struct FlowTransport<'a, const D: usize> {
@@ -162,110 +163,6 @@ impl<const D: usize> CellTransport<D> {
         Ok(FlowTransport { cells: self, velocity })
     }
 
-    /// Takes these cells out of the equations: nothing passes between them and others.
-    pub(crate) fn set_walls(&mut self, dry: Vec<Dry>) {
-        let (grid, periodic) = (self.ops.grid(), self.ops.metrics().periodic);
-        let (n, s) = (grid.cells(), grid.stride());
-        let (closed, mut solid) = (&mut self.closed, vec![false; grid.n_cells()]);
-        closed.clear();
-        // The lower face of a cell, at both ends of a periodic axis.
-        let mut close = |a: usize, mut at: [usize; D]| {
-            if periodic[a] {
-                at[a] %= n[a];
-            }
-            closed.push((a, grid.place(at)));
-            if periodic[a] && at[a] == 0 {
-                closed.push((a, grid.place(at) + n[a] * s[a]));
-            }
-        };
-        for &(cell, _) in &dry {
-            solid[cell] = true;
-            for a in 0..D {
-                let mut at = grid.cell(cell);
-                close(a, at);
-                at[a] += 1;
-                close(a, at);
-            }
-        }
-        (self.near, self.carrier) = (None, None);
-        if !dry.is_empty() && self.params.scheme != Convection::Upwind {
-            let near = NearSolids::new(&self.ops, &solid);
-            near.faces().for_each(|(a, above)| close(a, grid.cell(above)));
-            self.near = Some(near);
-        }
-        self.dry = dry;
-    }
-
-    /// The cells around cell `c`, those that share a corner with it.
-    pub(crate) fn around(&self, c: usize) -> Vec<usize> {
-        let (grid, periodic) = (self.ops.grid(), self.ops.metrics().periodic);
-        let (n, at) = (grid.cells(), grid.cell(c));
-        let mut found = Vec::with_capacity(26);
-        for turn in 0..3_usize.pow(D as u32) {
-            let mut rest = turn;
-            let beside: [Option<usize>; D] = std::array::from_fn(|a| {
-                let i = (at[a] + n[a] + rest % 3) - 1;
-                rest /= 3;
-                (periodic[a] || (n[a]..2 * n[a]).contains(&i)).then_some(i % n[a])
-            });
-            if beside.iter().all(Option::is_some) {
-                let cell = grid.index(beside.map(Option::unwrap_or_default));
-                if cell != c && !found.contains(&cell) {
-                    found.push(cell);
-                }
-            }
-        }
-        found
-    }
-
-    /// Takes the velocity as it is where something passes: not through faces of cells without fluid.
-    fn carry(&mut self, velocity: &Velocity<D>) {
-        if self.dry.is_empty() {
-            return;
-        }
-        let carrier = self.carrier.get_or_insert_with(|| Box::new(velocity.clone()));
-        for (own, u) in carrier.components.iter_mut().zip(&velocity.components) {
-            own.data_mut().copy_from_slice(u.data());
-        }
-        for &(a, o) in &self.closed {
-            carrier.components[a].data_mut()[o] = 0.0;
-        }
-    }
-    pub(crate) fn has_walls(&self) -> bool {
-        !self.dry.is_empty()
-    }
-
-    /// Closes the faces of cells without fluid.
-    fn shut(&mut self) {
-        let (cells, periodic) = (self.ops.grid().cells(), self.ops.metrics().periodic);
-        let (_, lower, upper) = self.matrix.parts_mut();
-        for (cell, _) in &self.dry {
-            let at = self.ops.grid().cell(*cell);
-            let mut step = 1;
-            for a in 0..D {
-                let (i, n) = (at[a], cells[a]);
-                let turn = step * (n - 1);
-                if i + 1 < n || periodic[a] {
-                    lower[a][if i + 1 < n { cell + step } else { cell - turn }] = 0.0;
-                }
-                if i > 0 || periodic[a] {
-                    upper[a][if i > 0 { cell - step } else { cell + turn }] = 0.0;
-                }
-                (lower[a][*cell], upper[a][*cell]) = (0.0, 0.0);
-                step *= n;
-            }
-        }
-    }
-
-    /// Gives cells without fluid the values around them.
-    fn extend(&self, phi: &mut [f64]) {
-        for (cell, from) in &self.dry {
-            if !from.is_empty() {
-                phi[*cell] = from.iter().map(|&(o, w)| w * phi[o]).sum();
-            }
-        }
-    }
-
     /// The grid.
     pub fn grid(&self) -> &CartesianGrid<D> {
         self.ops.grid()
@@ -286,6 +183,7 @@ impl<const D: usize> CellTransport<D> {
     }
     /// The distance of every cell from the nearest wall, to lower where bodies are nearer than the walls of the box.
     pub fn wall_distance_mut(&mut self) -> &mut [f64] {
+        self.near.iter_mut().for_each(NearSolids::forget_distances);
         &mut self.wall_distance
     }
 

@@ -1,13 +1,13 @@
 //! Convection near cells without fluid.
+use super::neighbours::{around, neighbour};
 use crate::Velocity;
-use crate::grid::GHOSTS;
-use crate::least_squares::gradient_weights;
+use crate::least_squares::{gradient_weights, norm2};
 use crate::operators::Operators;
 
 /// Faces of cells that are at most as many steps from one without fluid are near it.
 const LAYERS: u8 = 4;
-/// Centres nearer to the wall than this share of a cell are taken to be there, as by the rows of walls.
-const NEAREST: f64 = 0.3;
+/// Centres nearer to the wall than this share of a cell are taken to be there.
+pub(crate) const NEAREST: f64 = 0.3;
 
 /// Convection of second order through the faces near cells without fluid: φ_f = φ + s·(x_f − x) from the side that the flow comes
 /// from, s the gradient by least squares over the cells with fluid around; of one sign, and at most 2φ. Through a face of a cell without fluid comes what the
@@ -22,11 +22,18 @@ pub(super) struct NearSolids<const D: usize> {
     cells: Vec<Near<D>>,
     /// Cells around, by their dense numbers, and their weights.
     terms: Vec<(usize, [f64; D])>,
-    /// Values and gradients in the cells: of what is interpolated, and of y.
-    carried: Vec<(f64, [f64; D])>,
-    distance: Vec<(f64, [f64; D])>,
-    /// What is interpolated, in all cells.
+    carried: Vec<Linear<D>>,
+    distances: Option<Distances<D>>,
+}
+
+/// A value in a cell, and its gradient.
+type Linear<const D: usize> = (f64, [f64; D]);
+
+/// Distances from walls, of which there is none nearer than [`NEAREST`].
+#[derive(Clone, Debug)]
+struct Distances<const D: usize> {
     dense: Vec<f64>,
+    near: Vec<Linear<D>>,
 }
 
 /// A face, and the cells below and above it: their places in the list, and how far from their centres it is \[m\].
@@ -49,24 +56,6 @@ struct Near<const D: usize> {
     width: [f64; D],
 }
 
-/// The neighbour of a cell along an axis.
-fn beside<const D: usize>(ops: &Operators<D>, mut at: [usize; D], axis: usize, up: bool) -> Option<usize> {
-    let n = ops.grid().cells()[axis];
-    at[axis] = match (at[axis], up) {
-        (0, false) if ops.metrics().periodic[axis] => n - 1,
-        (0, false) => return None,
-        (i, true) if i + 1 == n => {
-            if !ops.metrics().periodic[axis] {
-                return None;
-            }
-            0
-        }
-        (i, true) => i + 1,
-        (i, false) => i - 1,
-    };
-    Some(ops.grid().index(at))
-}
-
 /// How many steps cells are from one without fluid, up to one more than counts.
 fn layers<const D: usize>(ops: &Operators<D>, dry: &[bool]) -> Vec<u8> {
     let mut layer: Vec<u8> = dry.iter().map(|&dry| if dry { 0 } else { u8::MAX }).collect();
@@ -75,7 +64,7 @@ fn layers<const D: usize>(ops: &Operators<D>, dry: &[bool]) -> Vec<u8> {
         let mut next = Vec::new();
         for &cell in &front {
             for (axis, up) in (0..D).flat_map(|a| [(a, false), (a, true)]) {
-                if let Some(other) = beside(ops, ops.grid().cell(cell), axis, up)
+                if let Some(other) = neighbour(ops, ops.grid().cell(cell), axis, up)
                     && layer[other] == u8::MAX
                 {
                     layer[other] = step;
@@ -98,14 +87,13 @@ impl<const D: usize> NearSolids<D> {
             cells: Vec::new(),
             terms: Vec::new(),
             carried: Vec::new(),
-            distance: Vec::new(),
-            dense: vec![0.0; dry.len()],
+            distances: None,
         };
         let mut places = vec![usize::MAX; dry.len()];
         for upper in 0..dry.len() {
             let at = grid.cell(upper);
             for axis in 0..D {
-                let Some(lower) = beside(ops, at, axis, false) else { continue };
+                let Some(lower) = neighbour(ops, at, axis, false) else { continue };
                 if !near(lower) && !near(upper) {
                     continue;
                 }
@@ -125,27 +113,11 @@ impl<const D: usize> NearSolids<D> {
     fn place(&mut self, ops: &Operators<D>, dry: &[bool], places: &mut [usize], cell: usize) -> usize {
         if places[cell] == usize::MAX {
             places[cell] = self.cells.len();
-            let (grid, metrics) = (ops.grid(), ops.metrics());
-            let at = grid.cell(cell);
-            let (mut found, mut steps) = (Vec::new(), Vec::new());
-            for turn in 0..3_usize.pow(D as u32) {
-                let (mut other, mut step, mut rest) = (Some(cell), [0.0; D], turn);
-                for a in 0..D {
-                    let up = rest % 3 == 2;
-                    if rest % 3 != 1 {
-                        other = other.and_then(|o| beside(ops, grid.cell(o), a, up));
-                        let gap = 1.0 / metrics.axes[a].centres.inv_gap[GHOSTS + at[a] + usize::from(up)];
-                        step[a] = if up { gap } else { -gap };
-                    }
-                    rest /= 3;
-                }
-                if let Some(other) = other.filter(|&o| o != cell && !dry[o]) {
-                    found.push(other);
-                    steps.push(step);
-                }
-            }
+            let (found, steps): (Vec<_>, Vec<_>) =
+                around(ops, cell).filter(|&(other, _)| !dry[other]).unzip();
             self.terms.extend(found.into_iter().zip(gradient_weights(&steps)));
-            let width = std::array::from_fn(|a| grid.axis(a).width(at[a]));
+            let at = ops.grid().cell(cell);
+            let width = std::array::from_fn(|a| ops.grid().axis(a).width(at[a]));
             self.cells.push(Near { cell, end: self.terms.len(), width });
         }
         places[cell]
@@ -156,19 +128,43 @@ impl<const D: usize> NearSolids<D> {
         self.faces.iter().map(|face| (face.axis, face.above))
     }
 
-    /// Values and gradients of `dense`.
-    fn look(&self, dense: &[f64], out: &mut Vec<(f64, [f64; D])>) {
+    /// Values and gradients of what has `value` in the cells.
+    fn look(&self, value: impl Fn(usize) -> f64, out: &mut Vec<Linear<D>>) {
         out.clear();
         let mut start = 0;
         for near in &self.cells {
-            let here = dense[near.cell];
+            let here = value(near.cell);
             let mut slope = [0.0; D];
             for &(other, weight) in &self.terms[start..near.end] {
-                (0..D).for_each(|a| slope[a] += weight[a] * (dense[other] - here));
+                (0..D).for_each(|a| slope[a] += weight[a] * (value(other) - here));
             }
             out.push((here, slope));
             start = near.end;
         }
+    }
+
+    /// Distances have changed.
+    pub(super) fn forget_distances(&mut self) {
+        self.distances = None;
+    }
+
+    /// None where no walls are known of.
+    fn measure(&self, distance: &[f64]) -> Option<Distances<D>> {
+        if self.terms.iter().any(|&(cell, _)| !distance[cell].is_finite()) {
+            return None;
+        }
+        let (mut dense, mut near) = (distance.to_vec(), Vec::new());
+        self.look(|c| distance[c], &mut near);
+        for (cell, (y, slope)) in self.cells.iter().zip(&near) {
+            let norm = norm2(slope).sqrt();
+            let extent = match norm > 0.0 {
+                true => (0..D).map(|a| slope[a].abs() / norm * cell.width[a]).sum(),
+                false => cell.width[0],
+            };
+            dense[cell.cell] = y.max(NEAREST * extent);
+        }
+        self.look(|c| dense[c], &mut near);
+        Some(Distances { dense, near })
     }
 
     /// Adds to `out` what the faces bring to the cells \[m³/s φ\], less what upwind differences between cells with fluid bring.
@@ -180,34 +176,21 @@ impl<const D: usize> NearSolids<D> {
         distance: Option<&[f64]>,
         out: &mut [f64],
     ) {
-        // Where no walls are known of.
-        let distance = distance.filter(|y| self.terms.iter().all(|&(cell, _)| y[cell].is_finite()));
-        let mut dense = std::mem::take(&mut self.dense);
-        let (mut carried, mut apart) =
-            (std::mem::take(&mut self.carried), std::mem::take(&mut self.distance));
-        if let Some(distance) = distance {
-            dense.copy_from_slice(distance);
-            self.look(&dense, &mut apart);
-            for (near, (y, slope)) in self.cells.iter().zip(&apart) {
-                let norm = slope.iter().map(|s| s * s).sum::<f64>().sqrt();
-                let extent = match norm > 0.0 {
-                    true => (0..D).map(|a| slope[a].abs() / norm * near.width[a]).sum(),
-                    false => near.width[0],
-                };
-                dense[near.cell] = y.max(NEAREST * extent);
-            }
-            self.look(&dense, &mut apart);
-            dense.iter_mut().zip(phi).for_each(|(y, phi)| *y *= phi);
-            self.look(&dense, &mut carried);
-        } else {
-            self.look(phi, &mut carried);
+        if let (Some(distance), None) = (distance, &self.distances) {
+            self.distances = self.measure(distance);
+        }
+        let mut carried = std::mem::take(&mut self.carried);
+        let distances = self.distances.as_ref().filter(|_| distance.is_some());
+        match distances {
+            Some(y) => self.look(|c| y.dense[c] * phi[c], &mut carried),
+            None => self.look(|c| phi[c], &mut carried),
         }
         for face in &self.faces {
             let flux = face.area * velocity.components[face.axis].data()[face.index];
             let ends = if flux >= 0.0 { [0, 1] } else { [1, 0] };
             // Where the flow comes from, or else the other side.
             let Some(from) = ends.into_iter().find(|&end| face.sides[end].is_some()) else { continue };
-            let on_face = |values: &[(f64, [f64; D])]| {
+            let on_face = |values: &[Linear<D>]| {
                 face.sides[from].map_or([0.0; 2], |(place, gap)| {
                     let (value, slope) = &values[place];
                     [*value, if from == 0 { gap } else { -gap } * slope[face.axis]]
@@ -216,14 +199,14 @@ impl<const D: usize> NearSolids<D> {
             let [g, more] = on_face(&carried);
             // Nothing flows out that is not there.
             let g = g + more.clamp(-g.abs(), g.abs());
-            let y = distance.map(|_| on_face(&apart).iter().sum::<f64>());
+            let y = distances.map(|y| (&y.near, on_face(&y.near).iter().sum::<f64>()));
             for (end, side) in face.sides.iter().enumerate() {
                 let Some((place, _)) = *side else { continue };
                 let cell = self.cells[place].cell;
                 let inflow = if end == 1 { flux } else { -flux };
                 let brought = match y {
-                    Some(y) => {
-                        let (own, _) = apart[place];
+                    Some((near, y)) => {
+                        let (own, _) = near[place];
                         ((g - carried[place].0) - phi[cell] * (y - own)) / own
                     }
                     None => g - phi[cell],
@@ -235,6 +218,6 @@ impl<const D: usize> NearSolids<D> {
                 out[cell] += inflow * (brought - upwind);
             }
         }
-        (self.dense, self.carried, self.distance) = (dense, carried, apart);
+        self.carried = carried;
     }
 }

@@ -34,21 +34,6 @@ fn dense<const D: usize>(grid: &CartesianGrid<D>, f: impl Fn([f64; 3]) -> f64) -
     (0..grid.n_cells()).map(|i| f(place(grid.centre(grid.cell(i))))).collect()
 }
 
-fn equation<'a>(diffusivity: &'a [f64], source: &'a [f64], sink: &'a [f64]) -> Equation<'a> {
-    Equation {
-        diffusivity,
-        source,
-        sink,
-        pinned: &[],
-        blend: &[],
-        inlet: 0.0,
-        wall: None,
-        dt: None,
-        inverse: false,
-        relax: 1.0,
-    }
-}
-
 /// Error of the steady solution; the outer eighths of each axis are pinned to the exact values.
 fn steady_error<const D: usize>(family: Family, n: usize, scheme: Convection) -> [f64; 2] {
     let grid: CartesianGrid<D> = family.grid(n);
@@ -67,7 +52,7 @@ fn steady_error<const D: usize>(family: Family, n: usize, scheme: Convection) ->
         .filter(|&i| grid.cell(i).iter().any(|&k| k < n / 8 || k >= n - n / 8))
         .map(|i| (i, solution[i]))
         .collect();
-    let e = Equation { pinned: &pinned, ..equation(&gamma, &source, &sink) };
+    let e = Equation { pinned: &pinned, ..Equation::new(&gamma, &source, &sink) };
     let mut phi = vec![3.0; grid.n_cells()];
     let mut last = f64::INFINITY;
     for _ in 0..60 {
@@ -119,7 +104,7 @@ fn walled_error<const D: usize>(family: Family, n: usize) -> [f64; 2] {
         u[0] * slope(0) + u[1] * slope(1) + (0.3 * D as f64 * pi * pi + 1.0) * bump(x) + 3.0
     });
     let (gamma, sink) = (vec![0.3; grid.n_cells()], vec![1.0; grid.n_cells()]);
-    let e = Equation { wall: Some(3.0), ..equation(&gamma, &source, &sink) };
+    let e = Equation { wall: Some(3.0), ..Equation::new(&gamma, &source, &sink) };
     let mut phi = vec![3.0; grid.n_cells()];
     let mut last = f64::INFINITY;
     for _ in 0..60 {
@@ -158,7 +143,7 @@ fn inlets_walls_and_outlets_hold_what_they_should() {
         let mut cells = CellTransport::new(&grid, &sides, TransportParams::default()).unwrap();
         let m = grid.n_cells();
         let (gamma, source, sink) = (vec![0.5; m], vec![0.0; m], vec![2.0; m]);
-        let e = Equation { wall: Some(1.0), ..equation(&gamma, &source, &sink) };
+        let e = Equation { wall: Some(1.0), ..Equation::new(&gamma, &source, &sink) };
         let mut phi = vec![0.0; m];
         cells.on(&velocity).unwrap().solve(&e, &mut phi).unwrap();
         let exact = dense(&grid, |x| (2.0 * (x[1] - 0.5)).cosh() / 1.0_f64.cosh());
@@ -175,7 +160,7 @@ fn inlets_walls_and_outlets_hold_what_they_should() {
     let mut cells = CellTransport::new(&grid, &sides, TransportParams::default()).unwrap();
     let (zero, gamma) = (vec![0.0; 60], vec![1e-3; 60]);
     let mut phi = zero.clone();
-    let e = Equation { inlet: 7.0, ..equation(&gamma, &zero, &zero) };
+    let e = Equation { inlet: 7.0, ..Equation::new(&gamma, &zero, &zero) };
     cells.on(&velocity).unwrap().solve(&e, &mut phi).unwrap();
     assert!(phi.iter().all(|p| (p - 7.0).abs() < 1e-6), "{phi:?}");
 }
@@ -190,7 +175,7 @@ fn implicit_steps_are_of_first_order_in_time() {
     let mut error = |steps: usize| {
         let mut phi = vec![3.0; 24];
         for _ in 0..steps {
-            let e = Equation { dt: Some(1.0 / steps as f64), ..equation(&gamma, &source, &sink) };
+            let e = Equation { dt: Some(1.0 / steps as f64), ..Equation::new(&gamma, &source, &sink) };
             cells.on(&velocity).unwrap().solve(&e, &mut phi).unwrap();
         }
         let error = (phi[7] - (0.5 + 2.5 * (-2.0_f64).exp())).abs();
@@ -218,7 +203,8 @@ fn reacting(
     let source = dense(&grid, |x| if (x[0] - 0.5).hypot(x[1] - 0.5) < 0.1 { 1.0 } else { 0.0 });
     let sink = dense(&grid, |x| 50.0 * (1.0 + x[0]));
     let pinned = [(5, 0.0), (40, 50.0), (300, 2.5)];
-    let e = Equation { wall: Some(0.0), relax, pinned: &pinned, blend, ..equation(&gamma, &source, &sink) };
+    let e =
+        Equation { wall: Some(0.0), relax, pinned: &pinned, blend, ..Equation::new(&gamma, &source, &sink) };
     let mut phi = vec![0.3; n];
     let mut info = SolveInfo::default();
     for _ in 0..if relax < 1.0 { 80 } else { 1 } {
@@ -357,7 +343,7 @@ fn bad_equations_are_errors() {
     let mut cells = CellTransport::new(&grid, &sides, TransportParams::default()).unwrap();
     let mut flow = cells.on(&velocity).unwrap();
     let (one, bad, nan) = ([1.0; 6], [-1.0; 6], [f64::NAN; 6]);
-    let good = equation(&one, &one, &one);
+    let good = Equation::new(&one, &one, &one);
     let mut check = |e: Equation<'_>| {
         let error = flow.solve(&e, &mut [1.0; 6]).unwrap_err();
         assert!(matches!(error, SolveError::Value { .. }), "{error}");
@@ -376,7 +362,7 @@ fn bad_equations_are_errors() {
     assert_eq!(short, Err(SolveError::Length { what: "φ", expected: 6, found: 5 }));
     // Nothing determines the level of φ.
     let zero = [0.0; 6];
-    assert!(flow.solve(&equation(&one, &one, &zero), &mut [1.0; 6]).is_err());
+    assert!(flow.solve(&Equation::new(&one, &one, &zero), &mut [1.0; 6]).is_err());
     assert!(flow.strain_rate(&mut [0.0; 2]).is_err());
     assert!(flow.dot_gradients(&one, &one, &mut [0.0; 2]).is_err());
     assert_eq!((flow.n_cells(), flow.cell_volume(4)), (6, grid.cell_volume([1, 1])));
@@ -402,7 +388,7 @@ fn second_order_schemes_keep_signs() {
         let (gamma, sink) = (vec![1e-6; n], vec![0.0; n]);
         let source = dense(&grid, |x| if x[0] < 0.5 && x[1] > 0.5 { 1.0 } else { 0.0 });
         let mut phi = vec![1e-6; n];
-        let e = Equation { inlet: 1e-6, relax: 0.9, ..equation(&gamma, &source, &sink) };
+        let e = Equation { inlet: 1e-6, relax: 0.9, ..Equation::new(&gamma, &source, &sink) };
         let mut info = SolveInfo::default();
         for _ in 0..100 {
             info = cells.on(&velocity).unwrap().solve(&e, &mut phi).unwrap();
@@ -423,7 +409,7 @@ fn small_values_beside_large_ones_are_right() {
     // Γφ'' = sink φ: φ falls by e^(−√900 h) from cell to cell, 13 orders of magnitude in all.
     let (gamma, source, sink) = (vec![1.0; n], vec![0.0; n], vec![900.0; n]);
     let pinned = [(0, 1e6), (1, 1e6)];
-    let e = Equation { pinned: &pinned, ..equation(&gamma, &source, &sink) };
+    let e = Equation { pinned: &pinned, ..Equation::new(&gamma, &source, &sink) };
     let mut phi = vec![1e-3; n];
     for _ in 0..3 {
         cells.on(&velocity).unwrap().solve(&e, &mut phi).unwrap();
@@ -455,7 +441,7 @@ fn nothing_passes_faces_of_cells_without_fluid() {
     cells.set_walls((0..n).filter(|&i| solid(i)).map(|i| (i, Vec::new())).collect());
     let mut flow = cells.on(&velocity).unwrap();
     let (gamma, none) = (vec![1e-3; n], vec![0.0; n]);
-    let e = Equation { inlet: 1.0, ..equation(&gamma, &none, &none) };
+    let e = Equation { inlet: 1.0, ..Equation::new(&gamma, &none, &none) };
     // In the solid it rises towards the fluid, so that no limiter takes the difference away.
     let in_solid = |i: usize| 0.5 * 5_usize.saturating_sub(grid.cell(i)[1]) as f64;
     let mut phi: Vec<f64> = (0..n).map(|i| if solid(i) { in_solid(i) } else { 1.0 }).collect();
@@ -492,7 +478,7 @@ fn a_flow_along_a_wall_leaves_what_changes_across_it() {
         cells.set_walls(dry.map(|i| (i, Vec::new())).collect());
         let mut left = |phi: &dyn Fn(f64) -> f64, inverse: bool, from: f64| {
             let phi: Vec<f64> = (0..n * n).map(|i| phi(distance(i))).collect();
-            let e = Equation { inverse, ..equation(&none, &none, &none) };
+            let e = Equation { inverse, ..Equation::new(&none, &none, &none) };
             cells.assemble(&velocity, &e, &phi).unwrap();
             let mut residual = vec![0.0; n * n];
             cells.matrix.residual(&cells.b, &phi, &mut residual);
@@ -524,7 +510,7 @@ fn without_distances_scalars_are_numbers() {
         cells.wall_distance_mut().fill(distance);
         cells.set_walls((0..n).filter(|&i| grid.cell(i)[1] < 2).map(|i| (i, Vec::new())).collect());
         let (gamma, none) = (vec![1e-3; n], vec![0.0; n]);
-        let e = Equation { inlet: 1.0, inverse: true, ..equation(&gamma, &none, &none) };
+        let e = Equation { inlet: 1.0, inverse: true, ..Equation::new(&gamma, &none, &none) };
         let mut phi = vec![1.0; n];
         for _ in 0..5 {
             cells.on(&velocity).unwrap().solve(&e, &mut phi).unwrap();

@@ -347,18 +347,7 @@ impl<L: Law> TwoEquation<L> {
 
 fn equation(terms: &[Vec<f64>; 3], inlet: f64, relax: f64, dt: Option<f64>) -> Equation<'_> {
     let [diffusivity, source, sink] = terms;
-    Equation {
-        diffusivity,
-        source,
-        sink,
-        pinned: &[],
-        blend: &[],
-        inlet,
-        wall: None,
-        dt,
-        inverse: false,
-        relax,
-    }
+    Equation { inlet, dt, relax, ..Equation::new(diffusivity, source, sink) }
 }
 
 /// `beside` a wall, `own` of the model: (1 − free) of the first and the rest of the second.

@@ -2,10 +2,8 @@
 use super::gradients::{Gradients, around};
 use super::openings::Openings;
 use super::stress::Stresses;
+use crate::transport::NEAREST;
 use interfaces::WallRow;
-
-/// Centres nearer to the wall than this share of a cell are seen as if they were there.
-const NEAREST: f64 = 0.3;
 
 /// The cells beside walls: those that a wall cuts and those that share a face with one whose centre is not in the fluid.
 #[derive(Default)]

@@ -9,6 +9,7 @@ mod plate;
 mod robust;
 mod shaken;
 mod step;
+mod turned;
 
 use example_support::{Outcome, run_cases};
 
@@ -22,6 +23,7 @@ fn main() -> Outcome<()> {
         ("robust", robust::bad_starts),
         ("tgv", large_eddies::taylor_green),
         ("les", eddies_in_channel::channel),
+        ("turned", turned::turned_ducts),
         ("couette", couette::sliding_plate),
         ("shaken", shaken::swinging_cylinder),
     ])

@@ -11,8 +11,8 @@ use clap::{Parser, ValueEnum};
 use duct::Duct;
 use example_support::Outcome;
 use siltflow::flow::{
-    Axis, CartesianGrid, CellWriter, Convection, Fluid, Modelled, Patch, Profile, Side, Simple, SimpleParams,
-    TransportParams, WallStress,
+    Axis, CartesianGrid, CellWriter, Convection, FlowError, Fluid, Modelled, Patch, Profile, Side, Simple,
+    SimpleParams, TransportParams, WallStress,
 };
 use siltflow::ibm::{StaticBodies, cut_cells};
 use siltflow::interfaces::{Closure, Pose};
@@ -165,7 +165,8 @@ fn run<C: Closure>(cli: &Cli, duct: Duct, grid: CartesianGrid<2>, closure: C, na
     let iterations = flow.iterations();
     match solved {
         Ok(info) => println!("{} iterations, {info:?}", info.iterations),
-        Err(error) => println!("{error}"),
+        Err(error @ FlowError::NotSteady { .. }) => println!("{error}"),
+        Err(error) => return Err(error.into()),
     }
     let cost = seconds / iterations.max(1) as f64 / fluid_cells as f64 * 1e6;
     println!("{seconds:.1} s, {cost:.2} µs per cell in the fluid and iteration");

@@ -29,6 +29,7 @@ pub mod startup_theory;
 pub mod suspension;
 pub mod table;
 pub mod turbulent_flows;
+pub mod turned_ducts;
 pub mod unfolded;
 pub mod wake;
 pub mod walled_flows;

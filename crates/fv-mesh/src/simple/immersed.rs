@@ -72,6 +72,7 @@ impl<const D: usize> Simple<D> {
         let Some(walls) = &self.walls else { return };
         if let Some(stress) = &mut self.stress {
             walls.extend(&mut stress.eddy);
+            model.transport().wrap(&mut stress.eddy);
         }
         match model.closure.kinetic_energy() {
             Some(k) => {

@@ -271,8 +271,8 @@ impl<const D: usize> Simple<D> {
         }
         info.pressure_iterations = match self.correction.solve(false) {
             Ok(solved) => solved.iterations,
-            // Coefficients of a velocity that is far too large.
-            Err(PoissonError::NotConverged { iterations: 0, .. }) => return Err(self.state.diverged(0.0)),
+            // The residual grew: coefficients of a velocity that is far too large.
+            Err(PoissonError::NotConverged { .. }) => return Err(self.state.diverged(0.0)),
             Err(error) => return Err(error.into()),
         };
         self.correction.correct(boundaries, velocity);
@@ -313,6 +313,7 @@ impl<const D: usize> Simple<D> {
             Some(walls) => {
                 walls.fill_rows(viscosity);
                 walls.reach_in(&mut self.state.velocity.components);
+                self.state.fill_velocity();
                 let updated = model.update(&self.state.velocity, walls.wall_rows(), viscosity, 0.0, None);
                 walls.stop(&self.state.grid, &mut self.state.velocity.components);
                 updated?;

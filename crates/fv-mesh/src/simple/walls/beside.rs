@@ -19,7 +19,7 @@ impl Beside {
         let mut new = Self::default();
         for cell in 0..grid.n_cells() {
             let index = grid.place(grid.cell(cell));
-            let dry = |o: usize| grid.cell_at(o).is_some() && !openings.wet[o];
+            let dry = |o: usize| grid.cell_at(openings.wrap(o)).is_some() && !openings.wet[o];
             let beside = (0..D).any(|a| dry(index - s[a]) || dry(index + s[a]));
             if !openings.wet[index] || !beside && openings.piece(index).is_none() {
                 continue;
@@ -38,7 +38,7 @@ impl Beside {
             else {
                 continue;
             };
-            let extent = openings.extent(index, wall);
+            let extent = openings.extent(index, &wall);
             let y = y.max(NEAREST * extent);
             new.rows.push(WallRow { cell, y, area: wall.area, ..WallRow::default() });
             new.probes.push((probe, y + 0.5 * extent));
@@ -77,7 +77,7 @@ pub(super) fn ghosts<const D: usize>(
     for node in nodes.filter(|&o| !openings.alive(c, o)) {
         let x = openings.node(c, node);
         let from: Vec<_> = around(openings, node)
-            .filter(|&o| openings.alive(c, o) && grid.cell_at(o).is_some())
+            .filter(|&o| openings.alive(c, o) && grid.cell_at(openings.wrap(o)).is_some())
             .map(|other| {
                 let y = openings.node(c, other);
                 let slot = gradients.slot(openings, c, other, nearest);

@@ -62,6 +62,7 @@ impl<const D: usize> Gradients<D> {
         node: usize,
         nearest: Option<f64>,
     ) -> u32 {
+        let node = openings.wrap(node);
         if let Some(&slot) = self.slots.get(&node) {
             return slot;
         }
@@ -80,7 +81,7 @@ impl<const D: usize> Gradients<D> {
         for (nearest, cell) in nearest.into_iter().flat_map(|nearest| [(nearest, node - s), (nearest, node)])
         {
             let Some((piece, wall)) = openings.piece(cell) else { continue };
-            let y = norm2(&to_wall(wall, x)).sqrt().max(nearest * openings.extent(cell, wall));
+            let y = norm2(&to_wall(&wall, x)).sqrt().max(nearest * openings.extent(cell, &wall));
             if y > 0.0 {
                 seen.push((Point::Wall(self.walls.len()), std::array::from_fn(|a| -y * wall.normal[a])));
                 self.walls.push((piece, y));
@@ -100,22 +101,6 @@ impl<const D: usize> Gradients<D> {
         self.nodes.push(Node { index: node, ends: [self.terms.len(), self.walls.len()], own });
         self.values.push([0.0; D]);
         slot
-    }
-
-    /// Where the terms and walls of a node begin.
-    fn starts(&self, k: usize) -> [usize; 2] {
-        if k == 0 { [0; 2] } else { self.nodes[k - 1].ends }
-    }
-
-    /// Adds the value at `by` from a node, without what walls say, as weights of stored values.
-    pub(super) fn extrapolation(&self, slot: u32, by: [f64; D], out: &mut Vec<(usize, f64)>, weight: f64) {
-        let k = slot as usize;
-        let node = &self.nodes[k];
-        out.push((node.index, weight * (1.0 + dot(&node.own.free, &by))));
-        out.extend(self.terms[self.starts(k)[0]..node.ends[0]].iter().filter_map(|term| match term.point {
-            Point::Node(other) => Some((other, weight * dot(&term.weight.free, &by))),
-            Point::Wall(_) => None,
-        }));
     }
 
     /// Looks at the flow; `at_wall`: what is so at a distance from a piece of wall.
@@ -149,8 +134,13 @@ impl<const D: usize> Gradients<D> {
 
 /// From `x` to the wall.
 pub(super) fn to_wall<const D: usize>(wall: &WallPiece, x: [f64; D]) -> [f64; D] {
-    let y: f64 = (0..D).map(|a| (x[a] - wall.foot[a]) * wall.normal[a]).sum();
+    let y = height(wall, x);
     std::array::from_fn(|a| -y.max(0.0) * wall.normal[a])
+}
+
+/// How far a place is before a wall \[m\].
+pub(super) fn height<const D: usize>(wall: &WallPiece, x: [f64; D]) -> f64 {
+    (0..D).map(|a| (x[a] - wall.foot[a]) * wall.normal[a]).sum()
 }
 
 /// The block of nodes around one, itself included.

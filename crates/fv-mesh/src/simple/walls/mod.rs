@@ -30,7 +30,7 @@ pub(crate) struct SimpleWalls<const D: usize> {
     pub(super) shut: [Vec<usize>; D],
     /// Faces with a part that is open: storage index, dense number of the cell above and share.
     partly: [Vec<(usize, usize, f64)>; D],
-    /// The same on the sides of the box: storage index and share.
+    /// The same on the sides of the box, and where a periodic axis ends: storage index and share.
     sides: [Vec<(usize, f64)>; D],
     /// Cells without fluid at their centre, and the weights of those around from which their ν_t is taken.
     dry: Vec<(usize, Vec<(usize, f64)>)>,
@@ -69,7 +69,7 @@ impl<const D: usize> SimpleWalls<D> {
         metrics: &Metrics<D>,
         outlets: &HashSet<(usize, usize)>,
     ) -> Result<Self, FlowError> {
-        let openings = Openings::new(cuts, grid, metrics, outlets)?;
+        let openings = Openings::new(cuts, grid, metrics, outlets, matches!(law, WallStress::Law { .. }))?;
         let mut gradients = std::array::from_fn(|_| Gradients::default());
         let (mut shut, mut partly) =
             (std::array::from_fn(|_| Vec::new()), std::array::from_fn(|_| Vec::new()));
@@ -96,11 +96,15 @@ impl<const D: usize> SimpleWalls<D> {
                 }
                 if open < 1.0 {
                     partly[c].push((index, cell, open));
+                    if grid.cell(cell)[c] == 0 {
+                        // The same face at the other end.
+                        sides[c].push((index + grid.cells()[c] * grid.stride()[c], open));
+                    }
                 }
                 rows[c].extend(Row::new(&openings, c, index, law.nearest(), &mut gradients));
             }
         }
-        let stresses = Stresses::new(&openings, law, &rows, &mut gradients);
+        let stresses = Stresses::new(&openings, law, &rows);
         let beside = Beside::new(&openings);
         let ghosts = std::array::from_fn(|c| beside::ghosts(&openings, c, law.nearest(), &mut gradients[c]));
         let n_bodies = cuts.walls.iter().map(|w| w.body + 1).max().unwrap_or(0);
@@ -283,8 +287,10 @@ fn dry<const D: usize>(openings: &Openings<D>) -> Vec<(usize, Vec<(usize, f64)>)
     cells
         .filter(|&o| !openings.wet[o])
         .map(|cell| {
-            let from: Vec<usize> =
-                gradients::around(openings, cell).filter(|&o| inner(o) && openings.wet[o]).collect();
+            let from: Vec<usize> = gradients::around(openings, cell)
+                .map(|o| openings.wrap(o))
+                .filter(|&o| inner(o) && openings.wet[o])
+                .collect();
             let weight = 1.0 / from.len().max(1) as f64;
             (cell, from.into_iter().map(|o| (o, weight)).collect())
         })

@@ -5,6 +5,9 @@ use crate::{CartesianGrid, Field, FlowError};
 use interfaces::{CutCells, WallPiece};
 use std::collections::{HashMap, HashSet};
 
+/// Cells at most as many steps from one that a wall cuts are near it.
+const LAYERS: usize = 3;
+
 /// What walls leave of the cells, by storage index.
 pub(super) struct Openings<'a, const D: usize> {
     pub(super) grid: &'a CartesianGrid<D>,
@@ -15,6 +18,8 @@ pub(super) struct Openings<'a, const D: usize> {
     centres: [HashMap<usize, [f64; D]>; D],
     /// Is there fluid at the centre of the cell?
     pub(super) wet: Vec<bool>,
+    /// Is the cell so near a wall that stress and convection follow the wall?
+    pub(super) near: Vec<bool>,
     /// The piece of wall in a cell, by storage index of the cell.
     pieces: HashMap<usize, usize>,
     pub(super) walls: &'a [WallPiece],
@@ -28,6 +33,7 @@ impl<'a, const D: usize> Openings<'a, D> {
         grid: &'a CartesianGrid<D>,
         metrics: &'a Metrics<D>,
         outlets: &HashSet<(usize, usize)>,
+        law: bool,
     ) -> Result<Self, FlowError> {
         let fail = |name, value, range| Err(FlowError::Parameter { name, value, range });
         let mut open = std::array::from_fn(|_| Field::zeros(grid));
@@ -63,9 +69,35 @@ impl<'a, const D: usize> Openings<'a, D> {
             }
             pieces.insert(grid.place(grid.cell(wall.cell)), p);
         }
-        let mut this = Self { grid, metrics, open, centres, wet: Vec::new(), pieces, walls: &cuts.walls };
+        let mut this = Self {
+            grid,
+            metrics,
+            open,
+            centres,
+            wet: Vec::new(),
+            near: vec![false; grid.storage()],
+            pieces,
+            walls: &cuts.walls,
+        };
         this.wet = (0..grid.storage()).map(|o| this.is_wet(o)).collect();
+        if law {
+            this.mark_near();
+        }
         Ok(this)
+    }
+
+    /// The storage index inside the box that one among the ghosts stands for, along periodic axes.
+    pub(super) fn wrap(&self, index: usize) -> usize {
+        storage_index(self.grid, wrapped(self.grid, self.metrics, self.at(index)))
+    }
+
+    /// How far a place among the ghosts is from the one it stands for \[m\].
+    fn shift(&self, index: usize) -> [f64; D] {
+        let (at, n) = (self.at(index), self.grid.cells());
+        std::array::from_fn(|a| {
+            let turns = (at[a] as isize - GHOSTS as isize).div_euclid(n[a] as isize);
+            if self.metrics.periodic[a] { turns as f64 * self.grid.axis(a).length() } else { 0.0 }
+        })
     }
 
     /// Storage coordinates.
@@ -75,8 +107,9 @@ impl<'a, const D: usize> Openings<'a, D> {
 
     /// Place of the node of component `c` \[m\]: the centroid of what is open.
     pub(super) fn node(&self, c: usize, index: usize) -> [f64; D] {
-        if let Some(&x) = self.centres[c].get(&index).filter(|_| self.open[c].data()[index] > 0.0) {
-            return x;
+        if let Some(&x) = self.centres[c].get(&self.wrap(index)).filter(|_| self.alive(c, index)) {
+            let shift = self.shift(index);
+            return std::array::from_fn(|a| x[a] + shift[a]);
         }
         let at = self.at(index);
         std::array::from_fn(|a| self.metrics.of(Some(c), a).x[at[a]])
@@ -96,9 +129,29 @@ impl<'a, const D: usize> Openings<'a, D> {
         self.open[c].data()[index] >= 1.0
     }
 
-    /// The wall in the cell with this storage index.
-    pub(super) fn piece(&self, cell: usize) -> Option<(usize, &'a WallPiece)> {
-        self.pieces.get(&cell).map(|&p| (p, &self.walls[p]))
+    /// The wall in the cell with this storage index, where the cell is.
+    pub(super) fn piece(&self, cell: usize) -> Option<(usize, WallPiece)> {
+        let &p = self.pieces.get(&self.wrap(cell))?;
+        let mut wall = self.walls[p];
+        self.shift(cell).iter().enumerate().for_each(|(a, shift)| wall.foot[a] += shift);
+        Some((p, wall))
+    }
+
+    /// Marks the cells at most [`LAYERS`] steps from one with a wall, and their ghosts.
+    fn mark_near(&mut self) {
+        let mut front: Vec<usize> = self.pieces.keys().copied().collect();
+        for _ in 0..=LAYERS {
+            front.iter().for_each(|&cell| self.near[cell] = true);
+            let around = front.iter().flat_map(|&cell| super::gradients::around(self, cell));
+            let mut next: Vec<usize> = around
+                .map(|o| self.wrap(o))
+                .filter(|&o| !self.near[o] && self.grid.cell_at(o).is_some())
+                .collect();
+            next.sort_unstable();
+            next.dedup();
+            front = next;
+        }
+        self.near = (0..self.near.len()).map(|o| self.near[self.wrap(o)]).collect();
     }
 
     /// How far a cell extends along a wall's normal \[m\].
@@ -109,6 +162,7 @@ impl<'a, const D: usize> Openings<'a, D> {
 
     /// The centre of a cell is in the fluid if it has an open face and no wall, or is before the wall it has.
     fn is_wet(&self, cell: usize) -> bool {
+        let cell = self.wrap(cell);
         let at = self.at(cell);
         let s = self.grid.stride();
         if (0..D).any(|a| at[a] + 1 >= self.grid.cells()[a] + 2 * GHOSTS) {
@@ -135,6 +189,10 @@ pub(super) fn coordinates<const D: usize>(grid: &CartesianGrid<D>, mut index: us
     at
 }
 
+fn storage_index<const D: usize>(grid: &CartesianGrid<D>, at: [usize; D]) -> usize {
+    at.iter().zip(grid.stride()).map(|(i, s)| i * s).sum()
+}
+
 /// Is this a face of component `c`, those on the sides included?
 fn on_grid<const D: usize>(grid: &CartesianGrid<D>, metrics: &Metrics<D>, c: usize, index: usize) -> bool {
     let (at, n) = (coordinates(grid, index), grid.cells());
@@ -146,18 +204,21 @@ fn on_grid<const D: usize>(grid: &CartesianGrid<D>, metrics: &Metrics<D>, c: usi
 
 /// Ghosts of shares: periodic, or those of the nearest face inside.
 fn fill_ghosts<const D: usize>(grid: &CartesianGrid<D>, metrics: &Metrics<D>, c: usize, values: &mut [f64]) {
-    let (n, s) = (grid.cells(), grid.stride());
+    let n = grid.cells();
     for index in 0..values.len() {
-        let at = coordinates(grid, index);
-        let from: [usize; D] = std::array::from_fn(|a| {
-            let i = at[a] as isize - GHOSTS as isize;
-            let m = n[a] as isize;
-            let inside =
-                if metrics.periodic[a] { i.rem_euclid(m) } else { i.clamp(0, m - isize::from(a != c)) };
-            GHOSTS + inside as usize
-        });
-        if from != at {
-            values[index] = values[(0..D).map(|a| from[a] * s[a]).sum::<usize>()];
+        let mut from = wrapped(grid, metrics, coordinates(grid, index));
+        for axis in (0..D).filter(|&axis| !metrics.periodic[axis]) {
+            from[axis] = from[axis].clamp(GHOSTS, GHOSTS + n[axis] - usize::from(axis != c));
         }
+        values[index] = values[storage_index(grid, from)];
     }
+}
+
+/// Storage coordinates inside the box along periodic axes.
+fn wrapped<const D: usize>(grid: &CartesianGrid<D>, metrics: &Metrics<D>, mut at: [usize; D]) -> [usize; D] {
+    for (a, i) in at.iter_mut().enumerate().filter(|&(a, _)| metrics.periodic[a]) {
+        let inside = (*i as isize - GHOSTS as isize).rem_euclid(grid.cells()[a] as isize);
+        *i = GHOSTS + inside as usize;
+    }
+    at
 }

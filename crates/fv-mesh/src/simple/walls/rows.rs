@@ -16,12 +16,18 @@ pub(super) struct Row<const D: usize> {
     pub(super) index: usize,
     /// 1/(open area · distance of the cells' centres) \[1/m³\]: the volume that the pressure gradient acts on.
     pub(super) inv_volume: f64,
-    edges: [[Edge<D>; 2]; D],
+    edges: Vec<Edge<D>>,
     slot: u32,
 }
 
-/// A face of a control volume.
+/// A face of a control volume, or a part of one.
 struct Edge<const D: usize> {
+    /// Its normal's axis, and whether it is the upper one.
+    axis: usize,
+    upper: bool,
+    /// Storage index of the node across, and whether that is the next one along the axis.
+    other: usize,
+    next: bool,
     /// Storage index of the node above it, which numbers it.
     number: usize,
     /// Open area over the volume \[1/m\].
@@ -82,9 +88,12 @@ fn is_plain<const D: usize>(openings: &Openings<D>, [c, b]: [usize; 2], number: 
     } else {
         [number, number - s[b], number - s[c], number - s[b] - s[c]]
     };
+    // Nodes of component `c` beside the control volumes on either side.
+    let beside = [number, number - s[b]].into_iter().flat_map(|o| [o - s[c], o + s[c]]);
     nodes.iter().all(|&o| full(c, o))
+        && beside.into_iter().all(|o| openings.alive(c, o))
         && (b == c || is_whole(openings, [c, b], number))
-        && cells.iter().all(|&o| openings.wet[o])
+        && cells.iter().all(|&o| openings.wet[o] && !openings.near[o])
 }
 
 /// Are both faces that carry through the edge wholly open?
@@ -130,11 +139,11 @@ impl<const D: usize> Row<D> {
         let gap = openings.metrics.axes[c].faces.volume[at[c]];
         let inv_volume = 1.0 / (openings.open[c].data()[index] * openings.area(c, index) * gap);
         let slot = gradients[c].slot(openings, c, index, nearest);
-        let edges = std::array::from_fn(|b| {
-            [0, 1].map(|upper| {
-                Edge::new(openings, [c, b, upper], index, inv_volume, kind(b, upper), nearest, gradients)
-            })
-        });
+        let mut edges = Vec::with_capacity(2 * D);
+        for (b, upper) in (0..D).flat_map(|b| [(b, false), (b, true)]) {
+            let kind = kind(b, usize::from(upper));
+            Edge::add(openings, [c, b], upper, index, inv_volume, kind, nearest, gradients, &mut edges);
+        }
         let cell = openings.grid.cell_at(index).map_or(0, |cell| openings.grid.index(cell));
         Some(Self { cell, index, inv_volume, edges, slot })
     }
@@ -150,65 +159,61 @@ impl<const D: usize> Row<D> {
         let u = flow.velocity[c].data();
         let here = u[self.index];
         let gradient = &flow.gradients[c].values[self.slot as usize];
-        let s = flow.grid.stride();
         let (centre, mut lower, mut upper) = matrix.parts_mut();
         centre[self.cell] = 0.0;
         let (mut sum, mut rate) = (0.0, 0.0);
         for b in 0..D {
-            for (side, sign) in [(0, -1.0), (1, 1.0)] {
-                let edge = &self.edges[b][side];
-                let other = if side == 0 { self.index - s[b] } else { self.index + s[b] };
-                // What leaves through the edge.
-                let out =
-                    sign * edge.carriers.iter().map(|&(o, a)| a * flow.velocity[b].data()[o]).sum::<f64>();
-                let nu = edge.viscosity(flow, [c, b]);
-                let total = flow.viscosity + if b == c { 2.0 * nu } else { nu };
-                let mut linked = true;
-                match &edge.kind {
-                    Kind::Plain | Kind::Side => {
-                        let (j, i) =
-                            (coordinate(flow.grid, edge.number, b), coordinate(flow.grid, edge.number, c));
-                        let [carried, slope] =
-                            flow.equations.edge_flux(flow.velocity, [c, b], edge.number, [i, j]);
-                        let mut stress = total * slope;
-                        if b != c && nu > 0.0 {
-                            let v = flow.velocity[b].data();
-                            stress += nu
-                                * flow.metrics.axes[c].faces.inv_volume[i]
-                                * (v[edge.number] - v[edge.number - s[c]]);
-                        }
-                        sum += sign * edge.area * stress;
-                        sum -= match edge.kind {
-                            Kind::Side => 0.5 * out * (here + u[other]),
-                            _ => sign * edge.area * carried,
-                        };
+            lower[b][self.cell] = 0.0;
+            upper[b][self.cell] = 0.0;
+        }
+        for edge in &self.edges {
+            let (b, there) = (edge.axis, u[edge.other]);
+            let sign = if edge.upper { 1.0 } else { -1.0 };
+            // What leaves through the edge.
+            let out = sign * edge.carriers.iter().map(|&(o, a)| a * flow.velocity[b].data()[o]).sum::<f64>();
+            let nu = edge.viscosity(flow, [c, b]);
+            let total = flow.viscosity + if b == c { 2.0 * nu } else { nu };
+            rate += 0.5 * out.abs();
+            match &edge.kind {
+                Kind::Plain | Kind::Side => {
+                    let (j, i) =
+                        (coordinate(flow.grid, edge.number, b), coordinate(flow.grid, edge.number, c));
+                    let [carried, slope] =
+                        flow.equations.edge_flux(flow.velocity, [c, b], edge.number, [i, j]);
+                    let mut stress = total * slope;
+                    if b != c && nu > 0.0 {
+                        let v = flow.velocity[b].data();
+                        stress += nu
+                            * flow.metrics.axes[c].faces.inv_volume[i]
+                            * (v[edge.number] - v[edge.number - flow.grid.stride()[c]]);
                     }
-                    Kind::Blind { to_edge } => {
-                        sum -= out * (here + dot(gradient, to_edge));
-                        linked = false;
-                    }
-                    Kind::Cut(link) => {
-                        let far = &flow.gradients[c].values[link.other as usize];
-                        let there = u[other];
-                        let value = link.value(flow.scheme, out, [here, there], [gradient, far]);
-                        let slope = link.slope(b, [here, there], [gradient, far]);
-                        let mut stress = total * slope;
-                        if b != c && nu > 0.0 {
-                            stress += nu * link.cross(edge, [c, b], flow);
-                        }
-                        sum += edge.conduct * link.step[b].abs() * sign * stress - out * value;
-                    }
+                    sum += sign * edge.area * stress;
+                    sum -= match edge.kind {
+                        Kind::Side => 0.5 * out * (here + there),
+                        _ => sign * edge.area * carried,
+                    };
                 }
-                let list = if side == 0 { &mut lower[b] } else { &mut upper[b] };
-                if linked {
-                    let coefficient = total * edge.conduct + (-out).max(0.0);
-                    list[self.cell] = -coefficient;
-                    centre[self.cell] += coefficient;
-                    rate += viscous_share * total * edge.conduct;
-                } else {
-                    list[self.cell] = 0.0;
+                Kind::Blind { to_edge } => {
+                    sum -= out * (here + dot(gradient, to_edge));
+                    continue;
                 }
-                rate += 0.5 * out.abs();
+                Kind::Cut(link) => {
+                    let far = &flow.gradients[c].values[link.other as usize];
+                    let value = link.value(flow.scheme, out, [here, there], [gradient, far]);
+                    let slope = link.slope(b, [here, there], [gradient, far]);
+                    let mut stress = total * slope;
+                    if b != c && nu > 0.0 {
+                        stress += nu * link.cross(edge, [c, b], flow);
+                    }
+                    sum += edge.conduct * link.step[b].abs() * sign * stress - out * value;
+                }
+            }
+            let coefficient = total * edge.conduct + (-out).max(0.0);
+            centre[self.cell] += coefficient;
+            rate += viscous_share * total * edge.conduct;
+            if edge.next {
+                let list = if edge.upper { &mut upper[b] } else { &mut lower[b] };
+                list[self.cell] = -coefficient;
             }
         }
         [sum, rate]
@@ -216,10 +221,76 @@ impl<const D: usize> Row<D> {
 }
 
 impl<const D: usize> Edge<D> {
+    /// The edges of a node's control volume on one side along `b`. Where no node is across, what it would have is that of the node on the other side
+    /// of its cell.
+    fn add(
+        openings: &Openings<D>,
+        [c, b]: [usize; 2],
+        upper: bool,
+        index: usize,
+        inv_volume: f64,
+        kind: Option<Kind<D>>,
+        nearest: Option<f64>,
+        gradients: &mut [Gradients<D>; D],
+        edges: &mut Vec<Self>,
+    ) {
+        let s = openings.grid.stride();
+        let number = if upper { index + s[b] } else { index };
+        let across = |o: usize| if upper { o + s[b] } else { o - s[b] };
+        let next = across(index);
+        let area = |o: usize| 0.5 * openings.open[b].data()[o] * openings.area(b, o);
+        let pair = if b == c { [number - s[b], number] } else { [number - s[c], number] };
+        // The other face of either cell that the control volume has a part of: where nothing passes it, that is all of the cell.
+        let behind = |k: usize, o: usize| if k == 0 { o - s[c] } else { o + s[c] };
+        let alone = |k: usize| b != c && !openings.alive(c, behind(k, index));
+        let whole = [0, 1].map(|k| (pair[k], if alone(k) { 2.0 } else { 1.0 } * area(pair[k])));
+        let mut add = |other: usize, carriers: [(usize, f64); 2], kind: Option<Kind<D>>| {
+            let edge = Self::new(
+                openings,
+                [c, b],
+                upper,
+                [index, other],
+                carriers,
+                inv_volume,
+                kind,
+                nearest,
+                gradients,
+            );
+            edges.push(edge);
+        };
+        if kind.is_some() {
+            add(next, whole, kind);
+            return;
+        }
+        if b == c {
+            if openings.alive(c, next) {
+                add(next, whole, None);
+            }
+            return;
+        }
+        let mut main = [(pair[0], 0.0), (pair[1], 0.0)];
+        for (k, face) in pair.into_iter().enumerate() {
+            // Across the half beside the node, and across the other one.
+            let halves = [next, behind(k, next)];
+            for half in 0..if alone(k) { 2 } else { 1 } {
+                let owner = [halves[half], halves[1 - half]].into_iter().find(|&o| openings.alive(c, o));
+                match owner.unwrap_or(next) {
+                    owner if owner == next => main[k].1 += area(face),
+                    owner => add(owner, [(face, area(face)), (face, 0.0)], None),
+                }
+            }
+        }
+        if main[0].1 + main[1].1 > 0.0 {
+            add(next, main, None);
+        }
+    }
+
     fn new(
         openings: &Openings<D>,
-        [c, b, upper]: [usize; 3],
-        index: usize,
+        [c, b]: [usize; 2],
+        upper: bool,
+        [index, other]: [usize; 2],
+        carriers: [(usize, f64); 2],
         inv_volume: f64,
         kind: Option<Kind<D>>,
         nearest: Option<f64>,
@@ -227,19 +298,19 @@ impl<const D: usize> Edge<D> {
     ) -> Self {
         let Openings { grid, metrics, .. } = openings;
         let s = grid.stride();
-        let number = index + upper * s[b];
-        let other = if upper == 1 { index + s[b] } else { index - s[b] };
+        let number = if upper { index + s[b] } else { index };
+        let next = other == if upper { number } else { index - s[b] };
         let at = openings.at(number);
-        let pair = if b == c { [number - s[b], number] } else { [number - s[c], number] };
-        // Halves of the two faces.
-        let half = |o: usize| 0.5 * openings.open[b].data()[o] * openings.area(b, o);
-        let areas = pair.map(half);
+        let open = carriers[0].1 + carriers[1].1;
         let gap = 1.0 / metrics.of(Some(c), b).inv_gap[at[b]];
-        let open = areas[0] + areas[1];
         let mut edge = Self {
+            axis: b,
+            upper,
+            other,
+            next,
             number,
             area: open * inv_volume,
-            carriers: [(pair[0], areas[0] * inv_volume), (pair[1], areas[1] * inv_volume)],
+            carriers: carriers.map(|(o, area)| (o, area * inv_volume)),
             conduct: open * inv_volume / gap,
             kind: Kind::Plain,
         };
@@ -247,9 +318,10 @@ impl<const D: usize> Edge<D> {
             edge.kind = kind;
             return edge;
         }
-        let (x, middle) = (openings.node(c, index), middle(openings, [c, b], number, pair, areas));
+        let pair = carriers.map(|(o, _)| o);
+        let (x, middle) = (openings.node(c, index), middle(openings, [c, b], number, carriers));
         let to_edge = std::array::from_fn(|a| middle[a] - x[a]);
-        if !openings.alive(c, other) || open == 0.0 {
+        if !openings.alive(c, other) {
             edge.kind = Kind::Blind { to_edge };
             return edge;
         }
@@ -266,7 +338,13 @@ impl<const D: usize> Edge<D> {
             step,
             share: (to_edge[b] / step[b]).clamp(0.0, 1.0),
             sliver: [index, other].iter().any(|&o| openings.open[c].data()[o] < SLIVER),
-            across: if b == c { [None; 2] } else { [slot(b, pair[0]), slot(b, pair[1])] },
+            across: if b == c {
+                [None; 2]
+            } else if pair[0] == pair[1] {
+                [slot(b, pair[0]), None]
+            } else {
+                [slot(b, pair[0]), slot(b, pair[1])]
+            },
             between: std::array::from_fn(|a| w[a] - v[a]),
         });
         edge
@@ -278,6 +356,11 @@ impl<const D: usize> Edge<D> {
         let (k, s) = (self.number, flow.grid.stride());
         if b == c {
             return eddy[k - s[b]];
+        }
+        if let [(face, _), (other, _)] = self.carriers
+            && face == other
+        {
+            return 0.5 * (eddy[face - s[b]] + eddy[face]);
         }
         let (j, m) = (coordinate(flow.grid, k, b), coordinate(flow.grid, k, c));
         let (along_b, along_c) = (&flow.metrics.axes[b].share, &flow.metrics.axes[c].share);
@@ -291,17 +374,16 @@ fn middle<const D: usize>(
     openings: &Openings<D>,
     [c, b]: [usize; 2],
     number: usize,
-    pair: [usize; 2],
-    areas: [f64; 2],
+    carriers: [(usize, f64); 2],
 ) -> [f64; D] {
     let at = openings.at(number);
-    let sum = areas[0] + areas[1];
-    let weights = if sum > 0.0 { areas.map(|a| a / sum) } else { [0.5; 2] };
-    let places = pair.map(|o| openings.node(b, o));
+    let sum = carriers[0].1 + carriers[1].1;
+    let weights = if sum > 0.0 { carriers.map(|(_, area)| area / sum) } else { [0.5; 2] };
+    let places = carriers.map(|(o, _)| openings.node(b, o));
     let mut x: [f64; D] = std::array::from_fn(|a| weights[0] * places[0][a] + weights[1] * places[1][a]);
     if b == c {
         x[c] = openings.metrics.axes[c].centres.x[at[c] - 1];
-    } else {
+    } else if carriers[0].0 != carriers[1].0 {
         let width = &openings.metrics.axes[c].width;
         let face = openings.metrics.axes[c].faces.x[at[c]];
         x[c] = face + 0.25 * (weights[1] * width[at[c]] - weights[0] * width[at[c] - 1]);

@@ -1,5 +1,5 @@
 //! The stress of walls on the fluid.
-use super::gradients::{AtWall, Gradients, to_wall};
+use super::gradients::{AtWall, height, to_wall};
 use super::openings::Openings;
 use super::rows::Row;
 use crate::Field;
@@ -24,6 +24,8 @@ pub enum WallStress {
     },
 }
 
+/// Nodes nearer to a wall than this share of a cell are taken to be there.
+const NEAREST: f64 = 0.05;
 /// y+ of half a cell at which the gradients beside it take the wall for half.
 const RESOLVED: f64 = 30.0;
 
@@ -86,7 +88,8 @@ struct Share {
 pub(super) struct Stresses<const D: usize> {
     law: WallStress,
     pub(super) probes: Vec<Probe>,
-    terms: Vec<(usize, f64)>,
+    /// Nodes, their weights, and their distances from the wall \[m\].
+    terms: Vec<(usize, f64, f64)>,
     cells: Vec<(usize, f64)>,
     shares: [Vec<Share>; D],
     /// Per probe: what the wall takes from the fluid per area and density \[m²/s²\], and that over the velocity.
@@ -99,12 +102,7 @@ pub(super) struct Stresses<const D: usize> {
 }
 
 impl<const D: usize> Stresses<D> {
-    pub(super) fn new(
-        openings: &Openings<D>,
-        law: WallStress,
-        rows: &[Vec<Row<D>>; D],
-        gradients: &mut [Gradients<D>; D],
-    ) -> Self {
+    pub(super) fn new(openings: &Openings<D>, law: WallStress, rows: &[Vec<Row<D>>; D]) -> Self {
         let n = openings.walls.len();
         let mut this = Self {
             law,
@@ -118,7 +116,7 @@ impl<const D: usize> Stresses<D> {
             force: vec![Vector::zeros(); n],
         };
         for wall in openings.walls {
-            let probe = this.probe(openings, wall, gradients);
+            let probe = this.probe(openings, wall);
             this.probes.push(probe);
         }
         for c in 0..D {
@@ -129,7 +127,7 @@ impl<const D: usize> Stresses<D> {
                     let Some((probe, wall)) = openings.piece(cell) else { continue };
                     let part = |o: usize| openings.open[c].data()[o] * openings.area(c, o);
                     let whole = wall.area * part(row.index) / (part(cell) + part(cell + s));
-                    let y = Vector::from_fn(|a, _| if a < D { to_wall(wall, x)[a] } else { 0.0 }).norm();
+                    let y = Vector::from_fn(|a, _| if a < D { to_wall(&wall, x)[a] } else { 0.0 }).norm();
                     let least = 1e-3 * openings.metrics.axes[c].width[openings.at(cell)[c]];
                     let (area, inv_y) = (whole * row.inv_volume, 1.0 / y.max(least));
                     this.shares[c].push(Share { row: r, probe, area, whole, inv_y });
@@ -139,12 +137,7 @@ impl<const D: usize> Stresses<D> {
         this
     }
 
-    fn probe(
-        &mut self,
-        openings: &Openings<D>,
-        wall: &WallPiece,
-        gradients: &mut [Gradients<D>; D],
-    ) -> Probe {
+    fn probe(&mut self, openings: &Openings<D>, wall: &WallPiece) -> Probe {
         let index = openings.grid.place(openings.grid.cell(wall.cell));
         let mut probe = Probe {
             y: 0.0,
@@ -164,12 +157,10 @@ impl<const D: usize> Stresses<D> {
         for c in 0..D {
             let first = self.terms.len();
             let corners = corners(openings, Some(c), x, index, |o| openings.alive(c, o));
-            for (node, weight) in corners {
-                let slot = gradients[c].slot(openings, c, node, self.law.nearest());
-                let y = openings.node(c, node);
-                let by = std::array::from_fn(|a| x[a] - y[a]);
-                gradients[c].extrapolation(slot, by, &mut self.terms, weight);
-            }
+            self.terms.extend(corners.into_iter().map(|(node, weight)| {
+                let height = height(wall, openings.node(c, node));
+                (node, weight, height.max(NEAREST * openings.extent(index, wall)))
+            }));
             probe.ranges[c] = (first, self.terms.len());
         }
         let first = self.cells.len();
@@ -182,17 +173,24 @@ impl<const D: usize> Stresses<D> {
     pub(super) fn update(&mut self, velocity: &[Field<D>; D], k: Option<&Field<D>>, nu: f64) {
         let WallStress::Law { law, .. } = self.law else { return };
         for (p, probe) in self.probes.iter().enumerate() {
-            let mut u = -probe.velocity;
-            for c in 0..D {
-                let (first, last) = probe.ranges[c];
-                let data = velocity[c].data();
-                u[c] += self.terms[first..last].iter().map(|&(o, w)| w * data[o]).sum::<f64>();
-            }
-            u -= probe.normal * probe.normal.dot(&u);
             let k = k.map(|k| {
                 self.cells[probe.cells.0..probe.cells.1].iter().map(|&(o, w)| w * k.data()[o]).sum()
             });
             self.speeds[p] = k.map(|k: f64| C_MU * k.max(0.0).sqrt());
+            let scale = self.speed(p) / nu;
+            let mut u = Vector::zeros();
+            for c in 0..D {
+                let (first, last) = probe.ranges[c];
+                let data = velocity[c].data();
+                let [mut sum, mut plus] = [0.0; 2];
+                for &(o, w, y) in &self.terms[first..last] {
+                    sum += w * (data[o] - probe.velocity[c]);
+                    plus += w * if scale > 0.0 { law.u_plus(scale * y) } else { y };
+                }
+                // What it is at `y` by the law.
+                u[c] = sum / plus * if scale > 0.0 { law.u_plus(scale * probe.y) } else { probe.y };
+            }
+            u -= probe.normal * probe.normal.dot(&u);
             self.friction[p] = friction(law, [probe.y, u.norm()], self.speeds[p], nu);
             self.traction[p] = u * self.friction[p];
         }

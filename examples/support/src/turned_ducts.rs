@@ -1,0 +1,98 @@
+//! Ducts without ends that are turned against the grid.
+use crate::Outcome;
+use fv_mesh::{Axis, CartesianGrid, Simple};
+use interfaces::{Aabb, CutCells, Point, Pose, Solid, Vector};
+
+/// The solid between plane ducts side by side, in a box that is periodic along both axes.
+#[derive(Clone, Copy, Debug)]
+pub struct TurnedDucts {
+    /// Height of a duct \[m\].
+    pub height: f64,
+    /// Thickness of the solid between two \[m\].
+    thickness: f64,
+    /// Sine and cosine of the angle.
+    turn: [f64; 2],
+    /// How far the first lower wall is from the origin \[m\].
+    shift: f64,
+    /// Middle of the box \[m\].
+    middle: [f64; 2],
+}
+
+impl TurnedDucts {
+    /// Ducts of a `height` turned by an `angle` \[rad\], and their box with cells of about `h`; the first lower wall is `shift` cells from the
+    /// origin.
+    ///
+    /// # Errors
+    /// Those of the axes.
+    pub fn new(height: f64, angle: f64, h: f64, shift: f64) -> Outcome<(Self, CartesianGrid<2>)> {
+        let thickness = 0.3 * height;
+        let (s, c) = angle.sin_cos();
+        let axis = |length: f64| Axis::uniform((length / h).round() as usize, 0.0, length);
+        let period = height + thickness;
+        let grid =
+            CartesianGrid::from_axes([axis(if s > 0.0 { period / s } else { 4.0 * h })?, axis(period / c)?])?;
+        let middle = [0, 1].map(|a| 0.5 * grid.axis(a).length());
+        Ok((Self { height, thickness, turn: [s, c], shift: shift * h, middle }, grid))
+    }
+
+    /// Where the body is.
+    pub fn pose(&self) -> Pose {
+        Pose::at([self.middle[0], self.middle[1], 0.0])
+    }
+
+    /// Along the ducts.
+    pub fn along(&self) -> [f64; 2] {
+        [self.turn[1], self.turn[0]]
+    }
+
+    /// Height over the lower wall of a duct \[m\].
+    pub fn height_of(&self, [x, y]: [f64; 2]) -> f64 {
+        (self.turn[1] * y - self.turn[0] * x - self.shift).rem_euclid(self.height + self.thickness)
+    }
+
+    /// Distance from the nearest wall, positive in the fluid \[m\].
+    pub fn distance(&self, x: [f64; 2]) -> f64 {
+        let y = self.height_of(x);
+        if y < self.height + 0.5 * self.thickness {
+            y.min(self.height - y)
+        } else {
+            y - self.height - self.thickness
+        }
+    }
+
+    /// Area of the fluid in the box \[m²\].
+    pub fn area(&self) -> f64 {
+        4.0 * self.middle[0] * self.middle[1] * self.height / (self.height + self.thickness)
+    }
+
+    /// Mean velocity along the ducts \[m/s\], of what passes the open parts of the faces.
+    pub fn mean_velocity(&self, flow: &Simple<2>, cuts: &CutCells) -> f64 {
+        let grid = flow.grid();
+        let [columns, rows] = grid.cells();
+        let volume = grid.axis(0).width(0) * grid.axis(1).width(0);
+        let of = |c: usize| {
+            let u = flow.velocity().field(c);
+            let whole: f64 = (0..rows).flat_map(|j| &u.row(j)[..columns]).sum();
+            let shut: f64 = cuts.faces[c].iter().map(|face| (1.0 - face.open) * u.data()[face.index]).sum();
+            (whole - shut) * volume
+        };
+        let [along, up] = self.along();
+        (along * of(0) + up * of(1)) / self.area()
+    }
+
+    /// What the fluid does to the walls along the ducts, friction and pressure \[N/m\].
+    pub fn drag(&self, flow: &Simple<2>) -> f64 {
+        let [along, up] = self.along();
+        let forces = flow.wall_friction().into_iter().chain(flow.wall_pressure_force());
+        forces.map(|w| along * w.force.x + up * w.force.y).sum()
+    }
+}
+
+impl Solid for TurnedDucts {
+    fn signed_distance(&self, x: Point, _: f64) -> f64 {
+        self.distance([x.x + self.middle[0], x.y + self.middle[1]])
+    }
+    fn aabb(&self) -> Aabb {
+        Aabb::around(Point::origin(), Vector::new(self.middle[0], self.middle[1], 0.0))
+    }
+}

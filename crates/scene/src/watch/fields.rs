@@ -1,5 +1,5 @@
 //! VTK files of the fields.
-use super::{Watch, output};
+use super::{Solids, Taken, Watch, output};
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
 use fv_mesh::TimeSeries;
@@ -70,13 +70,13 @@ impl Watch for FieldsWatch {
     fn name(&self) -> &'static str {
         "fields"
     }
-    fn takes_lambda(&self, _: usize) -> bool {
-        self.fields.is_some()
+    fn takes_lambda(&self, _: usize) -> Taken {
+        if self.fields.is_some() { Taken::All } else { Taken::None }
     }
     fn snapshot(
         &mut self,
         view: &mut dyn View,
-        lambda: &[f64],
+        solids: &Solids,
         index: usize,
         info: &StepInfo,
     ) -> Result<(), CouplingError> {
@@ -85,7 +85,7 @@ impl Watch for FieldsWatch {
             let path = self.folder.join(&name);
             let write = || -> io::Result<()> {
                 let mut file = BufWriter::new(File::create(&path)?);
-                view.write_fields(lambda, &mut file).map_err(io::Error::other)?;
+                view.write_fields(&solids.lambda, &mut file).map_err(io::Error::other)?;
                 file.flush()
             };
             write().map_err(output("writing", &path))?;

@@ -230,7 +230,10 @@ fn a_layer_is_that_of_the_whole() {
     let uneven = Lattice::new([axis.clone(), axis.clone(), axis], 0, [1, n, n * n]);
     let places = [[0.1, 1.4, 2.9], [1.5, 2.95, 1.2], [2.2, 0.7, 0.75]];
     let balls = Balls::new(3, 0.3, places.to_vec());
-    let cube = Faceted::cuboid([0.6; 3]);
+    let corner = |i: usize| Point::from(std::array::from_fn(|a| if i >> a & 1 == 1 { 0.3 } else { -0.3 }));
+    let sides = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+    let cube = Faceted::new((0..8).map(corner).collect(), sides.into_iter().flat_map(halves).collect());
     let cubes = Balls::of(cube, 0.216, places.map(|at| pose(at, [0.3, 0.5, 0.7])).to_vec());
     for lattice in [lattice(3, [0.1, 0.1, 0.3], 3.0), uneven] {
         for bodies in [&balls, &cubes] {

@@ -15,15 +15,6 @@ impl Faceted {
     pub(crate) fn new(vertices: Vec<Point>, faces: Vec<[u32; 3]>) -> Self {
         Self { vertices, faces }
     }
-    /// A box with these edges.
-    pub(crate) fn cuboid(edges: [f64; 3]) -> Self {
-        let corner = |i: usize| {
-            Point::from(std::array::from_fn(|a| if i >> a & 1 == 1 { 0.5 } else { -0.5 } * edges[a]))
-        };
-        let sides = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
-        let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
-        Self::new((0..8).map(corner).collect(), sides.into_iter().flat_map(halves).collect())
-    }
     /// An icosahedron whose faces are quartered `times` times, its vertices on a sphere of `radius`.
     pub(crate) fn sphere(radius: f64, times: u32) -> Self {
         let (golden, r) = (0.5 * (1.0 + 5.0_f64.sqrt()), radius);

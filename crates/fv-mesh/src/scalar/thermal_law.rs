@@ -79,10 +79,10 @@ mod tests {
 
     #[test]
     fn what_was_measured_in_air_and_water() {
-        for (prandtl, off) in [(0.71, 0.05), (1.0, 0.05), (7.0, 0.1)] {
+        for prandtl in [0.71, 1.0, 7.0] {
             for y in [1.0, 30.0, 100.0, 300.0, 1000.0] {
                 let (found, measured) = (t_plus(prandtl, 0.85, y), kader(prandtl, y));
-                assert!((found / measured - 1.0).abs() < off, "Pr {prandtl} y+ {y}: {found} {measured}");
+                assert!((found / measured - 1.0).abs() < 0.06, "Pr {prandtl} y+ {y}: {found} {measured}");
             }
         }
     }

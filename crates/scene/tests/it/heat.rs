@@ -28,11 +28,10 @@ fn a_warm_cavity_by_all_algorithms() {
     }
 }
 
-/// A channel whose walls the first cells do not resolve, and a scalar that gains per time what the flow does, with the same boundary values.
+/// From rest, a channel whose walls the first cells do not resolve, and a scalar that gains per time what the flow does, with the same boundary values.
 const CHANNEL: &str = r#"
 turbulence = { model = "sst", intensity = 0.05, length = 0.1, speed = 20.0 }
 force = [1.0, 0.0]
-initial = { velocity = [18.0, 0.0] }
 [grid]
 cells = [4, 24]
 size = [0.2, 2.0]
@@ -46,11 +45,10 @@ nu = 1e-3
 diffusivity = 1e-3
 turbulent_prandtl = 1.0
 source = 1.0
-initial = 18.0
 convection = "central"
 sides = { y = { type = "value", value = 0.0 } }
 [time]
-end = 1.0
+end = 4.0
 [output]
 images = false
 fields = false
@@ -67,14 +65,18 @@ fn a_scalar_in_modelled_turbulence_is_the_velocity() {
         assert_eq!(run.ending, Ending::Done, "{name}: {}", run.result["residual"]);
         let (u, phi) = (&run.result["flow"]["mean_velocity"][0], &run.result["fields"]["momentum"]["mean"]);
         let (u, phi) = (u.as_f64().unwrap(), phi.as_f64().unwrap());
-        assert!((5.0..25.0).contains(&u), "{name}: {u}");
+        assert!(u > 3.5, "{name}: {u}");
         phi / u - 1.0
     };
-    let explicit = off("analogy", &["flow.diffusion=\"explicit\""]);
-    assert!(explicit.abs() < 1e-9, "{explicit}");
-    let steady =
-        off("analogy-steady", &["flow.algorithm=\"simple\"", "flow.tolerance=1e-8", "flow.iterations=4000"]);
-    assert!(steady.abs() < 1e-5, "{steady}");
+    for (name, diffusion) in
+        [("explicit", "flow.diffusion=\"explicit\""), ("auto", "flow.diffusion=\"auto\"")]
+    {
+        let found = off(name, &[diffusion]);
+        assert!(found.abs() < 1e-12, "{name}: {found}");
+    }
+    let steady = ["flow.algorithm=\"simple\"", "flow.tolerance=1e-8", "flow.iterations=30000"];
+    let found = off("analogy-steady", &steady);
+    assert!(found.abs() < 1e-6, "{found}");
     // Without what eddies bring it would be another one altogether.
     let other =
         off("analogy-other", &["flow.diffusion=\"explicit\"", "scalars.momentum.turbulent_prandtl=0.5"]);

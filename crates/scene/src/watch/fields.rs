@@ -2,10 +2,10 @@
 use super::{Solids, Taken, Watch, output};
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
+use example_support::files::write_over;
 use fv_mesh::TimeSeries;
 use interfaces::{Checkpoint, RestartError};
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -83,24 +83,14 @@ impl Watch for FieldsWatch {
         if let Some(series) = &mut self.fields {
             let name = format!("fields/{index:05}.{}", view.extension());
             let path = self.folder.join(&name);
-            let write = || -> io::Result<()> {
-                let mut file = BufWriter::new(File::create(&path)?);
-                view.write_fields(&solids.lambda, &mut file).map_err(io::Error::other)?;
-                file.flush()
-            };
-            write().map_err(output("writing", &path))?;
+            write_over(&path, |out| view.write_fields(&solids.lambda, out).map_err(io::Error::other))
+                .map_err(output("writing", &path))?;
             series.add(info.time, name).map_err(|e| output("listing", &path)(io::Error::other(e)))?;
         }
         if let Some(series) = &mut self.bodies {
             let name = format!("bodies/{index:05}.vtp");
             let path = self.folder.join(&name);
-            let write = || -> io::Result<bool> {
-                let mut file = BufWriter::new(File::create(&path)?);
-                let written = view.write_bodies(&mut file)?;
-                file.flush()?;
-                Ok(written)
-            };
-            if write().map_err(output("writing", &path))? {
+            if write_over(&path, |out| view.write_bodies(out)).map_err(output("writing", &path))? {
                 series.add(info.time, name).map_err(|e| output("listing", &path)(io::Error::other(e)))?;
             }
         }

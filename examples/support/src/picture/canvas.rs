@@ -1,7 +1,7 @@
 //! A bitmap to draw on: anti-aliased lines and circles, written as PNG.
 
-use std::fs::File;
-use std::io::{self, BufWriter};
+use crate::files::write_over;
+use std::io;
 use std::path::Path;
 
 use png::{BitDepth, ColorType, Compression, Encoder};
@@ -166,13 +166,14 @@ impl Canvas {
 
     /// Writes the canvas as an RGB picture.
     pub(crate) fn save(&self, path: &Path) -> io::Result<()> {
-        let file = BufWriter::new(File::create(path)?);
-        let mut encoder = Encoder::new(file, self.width as u32, self.height as u32);
-        encoder.set_color(ColorType::Rgb);
-        encoder.set_depth(BitDepth::Eight);
-        encoder.set_compression(Compression::Fast);
-        let mut writer = encoder.write_header().map_err(io::Error::other)?;
-        writer.write_image_data(&self.rgb).map_err(io::Error::other)?;
-        writer.finish().map_err(io::Error::other)
+        write_over(path, |out| {
+            let mut encoder = Encoder::new(out, self.width as u32, self.height as u32);
+            encoder.set_color(ColorType::Rgb);
+            encoder.set_depth(BitDepth::Eight);
+            encoder.set_compression(Compression::Fast);
+            let mut writer = encoder.write_header().map_err(io::Error::other)?;
+            writer.write_image_data(&self.rgb).map_err(io::Error::other)?;
+            writer.finish().map_err(io::Error::other)
+        })
     }
 }

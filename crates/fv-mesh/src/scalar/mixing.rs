@@ -84,10 +84,13 @@ impl<const D: usize> Scalar<D> {
         let diffusivity = mixing.diffusivity.data_mut();
         diffusivity.iter_mut().zip(eddy.eddy.data()).for_each(|(d, nu)| *d = nu / number);
         for wall in &eddy.walls {
-            let given =
-                self.boundaries.ends(wall.axis).is_some_and(|e| e.factor[wall.end][wall.line] == -1.0);
-            let on_wall =
-                if given { viscosity * mixing.law.ratio(1.0 + wall.eddy / viscosity) - gamma } else { 0.0 };
+            // What lies behind the wall is as much above the value as what lies before it is below.
+            let factor = self.boundaries.ends(wall.axis).map_or(0.0, |e| e.factor[wall.end][wall.line]);
+            let on_wall = match factor < -1.0 + 1e-12 {
+                true if viscosity > 0.0 => viscosity * mixing.law.ratio(1.0 + wall.eddy / viscosity) - gamma,
+                true => wall.eddy / number,
+                false => 0.0,
+            };
             diffusivity[wall.ghost] = 2.0 * on_wall - diffusivity[wall.inside];
         }
     }

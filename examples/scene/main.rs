@@ -11,7 +11,7 @@
 //! Ctrl-C stops a run with whole files and a saved state. Exit codes: 0 done, 1 an error of the run, 2 an error of the scene or the command line, 3 not converged,
 //! 130 stopped.
 use clap::Parser;
-use scene::{Ending, Options, RunResult, Scene};
+use scene::{Ending, Options, Scene, TABLE_HEAD, empty_row};
 use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -74,22 +74,23 @@ fn main() -> ExitCode {
     let several = cli.scenes.len() > 1;
     let (mut table, mut worst) = (String::new(), 0);
     for path in &cli.scenes {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        if stop.load(Ordering::Relaxed) {
+            table += &empty_row(&name, "**not run**: stopped before");
+            continue;
+        }
         let code = match one(&cli, path, several, &mut table, &stop) {
             Ok(code) => code,
             Err((code, error)) => {
                 fail(code, &*error);
+                table += &empty_row(&name, &format!("**error**: {error}"));
                 code
             }
         };
         worst = worst.max(code);
-        if stop.load(Ordering::Relaxed) {
-            break;
-        }
     }
     if several && !cli.check {
-        print(&format!(
-            "| scene | cells | steps | CPU s | for output | results |\n|---|---|---|---|---|---|\n{table}"
-        ));
+        print(&format!("{TABLE_HEAD}{table}"));
     }
     ExitCode::from(worst)
 }
@@ -115,37 +116,14 @@ fn one(cli: &Cli, path: &Path, several: bool, table: &mut String, stop: &AtomicB
         let both = json!({ "result": result.result, "timings": result.timings });
         print(&format!("{both:#}\n"));
     } else if !cli.quiet {
-        print(&summary(&result));
+        print(&result.summary());
     }
-    *table += &row(&result);
+    *table += &result.row();
     Ok(match result.ending {
         Ending::Done => 0,
         Ending::NotConverged => 3,
         Ending::Stopped => 130,
     })
-}
-
-/// A row of the table.
-fn row(result: &RunResult) -> String {
-    let (r, t) = (&result.result, &result.timings);
-    let number = |value: &serde_json::Value| value.as_f64().unwrap_or(f64::NAN);
-    let cells: Vec<String> = r["cells"].as_array().into_iter().flatten().map(ToString::to_string).collect();
-    let compared: Vec<String> = result
-        .compared
-        .iter()
-        .map(|c| {
-            format!("{} {:.5} ({}: {}, {:+.2} %)", c.name, c.found, c.source, c.reference, 100.0 * c.error())
-        })
-        .collect();
-    format!(
-        "| {} | {} | {} | {:.1} | {:.0} % | {} |\n",
-        r["scene"].as_str().unwrap_or_default(),
-        cells.join(" × "),
-        r["steps"],
-        number(&t["cpu"]),
-        100.0 * number(&t["output"]) / number(&t["wall"]).max(1e-9),
-        compared.join("; "),
-    )
 }
 
 fn fail(code: u8, error: &dyn std::error::Error) -> ExitCode {
@@ -157,56 +135,4 @@ fn fail(code: u8, error: &dyn std::error::Error) -> ExitCode {
 fn print(text: &str) -> ExitCode {
     let _ = std::io::stdout().write_all(text.as_bytes());
     ExitCode::SUCCESS
-}
-
-/// A few lines for people.
-fn summary(result: &RunResult) -> String {
-    let (r, t) = (&result.result, &result.timings);
-    let number = |value: &serde_json::Value| value.as_f64().unwrap_or(f64::NAN);
-    let mut out = format!(
-        "{}: {} steps to t = {:.6} s, {:.1} CPU s ({:.0} % of it for files and pictures)\n",
-        r["title"].as_str().unwrap_or_default(),
-        r["steps"],
-        number(&r["time"]),
-        number(&t["cpu"]),
-        100.0 * number(&t["output"]) / number(&t["wall"]).max(1e-9),
-    );
-    for body in r["forces"].as_array().into_iter().flatten().take(12) {
-        let (name, load) = (body["body"].as_str().unwrap_or_default(), &body["load"]);
-        out += &format!(
-            "  body {name}: force {:.6e}, {:.6e}, {:.6e}",
-            number(&load["last"][0]),
-            number(&load["last"][1]),
-            number(&load["last"][2])
-        );
-        if let Some(c) = body["coefficients"]["mean"].as_array() {
-            out += &format!("; mean coefficients {:.5}, {:.5}", number(&c[0]), number(&c[1]));
-        }
-        if let Some(strouhal) = body["strouhal"].as_f64() {
-            out += &format!("; Strouhal {strouhal:.4}");
-        }
-        out.push('\n');
-    }
-    if let Some(l) = r.get("ledger") {
-        out += &format!(
-            "  books: momentum {:.1e} of the impulses, energy residual {:.2e} J of {:.2e} J of work\n",
-            number(&l["momentum_whole_run"]),
-            number(&l["energy_residual"]),
-            number(&l["work"]),
-        );
-    }
-    for c in &result.compared {
-        out += &format!(
-            "  {}: {:.6} (reference {}, {:+.2} %; {})\n",
-            c.name,
-            c.found,
-            c.reference,
-            100.0 * c.error(),
-            c.source
-        );
-    }
-    if let Some(residual) = r["residual"].as_f64() {
-        out += &format!("  residual {residual:.2e}\n");
-    }
-    out + &format!("  files in {}\n", result.folder.display())
 }

@@ -63,4 +63,4 @@ pub use simulation::{Immersed, Module, Simulation, Timings, WeightBalance};
 pub use snapshots::{BodyPaths, Quantity, SnapshotFeed};
 pub use strategy::{Exchange, Explicit, Iterated, OneSolve, Strategy};
 pub use walled::Walled;
-pub use with_scalars::WithScalars;
+pub use with_scalars::{Drive, WithScalars};

@@ -1,17 +1,20 @@
 //! Bodies for ParaView.
-use crate::{ContactLaw, Form, RigidBodies};
+use crate::{ContactLaw, Form, RigidBodies, Shape};
 use interfaces::vtk::{self, DataArray};
 use interfaces::{Bodies, BodyId, Kinematics, Point, Vector};
 use std::f64::consts::{PI, TAU};
 use std::io::{self, Write};
 
-/// Corners of a drawn disc, and of a drawn sphere's equator.
-const CORNERS: usize = 64;
+/// Most and fewest corners of a drawn ellipse.
+const CORNERS: [usize; 2] = [64, 24];
+/// Corners of all ellipses up to which each has the most.
+const ALL_CORNERS: usize = 16384;
 
 impl<L: ContactLaw> RigidBodies<L> {
     /// Writes the bodies as one `.vtp` file (VTK polygonal data): discs as polygons with a line from centre to
-    /// rim that shows how far they have turned, polygons by their corners, bodies made of triangles by these, others as three such ellipses along their axes, as long as their boxes. Periodic bodies are drawn at
-    /// their image next after `corner`. Cell data: body number, velocity \[m/s\], angular velocity \[rad/s\].
+    /// rim that shows how far they have turned, polygons by their corners, bodies made of triangles by these, others as three such ellipses along their axes, as long as their boxes. Ellipses
+    /// have 64 corners, fewer where there are many (24 from 683 on). Periodic bodies are drawn at their image next after `corner`. Points are in single precision.
+    /// Cell data: body number, velocity \[m/s\], angular velocity \[rad/s\].
     ///
     /// # Errors
     /// What the writer answers.
@@ -30,7 +33,12 @@ impl<L: ContactLaw> RigidBodies<L> {
         which: impl IntoIterator<Item = BodyId>,
     ) -> io::Result<()> {
         let (mut points, mut lines, mut owners) = (Vec::<Point>::new(), Vec::<usize>::new(), Vec::new());
-        let mut connectivity = Vec::new();
+        let mut connectivity = Vec::<usize>::new();
+        let which: Vec<BodyId> = which.into_iter().collect();
+        let drawn = which.iter().map(|b| ellipses(self.shape(*b)).len()).sum::<usize>().max(1);
+        let corners = (ALL_CORNERS / drawn).clamp(CORNERS[1], CORNERS[0]);
+        let circle: Vec<(f64, f64)> =
+            (0..corners).map(|i| (TAU * i as f64 / corners as f64).sin_cos()).collect();
         for BodyId(b) in which {
             let pose = self.pose(BodyId(b));
             let centre = self.periods().wrap(pose.position, corner);
@@ -41,7 +49,7 @@ impl<L: ContactLaw> RigidBodies<L> {
                 points.extend(surface.vertices.iter().map(|p| world(p.coords)));
                 for face in surface.faces {
                     let ring = [face[0], face[1], face[2], face[0]];
-                    connectivity.extend(ring.map(|i| (first + i as usize) as i64));
+                    connectivity.extend(ring.map(|i| first + i as usize));
                     lines.push(connectivity.len());
                     owners.push(b);
                 }
@@ -50,27 +58,19 @@ impl<L: ContactLaw> RigidBodies<L> {
             if let Form::Polygon(polygon) = shape.form() {
                 let first = points.len();
                 points.extend(polygon.corners().iter().map(|c| world(Vector::new(c.x, c.y, 0.0))));
-                connectivity.extend((first..points.len()).chain([first]).map(|i| i as i64));
+                connectivity.extend((first..points.len()).chain([first]));
                 lines.push(connectivity.len());
                 owners.push(b);
                 continue;
             }
             let half = 0.5 * shape.aabb().extent();
-            let axis = |a: usize| Vector::ith(a, half[a]);
-            let planes: &[[Vector; 2]] = match shape.form() {
-                Form::Disc(_) => &[[axis(0), axis(1)]],
-                _ => &[[axis(0), axis(1)], [axis(1), axis(2)], [axis(2), axis(0)]],
-            };
-            for [e1, e2] in planes {
+            for plane in ellipses(shape) {
+                let [e1, e2] = plane.map(|a| pose.orientation * Vector::ith(a, half[a]));
                 let first = points.len();
                 points.push(centre);
-                for i in 0..CORNERS {
-                    let (sin, cos) = (TAU * i as f64 / CORNERS as f64).sin_cos();
-                    points.push(world(e1 * cos + e2 * sin));
-                }
+                points.extend(circle.iter().map(|(sin, cos)| centre + e1 * *cos + e2 * *sin));
                 // From the centre to the rim and once round.
-                connectivity.extend((first..first + CORNERS + 1).map(|i| i as i64));
-                connectivity.push(first as i64 + 1);
+                connectivity.extend((first..points.len()).chain([first + 1]));
                 lines.push(connectivity.len());
                 owners.push(b);
             }
@@ -84,7 +84,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             DataArray::float64("velocity", 3, vectors(|t| t.linear)),
             DataArray::float64("angular_velocity", 3, vectors(|t| t.angular)),
         ];
-        let coordinates = points.iter().flat_map(|p| <[f64; 3]>::from(*p)).collect::<Vec<_>>();
+        let coordinates = points.iter().flat_map(|p| <[f64; 3]>::from(*p));
         let piece = format!(
             "NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" NumberOfPolys=\"0\"",
             points.len(),
@@ -97,13 +97,13 @@ impl<L: ContactLaw> RigidBodies<L> {
             &piece,
             &[
                 ("CellData", "", cell_data),
-                ("Points", "", vec![DataArray::float64("points", 3, coordinates)]),
+                ("Points", "", vec![DataArray::float32("points", 3, coordinates)]),
                 (
                     "Lines",
                     "",
                     vec![
-                        DataArray::int64("connectivity", connectivity),
-                        DataArray::int64("offsets", lines.iter().map(|&l| l as i64)),
+                        DataArray::indices("connectivity", &connectivity),
+                        DataArray::indices("offsets", &lines),
                     ],
                 ),
             ],
@@ -170,6 +170,16 @@ impl<L: ContactLaw> RigidBodies<L> {
                 ),
             ],
         )
+    }
+}
+
+/// The axes of the ellipses that a shape is drawn by.
+fn ellipses(shape: &dyn Shape) -> &'static [[usize; 2]] {
+    match shape.form() {
+        Form::Disc(_) => &[[0, 1]],
+        Form::Polygon(_) => &[],
+        _ if shape.polyhedron().is_some() => &[],
+        _ => &[[0, 1], [1, 2], [2, 0]],
     }
 }
 

@@ -12,6 +12,22 @@ pub struct EddyStress<const D: usize> {
     pub(crate) friction: [Vec<Friction>; D],
     /// The largest Σ ν_t/h² \[1/s\], of the cells or on walls.
     pub(crate) rate: f64,
+    /// The faces of walls where the model gives ν_t; there the ghosts of `eddy` are those of the friction.
+    pub(crate) walls: Vec<OnWall>,
+}
+
+/// ν_t on a face of a wall.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OnWall {
+    pub(crate) axis: usize,
+    /// Lower (0) or upper side, and the number of the line along the axis that ends there.
+    pub(crate) end: usize,
+    pub(crate) line: usize,
+    /// Storage index of the cell before it, and of the ghost behind it.
+    pub(crate) inside: usize,
+    pub(crate) ghost: usize,
+    /// \[m²/s\].
+    pub(crate) eddy: f64,
 }
 
 /// −`rate` (u − `wall`) at a node \[m/s²\].
@@ -30,7 +46,7 @@ pub(crate) struct Friction {
 impl<const D: usize> EddyStress<D> {
     /// That of ν_t with its ghosts, without friction, for steps of any length.
     pub(crate) fn of(eddy: Field<D>) -> Self {
-        Self { eddy, friction: std::array::from_fn(|_| Vec::new()), rate: 0.0 }
+        Self { eddy, friction: std::array::from_fn(|_| Vec::new()), rate: 0.0, walls: Vec::new() }
     }
 
     /// Adds the acceleration of component `c` to `source`.

@@ -91,7 +91,7 @@ where
     }
     /// The longest step \[s\] with Courant number ≤ `courant` that is stable for the flow ([`Projection::stable_dt`]) and its scalars.
     pub fn stable_dt(&self, courant: f64) -> f64 {
-        self.flow.stable_dt(courant).min(self.hooks.scalars.longest_step())
+        self.flow.stable_dt(courant).min(self.hooks.scalars.longest_step(self.hooks.closure.fastest()))
     }
     /// A window on a larger flow is for a [`Projection`] alone: what hooks remember would stay behind.
     ///

@@ -131,12 +131,20 @@ impl<const D: usize> BodyForce<D, Scalar<D>> for Boussinesq {
     fn varies(&self) -> bool {
         true
     }
-    fn add(&self, flow: &Projection<D>, scalar: &Scalar<D>, source: &mut [Field<D>; D]) {
-        let phi = scalar.field().data();
+    fn add(&self, _: &Projection<D>, scalar: &Scalar<D>, source: &mut [Field<D>; D]) {
+        self.accelerate(scalar, source);
+    }
+}
+
+impl Boussinesq {
+    /// Adds it to accelerations at the velocity nodes of the scalar's grid \[m/s²\], as [`Piso::source_mut`](crate::Piso::source_mut) and
+    /// [`Simple::source_mut`](crate::Simple::source_mut) have them.
+    pub fn accelerate<const D: usize>(&self, scalar: &Scalar<D>, source: &mut [Field<D>; D]) {
+        let (phi, grid) = (scalar.field().data(), scalar.grid());
         for (c, source) in source.iter_mut().enumerate().filter(|(c, _)| self.gravity[*c] != 0.0) {
-            let (factor, s) = (-self.expansion * self.gravity[c], flow.grid().stride()[c]);
-            let share = &flow.state.metrics.axes[c].share;
-            each_cell(flow.grid(), |o, cell| {
+            let (factor, s) = (-self.expansion * self.gravity[c], grid.stride()[c]);
+            let share = &scalar.metrics().axes[c].share;
+            each_cell(grid, |o, cell| {
                 let [below, above] = [0, 1].map(|part: usize| share[part][GHOSTS + cell[c]]);
                 // Linear between the centres beside the face.
                 let mean = above * phi[o - s] + below * phi[o];
@@ -231,6 +239,7 @@ impl<const D: usize> Projection<D> {
         }
         if let Some(stress) = closure.stress(self)? {
             self.add_eddy_stress(stress, dt)?;
+            scalars.mix(stress, self.fluid().viscosity);
         }
         scalars.advance(self.velocity(), self.time(), dt)?;
         // Of the middle of the step, as what is explicit is extrapolated to it.

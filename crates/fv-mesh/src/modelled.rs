@@ -148,6 +148,15 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
         &self.rows
     }
 
+    /// The stress of what the model says now in a fluid of this viscosity \[m²/s\], if there is any; `time` is for errors.
+    ///
+    /// # Errors
+    /// [`FlowError::Closure`] for an eddy viscosity of another length than the grid.
+    pub fn eddy_stress(&mut self, viscosity: f64, time: f64) -> Result<Option<&EddyStress<D>>, FlowError> {
+        let given = self.refresh(viscosity, time)?;
+        Ok(self.stress.as_ref().filter(|_| given))
+    }
+
     /// Makes the stress of what the model says now. Is there any?
     pub(crate) fn refresh(&mut self, viscosity: f64, time: f64) -> Result<bool, FlowError> {
         let Some(mut eddy) = self.closure.eddy_viscosity() else { return Ok(false) };
@@ -179,6 +188,7 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
         self.transport.spread(eddy, &mut stress.eddy);
         if on_walls.is_empty() {
             stress.friction.iter_mut().for_each(Vec::clear);
+            stress.walls.clear();
         } else {
             self.walls.rub(on_walls, viscosity, stress);
             self.transport.wrap(&mut stress.eddy);
@@ -283,8 +293,7 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
 
 impl<const D: usize, C: Closure> ClosureSlot<D> for Modelled<D, C> {
     fn stress(&mut self, flow: &Projection<D>) -> Result<Option<&EddyStress<D>>, FlowError> {
-        let given = self.refresh(flow.fluid().viscosity, flow.time())?;
-        Ok(self.stress.as_ref().filter(|_| given))
+        self.eddy_stress(flow.fluid().viscosity, flow.time())
     }
     fn correct(&mut self, flow: &Projection<D>, dt: f64) -> Result<(), FlowError> {
         self.correct_beside(flow, &[], dt)

@@ -50,25 +50,33 @@ fn is_smooth(square: f64, bend: f64, h: f64) -> bool {
 const EDGE: f64 = 0.01;
 
 impl Projector {
-    /// Lists the nodes that body `b` covers at least in part.
+    /// Lists the nodes that body `b` covers at least in part; of all, or those of one layer: the axis along it and the number on it.
     pub(crate) fn project<B: Bodies + ?Sized>(
         &mut self,
         lattice: &Lattice,
         bodies: &B,
         b: BodyId,
-        rule: FractionRule,
+        (rule, layer): (FractionRule, Option<(usize, usize)>),
         nodes: &mut Vec<SolidNode>,
     ) {
         nodes.clear();
         let (solid, pose, dim) = (bodies.solid(b), bodies.pose(b), lattice.dim);
         let bounds = bodies.aabb(b);
         if let (FractionRule::CutVolume, 3, Some(surface)) = (rule, dim, solid.polyhedron()) {
-            self.clipper.clip(lattice, surface, pose, bounds, nodes);
+            let meets = |(a, number): (usize, usize)| {
+                let nodes = &lattice.axes[a];
+                reached(nodes, [bounds.min[a], bounds.max[a]]).any(|i| nodes.wrap(i) == Some(number))
+            };
+            if layer.is_none_or(meets) {
+                self.clipper.clip(lattice, surface, pose, bounds, nodes);
+                nodes.retain(|n| layer.is_none_or(|(a, number)| lattice.node(n.index)[a] == number as isize));
+            }
             return;
         }
         for a in 0..3 {
-            let (low, high) = (bounds.min[a], bounds.max[a]);
-            columns(&mut self.columns[a], lattice, a, [low, high], pose.position[a]);
+            let span = [bounds.min[a], bounds.max[a]];
+            let only = layer.filter(|layer| layer.0 == a).map(|layer| layer.1);
+            columns(&mut self.columns[a], lattice, a, span, pose.position[a], only);
         }
         let shape = [0, 1, 2].map(|a| self.columns[a].len());
         if shape.contains(&0) {
@@ -263,8 +271,15 @@ pub(crate) fn reached(nodes: &Nodes, span: [f64; 2]) -> Range<isize> {
 }
 
 /// The nodes along axis `a` that a body between `span` may cover, one more on both sides that it may
-/// cut, and one more again for differences.
-fn columns(out: &mut Vec<Column>, lattice: &Lattice, a: usize, span: [f64; 2], centre: f64) {
+/// cut, and one more again for differences; if `only` one counts, what the differences there take.
+fn columns(
+    out: &mut Vec<Column>,
+    lattice: &Lattice,
+    a: usize,
+    span: [f64; 2],
+    centre: f64,
+    only: Option<usize>,
+) {
     out.clear();
     let nodes = &lattice.axes[a];
     if a >= lattice.dim {
@@ -272,7 +287,14 @@ fn columns(out: &mut Vec<Column>, lattice: &Lattice, a: usize, span: [f64; 2], c
         out.push(Column { arm, width: 1.0, offset: Some(0), first: [0.0; 3], second: [0.0; 3] });
         return;
     }
-    let range = reached(nodes, span);
+    let counts = |i: isize| nodes.wrap(i).filter(|&number| only.is_none_or(|only| only == number));
+    let mut range = reached(nodes, span);
+    while !range.is_empty() && counts(range.start).is_none() {
+        range.start += 1;
+    }
+    while !range.is_empty() && counts(range.end - 1).is_none() {
+        range.end -= 1;
+    }
     if range.is_empty() {
         return;
     }
@@ -282,7 +304,7 @@ fn columns(out: &mut Vec<Column>, lattice: &Lattice, a: usize, span: [f64; 2], c
         out.push(Column {
             arm: x - centre,
             width: nodes.width(i),
-            offset: if range.contains(&i) { nodes.wrap(i).map(|i| i * lattice.stride[a]) } else { None },
+            offset: if range.contains(&i) { counts(i).map(|i| i * lattice.stride[a]) } else { None },
             first: [-p / (m * (m + p)), (p - m) / (m * p), m / (p * (m + p))],
             second: [2.0 / (m * (m + p)), -2.0 / (m * p), 2.0 / (p * (m + p))],
         });

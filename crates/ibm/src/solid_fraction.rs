@@ -51,6 +51,8 @@ impl FractionRule {
 #[derive(Clone, Debug, Default)]
 pub struct SolidFraction {
     rule: FractionRule,
+    /// The axis along the only layer of nodes that counts, and its number on it.
+    layer: Option<(usize, usize)>,
     lattice: Option<Lattice>,
     bodies: Vec<Cover>,
     projector: Projector,
@@ -76,6 +78,14 @@ impl SolidFraction {
     pub fn with_rule(mut self, rule: FractionRule) -> Self {
         self.rule = rule;
         self
+    }
+
+    /// From here on of the nodes of one layer only, those with this number along this axis, or of all. Each λ is as of all nodes.
+    pub fn set_layer(&mut self, layer: Option<(usize, usize)>) {
+        if self.layer != layer {
+            self.layer = layer;
+            self.bodies.clear();
+        }
     }
 
     /// Brings λ up to date with the bodies' poses.
@@ -115,7 +125,7 @@ impl SolidFraction {
         let Some(cover) = self.bodies.get_mut(body.0) else { return };
         let at = at(bodies, body);
         if cover.at != at {
-            self.projector.project(lattice, bodies, body, self.rule, &mut cover.nodes);
+            self.projector.project(lattice, bodies, body, (self.rule, self.layer), &mut cover.nodes);
             cover.at = at;
             self.updates += 1;
             cover.stamp = self.updates;

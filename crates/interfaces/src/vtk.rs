@@ -23,17 +23,13 @@ pub struct DataArray<'a> {
 }
 
 impl<'a> DataArray<'a> {
-    /// Numbers of this precision.
-    pub fn float(
-        name: &'a str,
-        components: usize,
-        precision: Precision,
-        values: impl IntoIterator<Item = f64>,
-    ) -> Self {
-        match precision {
-            Precision::Single => Self::float32(name, components, values),
-            Precision::Double => Self::float64(name, components, values),
-        }
+    /// Numbers of this precision from their bytes, little-endian, one after the other.
+    pub fn of_bytes(name: &'a str, components: usize, precision: Precision, bytes: Vec<u8>) -> Self {
+        let kind = match precision {
+            Precision::Single => "Float32",
+            Precision::Double => "Float64",
+        };
+        Self { name, components, kind, bytes }
     }
     /// Single-precision numbers: half the file, seven digits, enough for pictures.
     pub fn float32(name: &'a str, components: usize, values: impl IntoIterator<Item = f64>) -> Self {
@@ -45,7 +41,17 @@ impl<'a> DataArray<'a> {
         let bytes = bytes(values, f64::to_le_bytes);
         Self { name, components, kind: "Float64", bytes }
     }
-    /// Whole numbers: connectivity, offsets, ids.
+    /// Connectivity and offsets, in 32 bits where these hold them.
+    pub fn indices(name: &'a str, values: &[usize]) -> Self {
+        match values.iter().max() {
+            Some(&most) if most > i32::MAX as usize => Self::int64(name, values.iter().map(|&i| i as i64)),
+            _ => {
+                let bytes = bytes(values, |&i| (i as i32).to_le_bytes());
+                Self { name, components: 1, kind: "Int32", bytes }
+            }
+        }
+    }
+    /// Whole numbers: ids.
     pub fn int64(name: &'a str, values: impl IntoIterator<Item = i64>) -> Self {
         let bytes = bytes(values, i64::to_le_bytes);
         Self { name, components: 1, kind: "Int64", bytes }

@@ -165,7 +165,7 @@ impl Setup {
             flow.set_velocity(u);
         }
         let scalars = self.scalars(flow.grid(), flow.sides())?;
-        Ok(WithScalars { flow, scalars })
+        Ok(WithScalars { flow, scalars, drive: self.lift() })
     }
 
     /// Why no books are kept; nothing if they are.
@@ -177,6 +177,7 @@ impl Setup {
             _ if self.bodies.forcing() == ForcingChoice::CutLinks => {
                 Some("what walls by cut links do is not in them")
             }
+            Algorithm::Piso if self.lift().is_some() => Some("what buoyancy does by PISO is not in them"),
             _ if !self.output.ledger => Some("switched off by output.ledger"),
             _ => None,
         }

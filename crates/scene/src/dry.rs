@@ -3,10 +3,10 @@ use crate::cast::Cast;
 use crate::look::Show;
 use crate::setup::Setup;
 use crate::view::View;
+use crate::watch::Solids;
 use coupling::{Evolving, Grains, StepInfo, Timings};
 use dem::{ContactLaw, Population, RigidDynamics};
 use fv_mesh::Axis;
-use ibm::SolidFraction;
 use interfaces::{Bodies, BodyId, Checkpoint, Dynamics, Kinematics, Lattice, Wrench};
 use std::io::{self, Write};
 
@@ -57,21 +57,17 @@ where
     fn lattice(&self) -> Lattice {
         self.setup.lattice()
     }
-    fn centred(&self, out: &mut [Vec<f64>]) {
+    fn shown(&self, solids: &Solids, out: &mut [Vec<f64>]) {
         for out in out.iter_mut() {
             out.clear();
-            out.resize(self.setup.cells(), 0.0);
+            out.resize(solids.lambda.len(), 0.0);
         }
-        let (lattice, bodies) = (self.lattice(), &self.grains.bodies);
-        let mut cover = SolidFraction::new();
-        // Snapshots have found λ already: bodies are where it can be found.
-        if cover.update(&lattice, bodies).is_ok() {
-            for b in bodies.ids() {
-                let twist = bodies.twist(b);
-                for node in cover.nodes(b) {
-                    let velocity = twist.at(node.arm);
-                    out.iter_mut().zip(velocity.iter()).for_each(|(out, u)| out[node.index] = *u);
-                }
+        let bodies = &self.grains.bodies;
+        for b in bodies.ids() {
+            let twist = bodies.twist(b);
+            for node in solids.fraction.nodes(b) {
+                let velocity = twist.at(node.arm);
+                out.iter_mut().zip(velocity.iter()).for_each(|(out, u)| out[node.index] = *u);
             }
         }
     }

@@ -22,6 +22,9 @@ impl Log {
     }
     pub(crate) fn line(&mut self, text: &str) -> Result<(), CouplingError> {
         let seconds = self.start.elapsed().as_secs_f64();
-        writeln!(self.file, "{seconds:10.2} {text}").map_err(output("writing", &self.path))
+        // In one piece.
+        self.file
+            .write_all(format!("{seconds:10.2} {text}\n").as_bytes())
+            .map_err(output("writing", &self.path))
     }
 }

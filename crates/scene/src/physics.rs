@@ -1,10 +1,11 @@
 //! The flow of a scene and what acts on it.
 use crate::build::BuildError;
+use crate::expression::Expression;
 use crate::setup::{ForcingChoice, ModelChoice, ScalarSetup, ScaleChoice, Setup};
-use coupling::{Walled, WithScalars};
+use coupling::{Drive, Walled, WithScalars};
 use fv_mesh::{
-    BodyForce, Boussinesq, CartesianGrid, Diffusion, Field, FlowError, Hooked, Hooks, Modelled, Piso,
-    Projection, Scalar, ScalarTransport, Settling, Sides, TransportParams, Velocity,
+    BodyForce, Boussinesq, CartesianGrid, Diffusion, EddyStress, Field, FlowError, Hooked, Hooks, Modelled,
+    Piso, Projection, Scalar, ScalarTransport, Settling, Sides, TransportParams, Velocity,
 };
 use ibm::{Given, IbmError, ImmersedScalar, StaticBodies, SurfaceFlux, WallDistance};
 use interfaces::{Bodies, BodyId, Checkpoint, Closure, Kinematics, Lattice, RestartError, SolveError};
@@ -17,7 +18,7 @@ use turb::{
 pub(crate) type Physics<const D: usize> =
     Hooked<D, Option<Lift>, Option<Walled<D, Box<dyn SavedClosure>>>, Scalars<D>>;
 /// The segregated algorithm and what it carries.
-pub(crate) type Segregated<const D: usize> = WithScalars<Piso<D>, Scalars<D>>;
+pub(crate) type Segregated<const D: usize> = WithScalars<Piso<D>, Scalars<D>, Option<Lift>>;
 /// A turbulence model, chosen at run time.
 pub(crate) type Model<const D: usize> = Modelled<D, Box<dyn SavedClosure>>;
 
@@ -49,9 +50,25 @@ impl<const D: usize> BodyForce<D, Scalars<D>> for Lift {
     fn varies(&self) -> bool {
         true
     }
-    fn add(&self, flow: &Projection<D>, scalars: &Scalars<D>, source: &mut [Field<D>; D]) {
+    fn add(&self, _: &Projection<D>, scalars: &Scalars<D>, source: &mut [Field<D>; D]) {
         if let Some(one) = scalars.list.get(self.scalar) {
-            self.law.add(flow, &one.scalar, source);
+            self.law.accelerate(&one.scalar, source);
+        }
+    }
+}
+
+impl<const D: usize> Drive<Piso<D>, Scalars<D>> for Lift {
+    fn drive(&self, scalars: &Scalars<D>, flow: &mut Piso<D>) {
+        self.put(scalars, flow.source_mut());
+    }
+}
+
+impl Lift {
+    /// Writes the accelerations at the velocity nodes.
+    pub(crate) fn put<const D: usize>(&self, scalars: &Scalars<D>, source: &mut [Field<D>; D]) {
+        source.iter_mut().for_each(|source| source.data_mut().fill(0.0));
+        if let Some(one) = scalars.list.get(self.scalar) {
+            self.law.accelerate(&one.scalar, source);
         }
     }
 }
@@ -73,6 +90,8 @@ struct Carried<const D: usize> {
     scalar: Scalar<D>,
     setup: ScalarSetup,
     held: Option<ImmersedScalar>,
+    /// The source besides what bodies give off, if there is both.
+    source: Option<Field<D>>,
 }
 
 impl<const D: usize> Scalars<D> {
@@ -85,12 +104,31 @@ impl<const D: usize> Scalars<D> {
     }
     /// Brings them to their steady state in a steady flow.
     pub(crate) fn settle(&mut self, velocity: &Velocity<D>, time: f64) -> Result<(), FlowError> {
+        self.steadily(time, |scalar, cells, hold| {
+            scalar.settle(velocity, time, Settling::default(), cells, hold).map(drop)
+        })
+    }
+    /// Brings them nearer to it; answers the largest relative change of any.
+    pub(crate) fn approach(&mut self, velocity: &Velocity<D>, time: f64) -> Result<f64, FlowError> {
+        let mut largest = 0.0_f64;
+        self.steadily(time, |scalar, cells, hold| {
+            largest = largest.max(scalar.approach(velocity, time, cells, hold)?);
+            Ok(())
+        })?;
+        Ok(largest)
+    }
+    /// Does something with each scalar, the cells that bodies hold, and how they do.
+    fn steadily(
+        &mut self,
+        time: f64,
+        mut act: impl FnMut(&mut Scalar<D>, &[usize], &mut dyn FnMut(&mut [f64])) -> Result<(), FlowError>,
+    ) -> Result<(), FlowError> {
         let Self { list, bodies, .. } = self;
-        for Carried { scalar, setup, held } in list {
+        for Carried { scalar, setup, held, .. } in list {
             let all = || (0..bodies.n_bodies()).map(BodyId);
             let cells: Vec<usize> = held.iter().flat_map(|held| all().flat_map(|b| held.held(b))).collect();
             let value = setup.bodies.as_ref().map_or(0.0, |formula| formula.at(&[time]));
-            scalar.settle(velocity, time, Settling::default(), &cells, |field| {
+            act(scalar, &cells, &mut |field| {
                 for (held, b) in held.iter().flat_map(|held| all().map(move |b| (held, b))) {
                     held.apply(b, field, |_, _| value, |_| value);
                 }
@@ -107,7 +145,10 @@ impl<const D: usize> ScalarTransport<D> for Scalars<D> {
         list.iter_mut().try_for_each(|one| {
             if let Some(flux) = &one.setup.flux {
                 let source = one.scalar.source_mut().data_mut();
-                source.fill(0.0);
+                match &one.source {
+                    Some(own) => source.copy_from_slice(own.data()),
+                    None => source.fill(0.0),
+                }
                 surfaces.add(flux.at(&[time]), source);
             }
             one.scalar.advance(velocity, time, dt)?;
@@ -140,8 +181,11 @@ impl<const D: usize> ScalarTransport<D> for Scalars<D> {
         }
         Ok(())
     }
-    fn longest_step(&self) -> f64 {
-        self.list.iter().map(|s| s.scalar.longest_step()).fold(f64::INFINITY, f64::min)
+    fn longest_step(&self, eddy_rate: f64) -> f64 {
+        self.list.iter().map(|s| s.scalar.longest_step(eddy_rate)).fold(f64::INFINITY, f64::min)
+    }
+    fn mix(&mut self, eddy: &EddyStress<D>, viscosity: f64) {
+        self.list.iter_mut().for_each(|one| one.scalar.mix(eddy, viscosity));
     }
 }
 
@@ -184,11 +228,7 @@ impl Setup {
 
     /// `flow` with all that acts on it.
     pub(crate) fn physics<const D: usize>(&self, flow: Projection<D>) -> Result<Physics<D>, BuildError> {
-        let scalars = self.scalars(flow.grid(), flow.sides())?;
-        let lift = self.scalars.iter().enumerate().find_map(|(scalar, s)| {
-            let (expansion, reference) = s.buoyancy?;
-            Some(Lift { scalar, law: Boussinesq { expansion, reference, gravity: self.gravity } })
-        });
+        let (scalars, lift) = (self.scalars(flow.grid(), flow.sides())?, self.lift());
         let mut model = self.model(flow.grid(), flow.sides(), TransportParams::default())?;
         // The others follow the bodies by themselves.
         if let Some(model) = model.as_mut().filter(|_| !self.walls_move()) {
@@ -197,6 +237,14 @@ impl Setup {
         let model = model.map(Walled::new);
         let hooks = Hooks { body_force: lift, forcing: (), closure: model, scalars };
         Ok(Hooked::new(flow, hooks))
+    }
+
+    /// What the buoyant scalar does, if one is.
+    pub(crate) fn lift(&self) -> Option<Lift> {
+        self.scalars.iter().enumerate().find_map(|(scalar, s)| {
+            let (expansion, reference) = s.buoyancy?;
+            Some(Lift { scalar, law: Boussinesq { expansion, reference, gravity: self.gravity } })
+        })
     }
 
     /// The scalars in a flow on `grid` between `sides`.
@@ -210,25 +258,33 @@ impl Setup {
         let lattice = grid.lattice(None, sides);
         for setup in &self.scalars {
             let sides = std::array::from_fn(|a| setup.sides[a].clone());
-            let mut scalar = Scalar::new(grid, sides, setup.diffusivity)?.with_convection(setup.convection);
-            let value = |x: [f64; D]| {
-                setup.initial.at(&std::array::from_fn::<f64, 3, _>(|a| x.get(a).copied().unwrap_or(0.0)))
+            let mut scalar = Scalar::new(grid, sides, setup.diffusivity)?
+                .with_convection(setup.convection)
+                .with_turbulent_prandtl(setup.turbulent_prandtl)?;
+            let place =
+                |x: [f64; D]| -> [f64; 3] { std::array::from_fn(|a| x.get(a).copied().unwrap_or(0.0)) };
+            let check = |formula: &Expression, what: &'static str| {
+                let places = (0..grid.n_cells()).map(|c| place(grid.centre(grid.cell(c))));
+                let (value, at) = places.map(|at| (formula.at(&at), at)).find(|(v, _)| !v.is_finite())?;
+                Some(BuildError::Formula { what, value, at })
             };
-            for c in 0..grid.n_cells() {
-                let x = grid.centre(grid.cell(c));
-                if !value(x).is_finite() {
-                    let at = std::array::from_fn(|a| x.get(a).copied().unwrap_or(0.0));
-                    let what = "the initial field of a scalar";
-                    return Err(BuildError::Formula { what, value: value(x), at });
-                }
+            let source = setup.source.as_ref();
+            if let Some(error) = check(&setup.initial, "the initial field of a scalar")
+                .or_else(|| source.and_then(|source| check(source, "the source of a scalar")))
+            {
+                return Err(error);
             }
-            scalar.set(value);
+            scalar.set(|x| setup.initial.at(&place(x)));
+            if let Some(source) = source {
+                scalar.source_mut().set(|x| source.at(&place(x)));
+            }
+            let source = source.filter(|_| setup.flux.is_some()).map(|_| scalar.source_mut().clone());
             let held = setup.bodies.as_ref().map(|_| ImmersedScalar::new(Given::Value));
             if held.is_some() {
                 // Surface cells get values beyond the surface's: near its limit, explicit diffusion is unstable with them.
                 scalar = scalar.with_diffusion(Diffusion::Implicit);
             }
-            let mut one = Carried { scalar, setup: setup.clone(), held };
+            let mut one = Carried { scalar, setup: setup.clone(), held, source };
             one.place(&lattice, &all.bodies)?;
             one.hold(&all.bodies, 0.0);
             all.list.push(one);

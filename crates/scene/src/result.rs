@@ -25,8 +25,8 @@ pub enum Ending {
 pub struct Compared {
     /// What it is.
     pub name: String,
-    /// Here; not a number if the results do not have it.
-    pub found: f64,
+    /// Here, if the results have it.
+    pub found: Option<f64>,
     /// There.
     pub reference: f64,
     /// Who says so.
@@ -35,8 +35,8 @@ pub struct Compared {
 
 impl Compared {
     /// found/reference − 1, or the difference where the reference is 0.
-    pub fn error(&self) -> f64 {
-        if self.reference == 0.0 { self.found } else { self.found / self.reference - 1.0 }
+    pub fn error(&self) -> Option<f64> {
+        self.found.map(|found| if self.reference == 0.0 { found } else { found / self.reference - 1.0 })
     }
 }
 
@@ -81,6 +81,7 @@ impl RunResult {
             "dimension": dim,
             "cells": (0..dim).map(|a| view.axis(a).cells()).collect::<Vec<_>>(),
             "time": view.time(),
+            "end": setup.end,
             "steps": view.steps(),
             "step": { "shortest": number(shortest), "longest": number(longest), "courant": number(courant) },
         });
@@ -165,13 +166,13 @@ impl RunResult {
             .iter()
             .map(|r| Compared {
                 name: r.name.clone(),
-                found: result.pointer(&r.pointer).and_then(Value::as_f64).unwrap_or(f64::NAN),
+                found: result.pointer(&r.pointer).and_then(Value::as_f64),
                 reference: r.value,
                 source: r.source.clone(),
             })
             .collect();
         if !compared.is_empty() {
-            let row = |c: &Compared| json!({ "name": c.name, "found": number(c.found), "reference": c.reference, "error": number(c.error()), "source": c.source });
+            let row = |c: &Compared| json!({ "name": c.name, "found": c.found, "reference": c.reference, "error": c.error(), "source": c.source });
             result["references"] = compared.iter().map(row).collect();
         }
         Self { ending, folder: folder.into(), result, timings: Value::Null, compared }

@@ -179,18 +179,6 @@ impl Setup {
                     "large eddies are not steady; take \"projection\", or a model of two equations such as \"sst\"",
                 ));
             }
-            Algorithm::Simple | Algorithm::Piso if self.scalars.iter().any(|s| s.buoyancy.is_some()) => {
-                return Err(fail(
-                    "algorithm",
-                    "a scalar that is buoyant (`expansion`) drives the flow, which goes with \"projection\" only; take that, or leave out `expansion`",
-                ));
-            }
-            Algorithm::Simple if !self.scalars.is_empty() && self.turbulence.is_some() => {
-                return Err(fail(
-                    "algorithm",
-                    "what modelled eddies do to a scalar is not known here; take out the scalars or the model, or resolve the flow by \"projection\"",
-                ));
-            }
             Algorithm::Simple if self.scalars.iter().any(|s| bodies && s.bodies.is_none()) => {
                 return Err(fail(
                     "algorithm",
@@ -209,12 +197,10 @@ impl Setup {
                     "turbulence models go with \"projection\" and \"simple\"; take one of these",
                 ));
             }
-            Algorithm::Simple
-                if !self.probes.is_empty() || self.averages.is_some() || !self.models.is_empty() =>
-            {
+            Algorithm::Simple if self.averages.is_some() || !self.models.is_empty() => {
                 return Err(fail(
                     "algorithm",
-                    "a steady flow has no history; leave out probes, averages and models, or take \"projection\"",
+                    "a steady flow has no history; leave out averages and models, or take \"projection\"",
                 ));
             }
             Algorithm::Piso if bodies && self.bodies.forcing() != ForcingChoice::Hfdib => {

@@ -2,7 +2,7 @@
 use crate::build::BuildError;
 use crate::log::Log;
 use crate::look::Extremes;
-use crate::physics::{Model, Scalars};
+use crate::physics::{Lift, Model, Scalars};
 use crate::result::{Ending, RunResult};
 use crate::run::{RunError, Stage};
 use crate::setup::Setup;
@@ -11,7 +11,7 @@ use crate::view::{Seen, View};
 use coupling::StepInfo;
 use example_support::cpu::Stopwatch;
 use example_support::progress::Progress;
-use fv_mesh::{FlowError, Simple, SimpleInfo, SimpleParams, TransportParams};
+use fv_mesh::{FlowError, ScalarTransport, Simple, SimpleInfo, SimpleParams, TransportParams};
 use ibm::cut_cells;
 use interfaces::{Kinematics, Wrench};
 use std::sync::atomic::Ordering;
@@ -21,6 +21,8 @@ pub(crate) struct Steady<const D: usize> {
     pub(crate) flow: Simple<D>,
     pub(crate) model: Option<Model<D>>,
     pub(crate) scalars: Scalars<D>,
+    /// Buoyancy, by which the scalars are found along with the flow.
+    pub(crate) lift: Option<Lift>,
     /// Of every body at rest \[N, N m\]: pressure and friction.
     pub(crate) loads: Vec<Wrench>,
     /// When the flow is said to be \[s\].
@@ -28,11 +30,36 @@ pub(crate) struct Steady<const D: usize> {
 }
 
 impl<const D: usize> Steady<D> {
-    pub(crate) fn iterate(&mut self) -> Result<SimpleInfo, FlowError> {
-        match &mut self.model {
-            Some(model) => self.flow.iterate_with(model),
-            None => self.flow.iterate(),
+    /// One iteration; the largest of its residuals, and of the relative changes of scalars that drive the flow.
+    pub(crate) fn iterate(&mut self) -> Result<(SimpleInfo, f64), FlowError> {
+        let mut change = 0.0;
+        if self.lift.is_some() {
+            self.mix()?;
+            change = self.scalars.approach(self.flow.velocity(), self.time)?;
         }
+        if let Some(lift) = &self.lift {
+            lift.put(&self.scalars, self.flow.source_mut());
+        }
+        let info = match &mut self.model {
+            Some(model) => self.flow.iterate_with(model)?,
+            None => self.flow.iterate()?,
+        };
+        Ok((info, info.largest().max(change)))
+    }
+    /// Shows the scalars what the model says.
+    fn mix(&mut self) -> Result<(), FlowError> {
+        let viscosity = self.flow.fluid().viscosity;
+        if let Some(model) = &mut self.model
+            && let Some(eddy) = model.eddy_stress(viscosity, self.time)?
+        {
+            self.scalars.mix(eddy, viscosity);
+        }
+        Ok(())
+    }
+    /// Brings the scalars to their steady state.
+    pub(crate) fn settle(&mut self) -> Result<(), FlowError> {
+        self.mix()?;
+        self.scalars.settle(self.flow.velocity(), self.time)
     }
     /// Takes the loads from the flow.
     pub(crate) fn weigh(&mut self) {
@@ -69,7 +96,7 @@ impl Setup {
             self.stand_beside(model, flow.sides())?;
         }
         let scalars = self.scalars(flow.grid(), flow.sides())?;
-        Ok(Steady { flow, model, scalars, loads: Vec::new(), time: self.end })
+        Ok(Steady { flow, model, scalars, lift: self.lift(), loads: Vec::new(), time: self.end })
     }
 }
 
@@ -97,8 +124,8 @@ impl Stage<'_> {
                 ending = Ending::Stopped;
                 break;
             }
-            let info = flow.iterate().map_err(BuildError::from)?;
-            residual = info.largest();
+            let (info, largest) = flow.iterate().map_err(BuildError::from)?;
+            residual = largest;
             if let Some(progress) = &mut progress {
                 progress.tell(info.iterations as u64, (-residual.log10()).clamp(0.0, target), || {
                     format!("residual {residual:.2e}")
@@ -123,7 +150,7 @@ impl Stage<'_> {
         log.line(&format!("{} iterations, residual {residual:.3e}", flow.flow.iterations()))?;
         flow.weigh();
         if !matches!(ending, Ending::Stopped) {
-            flow.scalars.settle(flow.flow.velocity(), setup.end).map_err(BuildError::from)?;
+            flow.settle().map_err(BuildError::from)?;
         }
         let still = Still(setup.still());
         let mut seen = Seen { flow: &mut flow, guests: &still, timings: coupling::Timings::default() };

@@ -3,6 +3,7 @@ use crate::cast::Cast;
 use crate::physics::{Model, Physics, Scalars, Segregated};
 use crate::steady::Steady;
 use crate::still::Still;
+use crate::watch::Solids;
 use coupling::{Particles, StepInfo, Strategy, Timings};
 use dem::{ContactLaw, Population, RigidDynamics};
 use example_support::progress::Status;
@@ -38,8 +39,15 @@ pub(crate) trait View {
     fn timings(&self) -> &Timings;
     /// The lattice of the cells' centres.
     fn lattice(&self) -> Lattice;
-    /// The components of the velocity at the centres, x fastest, into the first of `out`; without a fluid that of the bodies, and 0 elsewhere.
-    fn centred(&self, out: &mut [Vec<f64>]);
+    /// The components of the velocity at the centres, x fastest, into the first of `out`.
+    fn centred(&self, out: &mut [Vec<f64>]) {
+        out.iter_mut().for_each(Vec::clear);
+    }
+    /// The same for pictures: without a fluid that of the bodies where λ is taken, and 0 elsewhere.
+    fn shown(&self, solids: &Solids, out: &mut [Vec<f64>]) {
+        let _ = solids;
+        self.centred(out);
+    }
     fn pressure(&self, out: &mut Vec<f64>) {
         out.clear();
     }

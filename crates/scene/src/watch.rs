@@ -33,20 +33,20 @@ pub(crate) trait Watch: Checkpoint {
         let _ = (view, info);
         Ok(())
     }
-    /// Does the snapshot with this index take λ?
-    fn takes_lambda(&self, index: usize) -> bool {
+    /// Of which cells does the snapshot with this index take λ?
+    fn takes_lambda(&self, index: usize) -> Taken {
         let _ = index;
-        false
+        Taken::None
     }
-    /// At the start and the end of every interval; `lambda` is the solid fraction of the cells, 0 if nobody takes it.
+    /// At the start and the end of every interval.
     fn snapshot(
         &mut self,
         view: &mut dyn View,
-        lambda: &[f64],
+        solids: &Solids,
         index: usize,
         info: &StepInfo,
     ) -> Result<(), CouplingError> {
-        let _ = (view, lambda, index, info);
+        let _ = (view, solids, index, info);
         Ok(())
     }
     /// Before a state is saved, and at the end: nothing may wait in memory.
@@ -64,18 +64,52 @@ pub(crate) trait Watch: Checkpoint {
     }
 }
 
+/// Cells whose λ is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Taken {
+    None,
+    /// Of the layer with this number along this axis.
+    Layer(usize, usize),
+    All,
+}
+
+/// The solid fraction of the cells, as far as it is taken.
+#[derive(Default)]
+pub(crate) struct Solids {
+    /// Body by body.
+    pub(crate) fraction: SolidFraction,
+    /// Of every cell, x fastest; 0 where nobody takes it.
+    pub(crate) lambda: Vec<f64>,
+}
+
+impl Solids {
+    /// As the bodies are now.
+    fn update(&mut self, view: &dyn View, taken: Taken) -> Result<(), CouplingError> {
+        let lattice = view.lattice();
+        self.lambda.clear();
+        self.lambda.resize(lattice.shape().iter().product(), 0.0);
+        match taken {
+            Taken::None => return Ok(()),
+            Taken::Layer(axis, number) => self.fraction.set_layer(Some((axis, number))),
+            Taken::All => self.fraction.set_layer(None),
+        }
+        self.fraction.update(&lattice, view.bodies())?;
+        self.fraction.add_to_dense(&lattice, &mut self.lambda);
+        Ok(())
+    }
+}
+
 /// All who look on, and the solid fraction they share.
 pub(crate) struct Audience {
     pub(crate) watches: Vec<Box<dyn Watch>>,
-    fraction: SolidFraction,
-    lambda: Vec<f64>,
+    solids: Solids,
     /// Wall seconds spent on looking.
     pub(crate) seconds: f64,
 }
 
 impl Audience {
     pub(crate) fn new(watches: Vec<Box<dyn Watch>>) -> Self {
-        Self { watches, fraction: SolidFraction::new(), lambda: Vec::new(), seconds: 0.0 }
+        Self { watches, solids: Solids::default(), seconds: 0.0 }
     }
 
     pub(crate) fn step(&mut self, view: &mut dyn View, info: &StepInfo) -> Result<(), CouplingError> {
@@ -89,15 +123,15 @@ impl Audience {
         info: &StepInfo,
     ) -> Result<(), CouplingError> {
         let start = std::time::Instant::now();
-        let lattice = view.lattice();
-        self.lambda.clear();
-        self.lambda.resize((0..view.dim()).map(|a| view.axis(a).cells()).product(), 0.0);
-        if view.bodies().n_bodies() > 0 && self.watches.iter().any(|watch| watch.takes_lambda(index)) {
-            self.fraction.update(&lattice, view.bodies())?;
-            self.fraction.add_to_dense(&lattice, &mut self.lambda);
-        }
-        let lambda = &self.lambda;
-        let seen = self.watches.iter_mut().try_for_each(|watch| watch.snapshot(view, lambda, index, info));
+        let Self { watches, solids, .. } = self;
+        // One layer is enough unless two are asked for.
+        let most = |a: Taken, b: Taken| match (a.min(b), a.max(b)) {
+            (Taken::Layer(..), Taken::Layer(..)) if a != b => Taken::All,
+            (_, more) => more,
+        };
+        let taken = watches.iter().map(|watch| watch.takes_lambda(index)).fold(Taken::None, most);
+        solids.update(view, if view.bodies().n_bodies() > 0 { taken } else { Taken::None })?;
+        let seen = watches.iter_mut().try_for_each(|watch| watch.snapshot(view, solids, index, info));
         self.seconds += start.elapsed().as_secs_f64();
         seen
     }

@@ -8,6 +8,7 @@ pub mod coupled;
 pub mod cpu;
 pub mod duct_cylinder;
 pub mod eccentric_cylinders;
+pub mod files;
 pub mod film;
 pub mod free_body;
 pub mod free_stream;

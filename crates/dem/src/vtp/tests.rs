@@ -14,12 +14,18 @@ struct Read {
 }
 impl Read {
     fn floats(&self) -> Vec<f64> {
+        if self.kind == "Float32" {
+            return self.bytes.as_chunks().0.iter().map(|b| f32::from_le_bytes(*b).into()).collect();
+        }
         assert_eq!(self.kind, "Float64");
-        self.bytes.chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap())).collect()
+        self.bytes.as_chunks().0.iter().map(|b| f64::from_le_bytes(*b)).collect()
     }
     fn ints(&self) -> Vec<usize> {
+        if self.kind == "Int32" {
+            return self.bytes.as_chunks().0.iter().map(|b| i32::from_le_bytes(*b) as usize).collect();
+        }
         assert_eq!(self.kind, "Int64");
-        self.bytes.chunks_exact(8).map(|b| i64::from_le_bytes(b.try_into().unwrap()) as usize).collect()
+        self.bytes.as_chunks().0.iter().map(|b| i64::from_le_bytes(*b) as usize).collect()
     }
 }
 
@@ -80,7 +86,7 @@ fn arrays_and_counts_agree() {
         bodies.write_vtp(&mut file, Point::origin()).unwrap();
         let (piece, arrays) = read(&file);
         let lines_each = if spheres { 3 } else { 1 };
-        let (lines, points) = (2 * lines_each, 2 * lines_each * (CORNERS + 1));
+        let (lines, points) = (2 * lines_each, 2 * lines_each * (CORNERS[0] + 1));
         assert_eq!(attribute(&piece, "NumberOfPoints"), points.to_string());
         assert_eq!(attribute(&piece, "NumberOfLines"), lines.to_string());
 
@@ -98,12 +104,12 @@ fn arrays_and_counts_agree() {
         for end in offsets {
             let line = &connectivity[start..end];
             let centre = places[line[0]];
-            assert!(line[1..].iter().all(|&p| ((places[p] - centre).norm() - 0.5).abs() < 1e-14));
-            assert_eq!((line.len(), line[1]), (CORNERS + 2, *line.last().unwrap()), "closed");
+            assert!(line[1..].iter().all(|&p| ((places[p] - centre).norm() - 0.5).abs() < 1e-6));
+            assert_eq!((line.len(), line[1]), (CORNERS[0] + 2, *line.last().unwrap()), "closed");
             start = end;
         }
         // The mark from the centre to the rim has turned with the body, from x to y.
-        assert!((places[1] - Point::new(3.0, 1.5, 0.0)).norm() < 1e-14);
+        assert!((places[1] - Point::new(3.0, 1.5, 0.0)).norm() < 1e-6);
 
         let owners: Vec<usize> = (0..lines).map(|l| l / lines_each).collect();
         assert_eq!(arrays["body"].ints(), owners);
@@ -131,7 +137,7 @@ fn other_shapes() {
     assert!(places[..corners].iter().all(|p| p.iter().all(|x| x.abs() == 1.0)));
     let far =
         |a: usize| places[corners..].iter().map(|p| (p - Point::new(10.0, 0.0, 0.0))[a]).fold(0.0, f64::max);
-    assert!((0..3).all(|a| (far(a) - (a + 1) as f64).abs() < 1e-12), "{} {} {}", far(0), far(1), far(2));
+    assert!((0..3).all(|a| (far(a) - (a + 1) as f64).abs() < 1e-6), "{} {} {}", far(0), far(1), far(2));
 }
 
 /// Points of some of the bodies, and outlines of the others.
@@ -166,6 +172,22 @@ fn points_for_glyphs() {
     let mut walls = Vec::new();
     bodies.write_vtp_of(&mut walls, Point::origin(), [BodyId(0)]).unwrap();
     assert_eq!(read(&walls).1["body"].ints(), [0; 12]);
+}
+
+/// Of many the ellipses have fewer corners.
+#[test]
+fn many_bodies_have_fewer_corners() {
+    let mut bodies = RigidBodies::new(Periods::default());
+    let disc: Arc<dyn Shape> = Arc::new(Disc::new(0.4).unwrap());
+    for i in 0..1000 {
+        let pose = Pose::at([f64::from(i), 0.0, 0.0]);
+        bodies.add(disc.clone(), Material::default(), pose, Twist::default(), Freedom::PLANAR).unwrap();
+    }
+    let mut file = Vec::new();
+    bodies.write_vtp(&mut file, Point::origin()).unwrap();
+    let (piece, arrays) = read(&file);
+    assert_eq!(attribute(&piece, "NumberOfPoints"), (1000 * (CORNERS[1] + 1)).to_string());
+    assert_eq!(arrays["connectivity"].ints().len(), 1000 * (CORNERS[1] + 2));
 }
 
 #[test]

@@ -36,6 +36,8 @@ pub(crate) struct Equation<'a, const D: usize> {
     pub(crate) weights: [f64; 3],
     /// Body force per mass \[m/s²\].
     pub(crate) force: f64,
+    /// What accelerates besides, at the nodes \[m/s²\].
+    pub(crate) source: Option<&'a Field<D>>,
     /// Relaxation factor.
     pub(crate) relaxation: f64,
     /// Part of the viscous terms that relaxation counts.
@@ -119,6 +121,10 @@ impl<const D: usize> MomentumEquations<D> {
         self.convection.advance(c, k, e.velocity, e.pressure, &mut self.scratch, &mut self.tendency);
         if let Some(eddy) = e.eddy {
             add_eddy_stress(&self.grid, &self.metrics, c, e.velocity, eddy, &mut self.tendency);
+        }
+        if let Some(source) = e.source {
+            let all = self.tendency.data_mut().iter_mut().zip(source.data());
+            all.for_each(|(tendency, source)| *tendency += source);
         }
         let terms = Terms {
             velocity: e.velocity,

@@ -14,45 +14,78 @@ impl<'a> Arrays<'a> {
         Self::default()
     }
 
-    /// Adds an array of `components` numbers per cell for `cells` cells, of which those flagged by `keep` are taken.
-    pub(crate) fn add(
+    /// Adds an array of `components` numbers per cell for `cells` cells, of which those flagged by `keep` are taken: all
+    /// numbers in one of `parts`, cell after cell, or each component in a part of its own; components without one are 0.
+    pub(crate) fn add<I: IntoIterator<Item = f64>, const N: usize>(
         &mut self,
         name: &'a str,
         components: usize,
         cells: usize,
         precision: Precision,
         keep: Option<&[bool]>,
-        values: impl IntoIterator<Item = f64>,
+        parts: [I; N],
     ) -> Result<(), OutputError> {
         if name.is_empty() || self.names.contains(&name) {
             return Err(OutputError::Name { name: name.into() });
         }
-        let expected = cells * components;
-        let mut all = Vec::with_capacity(expected);
-        values.into_iter().take(expected.saturating_add(1)).for_each(|value| all.push(value));
-        if all.len() != expected {
-            let found = all.len().div_ceil(components);
-            return Err(OutputError::Count { name: name.into(), expected: cells, found });
+        let mut beyond = None;
+        let single = |v: f64| {
+            let short = v as f32;
+            if short.is_infinite() && v.is_finite() {
+                beyond.get_or_insert(v);
+            }
+            short.to_le_bytes()
+        };
+        let count = |found| OutputError::Count { name: name.into(), expected: cells, found };
+        let mut bytes = match precision {
+            Precision::Single => collect(components, cells, parts, single),
+            Precision::Double => collect(components, cells, parts, f64::to_le_bytes),
         }
-        if let Some(keep) = keep {
-            let mut number = 0;
-            all.retain(|_| {
-                number += 1;
-                keep[(number - 1) / components]
-            });
-        }
-        if precision == Precision::Single
-            && let Some(&value) = all.iter().find(|v| v.is_finite() && !(**v as f32).is_finite())
-        {
+        .map_err(count)?;
+        let width = bytes.len() / cells.max(1);
+        if let Some(value) = beyond {
             return Err(OutputError::Range { name: name.into(), value });
         }
-        let array = DataArray::float(name, components, precision, all);
+        if let Some(keep) = keep {
+            let mut kept = 0;
+            for cell in (0..cells).filter(|&cell| keep[cell]) {
+                bytes.copy_within(cell * width..(cell + 1) * width, kept);
+                kept += width;
+            }
+            bytes.truncate(kept);
+        }
         self.names.push(name);
-        self.arrays.push(array);
+        self.arrays.push(DataArray::of_bytes(name, components, precision, bytes));
         Ok(())
     }
 
     pub(super) fn into_section(self) -> Vec<DataArray<'a>> {
         self.arrays
     }
+}
+
+/// The bytes of all numbers, cell after cell; an error is for how many cells there are numbers, at most one too many.
+fn collect<I: IntoIterator<Item = f64>, const N: usize, const W: usize>(
+    components: usize,
+    cells: usize,
+    parts: [I; N],
+    mut bytes_of: impl FnMut(f64) -> [u8; W],
+) -> Result<Vec<u8>, usize> {
+    // How many numbers of a part are those of a cell, and how far apart two of them are.
+    let (per_cell, width) = if N == 1 { (components, W) } else { (1, components * W) };
+    let expected = cells * per_cell;
+    let mut bytes = vec![0; expected * width];
+    for (p, part) in parts.into_iter().enumerate() {
+        let (mut slots, mut found) = (bytes.chunks_exact_mut(width), 0);
+        part.into_iter().take(expected.saturating_add(1)).for_each(|value| {
+            if let Some(slot) = slots.next() {
+                slot[p * W..(p + 1) * W].copy_from_slice(&bytes_of(value));
+            }
+            found += 1;
+        });
+        if found != expected {
+            return Err(found.div_ceil(per_cell));
+        }
+    }
+    Ok(bytes)
 }

@@ -59,7 +59,7 @@ impl<'a, const D: usize> CellWriter<'a, D> {
     /// Adds a scalar: one value per cell of the grid (chosen or not), x fastest.
     #[must_use]
     pub fn scalar(mut self, name: &'a str, values: impl IntoIterator<Item = f64>) -> Self {
-        self.add(name, 1, values);
+        self.add(name, 1, [values]);
         self
     }
 
@@ -67,29 +67,20 @@ impl<'a, const D: usize> CellWriter<'a, D> {
     /// third component of zero, as ParaView wants.
     #[must_use]
     pub fn vector<I: IntoIterator<Item = f64>>(mut self, name: &'a str, components: [I; D]) -> Self {
-        let expected = self.grid.n_cells();
-        let mut values = vec![0.0; 3 * expected];
-        for (c, component) in components.into_iter().enumerate() {
-            let mut found = 0;
-            component.into_iter().take(expected.saturating_add(1)).for_each(|value| {
-                if let Some(slot) = values.get_mut(3 * found + c) {
-                    *slot = value;
-                }
-                found += 1;
-            });
-            if found != expected {
-                self.error.get_or_insert(OutputError::Count { name: name.into(), expected, found });
-            }
-        }
-        self.add(name, 3, values);
+        self.add(name, 3, components);
         self
     }
 
-    fn add(&mut self, name: &'a str, components: usize, values: impl IntoIterator<Item = f64>) {
+    fn add<I: IntoIterator<Item = f64>, const N: usize>(
+        &mut self,
+        name: &'a str,
+        components: usize,
+        parts: [I; N],
+    ) {
         if self.error.is_none() {
             let cells = self.grid.n_cells();
             let keep = self.keep.as_deref();
-            self.error = self.arrays.add(name, components, cells, self.precision, keep, values).err();
+            self.error = self.arrays.add(name, components, cells, self.precision, keep, parts).err();
         }
     }
 

@@ -66,6 +66,8 @@ pub struct Piso<const D: usize> {
     delta: [Vec<f64>; D],
     zeros: Vec<f64>,
     eddy: Option<Field<D>>,
+    /// What accelerates the fluid besides.
+    source: Option<Box<[Field<D>; D]>>,
     /// Dense number, storage index and velocity of the nodes where it is imposed.
     imposed: [Vec<(usize, usize, f64)>; D],
     /// Corrections made in this step.
@@ -107,6 +109,7 @@ impl<const D: usize> Piso<D> {
             delta: std::array::from_fn(|_| vec![0.0; n]),
             zeros: vec![0.0; n],
             eddy: None,
+            source: None,
             imposed: std::array::from_fn(|_| Vec::new()),
             corrections: 0,
             weights: [1.0, -1.0, 0.0],
@@ -164,6 +167,13 @@ impl<const D: usize> Piso<D> {
         }
     }
 
+    /// Accelerations that vary in space, of every component at its nodes \[m/s²\], of the steps to come; zero until this is first called. They have no part in
+    /// the checkpoint.
+    pub fn source_mut(&mut self) -> &mut [Field<D>; D] {
+        let grid = &self.state.grid;
+        self.source.get_or_insert_with(|| Box::new(std::array::from_fn(|_| Field::zeros(grid))))
+    }
+
     /// Imposes the velocity at some nodes in the predictors to come, inside bodies for instance: component, storage index in
     /// [`Field::data`] and value \[m/s\]. The force that this takes acts within the implicit momentum equations, so the
     /// fluid around feels it whatever the step; pressure corrections act on these nodes as on others. What was
@@ -218,6 +228,7 @@ impl<const D: usize> Piso<D> {
                 history: [&self.old[c], &self.older[c]],
                 weights,
                 force: force[c],
+                source: self.source.as_ref().map(|source| &source[c]),
                 relaxation: 1.0,
                 viscous_share: 0.0,
                 eddy: self.eddy.as_ref(),

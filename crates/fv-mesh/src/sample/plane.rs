@@ -124,7 +124,7 @@ impl<const D: usize> Plane<'_, D> {
             let width = if components.len() == 1 { 1 } else { 3 };
             let n = components[0].len();
             let values = (0..width * n).map(|i| components.get(i % width).map_or(0.0, |c| c[i / width]));
-            arrays.add(name, width, n, precision, None, values)?;
+            arrays.add(name, width, n, precision, None, [values])?;
         }
         write_cells(out, faces, self.is_uniform(), arrays)
     }

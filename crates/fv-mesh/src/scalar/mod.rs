@@ -2,10 +2,12 @@
 mod boundaries;
 mod diffusion;
 mod kernel;
+mod mixing;
 mod side;
 mod steady;
 #[cfg(test)]
 mod tests;
+mod thermal_law;
 mod transported;
 
 pub use boundaries::ScalarBoundaries;

@@ -1,10 +1,11 @@
 //! The steady state of a scalar in a flow that does not change.
 use super::Scalar;
 use super::kernel::{Input, Step, advance};
+use super::mixing::sources;
 use crate::grid::GHOSTS;
 use crate::linear::StencilMatrix;
 use crate::momentum_matrix::{self as momentum, MomentumSolver};
-use crate::{Field, FlowError, Velocity, kernels};
+use crate::{FlowError, Velocity, kernels};
 
 /// When [`Scalar::settle`] ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +32,7 @@ impl<const D: usize> Scalar<D> {
     /// The steady φ in a steady `velocity` under what is given at `time` \[s\], from the φ there is:
     ///
     /// ```text
-    /// A δ = −∇·(uφ) + Γ∇²φ + S,   φ ← φ + 0.7 δ
+    /// A δ = −∇·(uφ) + ∇·((Γ + D_t)∇φ) + S,   φ ← φ + 0.7 δ
     /// ```
     ///
     /// A is the operator with upwind convection, the right-hand side has the scalar's own scheme (deferred correction, Khosla & Rubin 1974). After each iteration `hold` may
@@ -56,49 +57,65 @@ impl<const D: usize> Scalar<D> {
             let what = "sides that all give a scalar's gradient, by which its steady state is known but for a constant; give its value somewhere";
             return Err(FlowError::Boundary { what: what.into() });
         }
-        let n = self.grid.n_cells();
-        let mut mark = vec![false; self.grid.storage()];
-        held.iter().for_each(|&o| mark[o] = true);
-        let pinned: Vec<usize> = (0..n).filter(|&i| mark[self.grid.place(self.grid.cell(i))]).collect();
-        let mut matrix = self.steady_matrix(velocity)?;
-        let mut solver = MomentumSolver::new(n, REDUCTION, SWEEPS);
-        let (mut rest, mut delta) = (vec![0.0; n], vec![0.0; n]);
-        self.boundaries.set_time(time);
-        self.impose(&mut hold);
-        self.step = 0;
         let mut change = f64::INFINITY;
         for iteration in 1..=max_iterations {
-            self.rest(velocity, &mut rest);
-            pinned.iter().for_each(|&cell| momentum::pin(&mut matrix, cell, 0.0, &mut rest));
-            solver.solve(&matrix, &rest, &mut delta)?;
-            self.next.data_mut().copy_from_slice(self.phi.data());
-            delta.iter_mut().for_each(|delta| *delta *= DAMPING);
-            kernels::add_dense(&self.grid, &delta, &mut self.phi);
-            self.impose(&mut hold);
-            let mut largest = [0.0_f64; 2];
-            for (now, before) in self.phi.values().zip(self.next.values()) {
-                if !now.is_finite() {
-                    return Err(FlowError::ScalarDiverged { step: iteration as u64, time, dt: 0.0 });
-                }
-                largest = [largest[0].max((now - before).abs()), largest[1].max(now.abs())];
-            }
-            if largest[0] <= tolerance * largest[1] {
+            change = self.approach(velocity, time, held, &mut hold)?;
+            if change <= tolerance {
                 return Ok(iteration);
             }
-            change = largest[0] / largest[1];
         }
         Err(FlowError::ScalarNotSteady { iterations: max_iterations, change, tolerance })
     }
 
-    /// −∇·(uφ) + Γ∇²φ + S of every cell.
+    /// One iteration of [`settle`](Self::settle), for a flow that the scalar drives: answers the largest change of φ over the largest |φ|.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn approach(
+        &mut self,
+        velocity: &Velocity<D>,
+        time: f64,
+        held: &[usize],
+        mut hold: impl FnMut(&mut [f64]),
+    ) -> Result<f64, FlowError> {
+        let n = self.grid.n_cells();
+        self.boundaries.set_time(time);
+        self.impose(&mut hold);
+        self.step = 0;
+        let mut matrix = self.steady_matrix(velocity)?;
+        let (mut rest, mut delta) = (vec![0.0; n], vec![0.0; n]);
+        self.rest(velocity, &mut rest);
+        for &o in held {
+            // Ghosts belong to no cell.
+            if let Some(cell) = self.grid.cell_at(o) {
+                momentum::pin(&mut matrix, self.grid.index(cell), 0.0, &mut rest);
+            }
+        }
+        MomentumSolver::new(n, REDUCTION, SWEEPS).solve(&matrix, &rest, &mut delta)?;
+        self.next.data_mut().copy_from_slice(self.phi.data());
+        delta.iter_mut().for_each(|delta| *delta *= DAMPING);
+        kernels::add_dense(&self.grid, &delta, &mut self.phi);
+        self.impose(&mut hold);
+        let mut largest = [0.0_f64; 2];
+        for (now, before) in self.phi.values().zip(self.next.values()) {
+            if !now.is_finite() {
+                return Err(FlowError::ScalarDiverged { step: 0, time, dt: 0.0 });
+            }
+            largest = [largest[0].max((now - before).abs()), largest[1].max(now.abs())];
+        }
+        Ok(if largest[0] > 0.0 { largest[0] / largest[1] } else { 0.0 })
+    }
+
+    /// −∇·(uφ) + Γ∇²φ + ∇·(D_t∇φ) + S of every cell.
     fn rest(&mut self, velocity: &Velocity<D>, out: &mut [f64]) {
+        self.stir();
         let input = Input {
             grid: &self.grid,
             metrics: &self.metrics,
             carrier: &self.carrier,
             velocity: &velocity.components,
             phi: self.phi.data(),
-            source: self.source.as_ref().map(Field::data),
+            source: sources(&self.mixing, &self.source),
             zeros: &self.zeros,
         };
         let step = Step { dt: 1.0, weights: [1.0, 0.0], explicit: [self.diffusivity; D], implicit: [0.0; D] };
@@ -106,7 +123,7 @@ impl<const D: usize> Scalar<D> {
         out.iter_mut().zip(self.tendency.values()).for_each(|(out, rest)| *out = rest);
     }
 
-    /// u·∇δ − Γ∇²δ with upwind differences and the homogeneous conditions at the sides.
+    /// u·∇δ − ∇·((Γ + D_t)∇δ) with upwind differences and the homogeneous conditions at the sides.
     fn steady_matrix(&self, velocity: &Velocity<D>) -> Result<StencilMatrix<D>, FlowError> {
         let (grid, gamma, s) = (&self.grid, self.diffusivity, self.grid.stride());
         let mut matrix = StencilMatrix::new(grid.cells(), self.boundaries.periodic())?;
@@ -120,7 +137,9 @@ impl<const D: usize> Scalar<D> {
                 let (cell, o) = (grid.cell(i), grid.place(grid.cell(i)));
                 let q = GHOSTS + cell[b];
                 let inflow = [u[o], -u[o + s[b]]].map(|u| nodes.inv_volume[q] * u);
-                (inflow, [gamma * nodes.down[q], gamma * nodes.up[q]])
+                let eddies =
+                    self.mixing.as_ref().map_or([0.0; 2], |m| m.on_faces(&self.metrics, b, s[b], o, q));
+                (inflow, [(gamma + eddies[0]) * nodes.down[q], (gamma + eddies[1]) * nodes.up[q]])
             };
             for i in 0..grid.n_cells() {
                 let (inflow, conducted) = through(i);

@@ -1,11 +1,14 @@
 //! A passive scalar that a flow carries.
 use super::diffusion::ScalarDiffusion;
 use super::kernel::{Input, Step, advance};
+use super::mixing::{self, Mixing};
 use super::{ScalarBoundaries, ScalarSide};
 use crate::diffusion::{SplitDiffusion, stiffness};
 use crate::metrics::Metrics;
 use crate::operators::{Carrier, integral};
-use crate::{CartesianGrid, Convection, Diffusion, Field, FlowError, Sides, Velocity, kernels, statistics};
+use crate::{
+    CartesianGrid, Convection, Diffusion, EddyStress, Field, FlowError, Sides, Velocity, kernels, statistics,
+};
 use interfaces::{Bodies, Checkpoint, RestartError, VelocityField};
 
 /// Adams–Bashforth is used while a step is at most so many times longer than the last.
@@ -18,7 +21,7 @@ const LONGEST_GROWTH: f64 = 10.0;
 /// Π_a (1 − κ_a L_a)(φⁿ⁺¹ − φⁿ) = dt [(1 + r/2) Hⁿ − (r/2) Hⁿ⁻¹ + Γ L φⁿ],   r = dt/dt_last,   κ = ½Γ dt
 /// ```
 ///
-/// H = −∇·(uφ) + Γ∇²φ + S takes the diffusion along the axes where the step is within its stability limit, L that along
+/// H = −∇·(uφ) + Γ∇²φ + ∇·(D_t∇φ) + S, with D_t where eddies [`mix`](Self::mix), takes the diffusion along the axes where the step is within its stability limit, L that along
 /// the others ([`Diffusion`]): second order in time, after a first step of Euler's. In space second order with
 /// [`Convection::Central`], which is the default, [`LinearUpwind`](Convection::LinearUpwind),
 /// [`Quick`](Convection::Quick) and, away from extrema, [`Limited`](Convection::Limited). What leaves a cell enters its
@@ -40,6 +43,8 @@ pub struct Scalar<const D: usize> {
     pub(super) next: Field<D>,
     pub(super) tendency: Field<D>,
     pub(super) source: Option<Field<D>>,
+    pub(super) turbulent_prandtl: f64,
+    pub(super) mixing: Option<Box<Mixing<D>>>,
     pub(super) zeros: Vec<f64>,
     pub(super) step: u64,
     last_dt: f64,
@@ -73,6 +78,8 @@ impl<const D: usize> Scalar<D> {
             next: Field::zeros(grid),
             tendency: Field::zeros(grid),
             source: None,
+            turbulent_prandtl: mixing::USUAL,
+            mixing: None,
             zeros: vec![0.0; grid.cells()[0]],
             step: 0,
             last_dt: 0.0,
@@ -121,6 +128,9 @@ impl<const D: usize> Scalar<D> {
     pub fn diffusivity(&self) -> f64 {
         self.diffusivity
     }
+    pub(crate) fn metrics(&self) -> &Metrics<D> {
+        &self.metrics
+    }
     /// The grid.
     pub fn grid(&self) -> &CartesianGrid<D> {
         &self.grid
@@ -161,8 +171,13 @@ pub trait ScalarTransport<const D: usize> {
     /// [`FlowError::ScalarDiverged`] if a scalar is not finite any more.
     fn advance(&mut self, velocity: &Velocity<D>, time: f64, dt: f64) -> Result<(), FlowError>;
 
-    /// The longest step \[s\] that diffusion allows.
-    fn longest_step(&self) -> f64;
+    /// The longest step \[s\] that diffusion allows where the largest Σ ν_t/h² of eddies is `eddy_rate` \[1/s\].
+    fn longest_step(&self, eddy_rate: f64) -> f64;
+
+    /// The stress of eddies in the step to come, for those whom they mix, too ([`Scalar::mix`]); `viscosity` is that of the fluid \[m²/s\].
+    fn mix(&mut self, eddy: &EddyStress<D>, viscosity: f64) {
+        let _ = (eddy, viscosity);
+    }
 
     /// Bodies are where they are now, at `time` \[s\] of a flow on `grid` between `sides`: at the start, and when they have moved in a step, after
     /// [`advance`](Self::advance).
@@ -186,7 +201,7 @@ impl<const D: usize> ScalarTransport<D> for () {
         Ok(())
     }
     #[inline(always)]
-    fn longest_step(&self) -> f64 {
+    fn longest_step(&self, _: f64) -> f64 {
         f64::INFINITY
     }
 }
@@ -195,8 +210,11 @@ impl<const D: usize> ScalarTransport<D> for Vec<Scalar<D>> {
     fn advance(&mut self, velocity: &Velocity<D>, time: f64, dt: f64) -> Result<(), FlowError> {
         self.iter_mut().try_for_each(|scalar| scalar.advance(velocity, time, dt))
     }
-    fn longest_step(&self) -> f64 {
-        self.iter().map(Scalar::longest_step).fold(f64::INFINITY, f64::min)
+    fn longest_step(&self, eddy_rate: f64) -> f64 {
+        self.iter().map(|scalar| scalar.longest_step(eddy_rate)).fold(f64::INFINITY, f64::min)
+    }
+    fn mix(&mut self, eddy: &EddyStress<D>, viscosity: f64) {
+        self.iter_mut().for_each(|scalar| scalar.mix(eddy, viscosity));
     }
 }
 
@@ -206,11 +224,13 @@ impl<const D: usize> ScalarTransport<D> for Scalar<D> {
             return Err(FlowError::TimeStep { dt, time });
         }
         self.check_velocity(velocity)?;
-        let implicit = self.diffusion.choose(dt, 0.0)?;
+        let stirred = self.mixing.as_ref().map_or(0.0, |mixing| mixing.rate);
+        let implicit = self.diffusion.choose(dt, stirred)?;
         if self.boundaries.time() != time {
             self.boundaries.set_time(time);
             self.boundaries.fill_ghosts(&mut self.phi);
         }
+        self.stir();
         // The last tendency is no guide at the start, after a much shorter step, or if it holds other terms.
         let growth = dt / self.last_dt;
         let usable = self.step > 0 && growth <= LONGEST_GROWTH && implicit == self.diffusion.last;
@@ -223,7 +243,7 @@ impl<const D: usize> ScalarTransport<D> for Scalar<D> {
             carrier: &self.carrier,
             velocity: &velocity.components,
             phi: self.phi.data(),
-            source: self.source.as_ref().map(Field::data),
+            source: mixing::sources(&self.mixing, &self.source),
             zeros: &self.zeros,
         };
         let weights = [1.0 + 0.5 * r, -0.5 * r];
@@ -246,8 +266,11 @@ impl<const D: usize> ScalarTransport<D> for Scalar<D> {
         Ok(())
     }
 
-    fn longest_step(&self) -> f64 {
-        self.diffusion.longest_step(0.0)
+    fn longest_step(&self, eddy_rate: f64) -> f64 {
+        self.diffusion.longest_step(eddy_rate / self.turbulent_prandtl)
+    }
+    fn mix(&mut self, eddy: &EddyStress<D>, viscosity: f64) {
+        Self::mix(self, eddy, viscosity);
     }
 }
 

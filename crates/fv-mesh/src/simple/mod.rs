@@ -69,6 +69,8 @@ pub struct Simple<const D: usize> {
     correction: PressureCorrection<D>,
     delta: [Vec<f64>; D],
     force: [f64; D],
+    /// What accelerates the fluid besides.
+    source: Option<Box<[Field<D>; D]>>,
     stress: Option<EddyStress<D>>,
     /// Dense numbers of the nodes whose velocity is given.
     pinned: [Vec<usize>; D],
@@ -99,6 +101,7 @@ impl<const D: usize> Simple<D> {
             correction: params.pressure_solver(grid, metrics, boundaries)?,
             delta: std::array::from_fn(|_| vec![0.0; n]),
             force: [0.0; D],
+            source: None,
             stress: None,
             pinned: std::array::from_fn(|_| Vec::new()),
             walls: None,
@@ -140,6 +143,11 @@ impl<const D: usize> Simple<D> {
     /// Sets the body force per mass \[m/s²\].
     pub fn set_force(&mut self, force: [f64; D]) {
         self.force = force;
+    }
+    /// Accelerations that vary in space, of every component at its nodes \[m/s²\], of the iterations to come; zero until this is first called.
+    pub fn source_mut(&mut self) -> &mut [Field<D>; D] {
+        let grid = &self.state.grid;
+        self.source.get_or_insert_with(|| Box::new(std::array::from_fn(|_| Field::zeros(grid))))
     }
 
     /// Sets the kinematic eddy viscosity ν_t \[m²/s\] at the cell centres; `None` takes it away. Ghost values are used as
@@ -196,6 +204,7 @@ impl<const D: usize> Simple<D> {
                 history: [&u[c], &u[c]],
                 weights: [0.0; 3],
                 force: self.force[c],
+                source: self.source.as_ref().map(|source| &source[c]),
                 relaxation: self.params.velocity_relaxation,
                 viscous_share: self.params.viscous_share,
                 eddy: self.stress.as_ref().map(|s| &s.eddy),
@@ -212,6 +221,7 @@ impl<const D: usize> Simple<D> {
                     viscosity: self.state.fluid.viscosity,
                     density: self.state.fluid.density,
                     force: self.force[c],
+                    source: self.source.as_ref().map(|source| &source[c]),
                     relaxation: self.params.velocity_relaxation,
                     viscous_share: self.params.viscous_share,
                 };

@@ -1,7 +1,7 @@
 //! The walls of the box as turbulence models see them.
 use super::sides::part_at;
 use crate::boundary::Lines;
-use crate::eddy_stress::{EddyStress, Friction};
+use crate::eddy_stress::{EddyStress, Friction, OnWall};
 use crate::grid::GHOSTS;
 use crate::metrics::Metrics;
 use crate::{CartesianGrid, Side, Sides, Velocity};
@@ -19,6 +19,9 @@ pub(crate) struct WallFaces<const D: usize> {
 #[derive(Clone, Copy, Debug)]
 struct WallFace {
     axis: usize,
+    /// Lower (0) or upper side, and the number of the line that ends there.
+    end: usize,
+    line: usize,
     /// Storage index of the cell before it, and of the ghost behind it.
     inside: usize,
     ghost: usize,
@@ -65,7 +68,15 @@ impl<const D: usize> WallFaces<D> {
                     });
                     let area = lines.face_area(metrics, l);
                     new.rows.push(WallRow { cell, y, area, ..WallRow::default() });
-                    new.faces.push(WallFace { axis, inside, ghost, next, velocity: *velocity });
+                    new.faces.push(WallFace {
+                        axis,
+                        end: upper,
+                        line: l,
+                        inside,
+                        ghost,
+                        next,
+                        velocity: *velocity,
+                    });
                     new.add_nodes(grid, metrics, axis, cell);
                 }
             }
@@ -127,6 +138,11 @@ impl<const D: usize> WallFaces<D> {
         for face in &self.faces {
             eddy[face.ghost] = -2.0 * viscosity - eddy[face.inside];
         }
+        stress.walls.clear();
+        stress.walls.extend(self.faces.iter().zip(on_walls).map(|(face, &eddy)| {
+            let WallFace { axis, end, line, inside, ghost, .. } = *face;
+            OnWall { axis, end, line, inside, ghost, eddy }
+        }));
         for (c, friction) in stress.friction.iter_mut().enumerate() {
             friction.clear();
             friction.extend(self.nodes[c].iter().map(|node| Friction {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::testing::{Ball, Balls, Brick, lattice};
+use crate::testing::{Ball, Balls, Brick, Faceted, lattice};
 use interfaces::{Aabb, Kinematics, Nodes, Point, Rotation, Solid};
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -218,6 +218,41 @@ fn coarse_balls_need_no_smaller_cells() {
             let box_ = (n as usize + 5).pow(3);
             let asked = asked.load(Relaxed);
             assert!(asked <= box_, "{n}: {asked} of {box_}");
+        }
+    }
+}
+
+/// Layer by layer λ is what it is of all nodes, on equal and other cells, across periodic sides, of balls and of triangles.
+#[test]
+fn a_layer_is_that_of_the_whole() {
+    let axis = stretched();
+    let n = axis.len();
+    let uneven = Lattice::new([axis.clone(), axis.clone(), axis], 0, [1, n, n * n]);
+    let places = [[0.1, 1.4, 2.9], [1.5, 2.95, 1.2], [2.2, 0.7, 0.75]];
+    let balls = Balls::new(3, 0.3, places.to_vec());
+    let corner = |i: usize| Point::from(std::array::from_fn(|a| if i >> a & 1 == 1 { 0.3 } else { -0.3 }));
+    let sides = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+    let cube = Faceted::new((0..8).map(corner).collect(), sides.into_iter().flat_map(halves).collect());
+    let cubes = Balls::of(cube, 0.216, places.map(|at| pose(at, [0.3, 0.5, 0.7])).to_vec());
+    for lattice in [lattice(3, [0.1, 0.1, 0.3], 3.0), uneven] {
+        for bodies in [&balls, &cubes] {
+            let mut whole = SolidFraction::new();
+            whole.update(&lattice, bodies).unwrap();
+            for axis in 0..3 {
+                let (mut layer, mut found) = (SolidFraction::new(), 0);
+                for number in 0..lattice.axes[axis].len() {
+                    layer.set_layer(Some((axis, number)));
+                    layer.update(&lattice, bodies).unwrap();
+                    for b in bodies.ids() {
+                        let there = |n: &&SolidNode| lattice.node(n.index)[axis] == number as isize;
+                        let expected: Vec<_> = whole.nodes(b).iter().filter(there).copied().collect();
+                        assert_eq!(layer.nodes(b), expected, "axis {axis}, layer {number}");
+                        found += expected.len();
+                    }
+                }
+                assert_eq!(found, bodies.ids().map(|b| whole.nodes(b).len()).sum::<usize>());
+            }
         }
     }
 }

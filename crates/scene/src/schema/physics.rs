@@ -101,9 +101,23 @@ pub(super) static TURBULENCE: [(&str, &Table); 6] = [
 ];
 
 pub(super) static SCALAR: Table = Table {
-    about: "A scalar (temperature, concentration) that the flow carries. In a steady flow it is found at the end, from the flow.",
+    about: "A scalar (temperature, concentration) that the flow carries. In a steady flow it is found at the end, from the flow; with `expansion` along with it.",
     keys: &[
         required("diffusivity", Kind::Number(Range::NotNegative, "m²/s"), "Its diffusivity.", "2e-5"),
+        optional(
+            "turbulent_prandtl",
+            Kind::Number(Range::Positive, "1"),
+            "0.85",
+            "Turbulent Prandtl (or Schmidt) number Pr_t: a turbulence model's eddies mix it by ν_t/Pr_t; beside walls with wall functions and a value given, by the law of the wall.",
+            "0.9",
+        ),
+        optional(
+            "source",
+            Kind::Formula(SPACE, "its unit/s"),
+            "none",
+            "What adds to it per time.",
+            "\"0.1*exp(-x)\"",
+        ),
         optional("unit", Kind::Text, "none", "Its unit, for tables and pictures.", "\"K\""),
         optional(
             "initial",
@@ -149,7 +163,7 @@ pub(super) static SCALAR: Table = Table {
             "expansion",
             Kind::Number(Range::Any, "1/its unit"),
             "not buoyant",
-            "Expansion coefficient β: −β(φ − φ₀)g drives the fluid (Boussinesq; \"projection\" only). One scalar may have it.",
+            "Expansion coefficient β: −β(φ − φ₀)g drives the fluid (Boussinesq). One scalar may have it.",
             "3.4e-3",
         ),
         optional(

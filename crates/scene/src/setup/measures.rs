@@ -26,8 +26,8 @@ pub(crate) struct Images {
     pub(crate) every: usize,
     pub(crate) quantity: Quantity,
     pub(crate) limits: Option<[f64; 2]>,
-    /// Axis that the slice is normal to, and where on it \[m\].
-    pub(crate) slice: (usize, f64),
+    /// Of scenes in space the axis that the slice is normal to, and the number of its cells on it.
+    pub(crate) slice: Option<(usize, usize)>,
     /// Its axes across and up, and the cells along them that are shown.
     pub(crate) axes: [usize; 2],
     pub(crate) region: [Range<usize>; 2],
@@ -37,7 +37,9 @@ impl Images {
     /// What is shown of the values of a slice, which has so many cells across.
     pub(crate) fn part(&self, slice: &[f64], across: usize) -> Vec<f64> {
         let [i, j] = self.region.clone();
-        slice.chunks(across).skip(j.start).take(j.len()).flat_map(|row| &row[i.clone()]).copied().collect()
+        let mut part = Vec::with_capacity(i.len() * j.len());
+        slice.chunks(across).skip(j.start).take(j.len()).for_each(|row| part.extend(&row[i.clone()]));
+        part
     }
 }
 
@@ -141,8 +143,8 @@ fn images(t: &Reader<'_>, axes: &[Axis], snapshots: usize) -> Result<Images, Pro
     let middle = |a: usize| 0.5 * (axes[a].lower() + axes[a].upper());
     let slice = match (t.table("slice"), axes.len()) {
         (Some(_), 2) => return Err(t.fail("slice", "a plane scene is its own slice; leave this out")),
-        (None, 2) => (2, 0.0),
-        (None, _) => (2, middle(2)),
+        (None, 2) => None,
+        (None, _) => axes[2].locate(middle(2)).map(|layer| (2, layer)),
         (Some(slice), _) => {
             let normal = match slice.text("normal") {
                 Some("x") => 0,
@@ -150,19 +152,19 @@ fn images(t: &Reader<'_>, axes: &[Axis], snapshots: usize) -> Result<Images, Pro
                 _ => 2,
             };
             let at = slice.number("at").unwrap_or(middle(normal));
-            if axes[normal].locate(at).is_none() {
+            let Some(layer) = axes[normal].locate(at) else {
                 let (lower, upper) = (axes[normal].lower(), axes[normal].upper());
                 return Err(slice.fail(
                     "at",
                     format!("{at} m is outside the box, which reaches from {lower} to {upper} m"),
                 ));
-            }
-            (normal, at)
+            };
+            Some((normal, layer))
         }
     };
-    let shown = match slice.0 {
-        0 => [1, 2],
-        1 => [0, 2],
+    let shown = match slice {
+        Some((0, _)) => [1, 2],
+        Some((1, _)) => [0, 2],
         _ => [0, 1],
     };
     Ok(Images {

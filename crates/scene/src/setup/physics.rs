@@ -58,6 +58,9 @@ pub(crate) struct ScalarSetup {
     pub(crate) name: String,
     pub(crate) unit: String,
     pub(crate) diffusivity: f64,
+    pub(crate) turbulent_prandtl: f64,
+    /// Per time, of the place.
+    pub(crate) source: Option<Expression>,
     pub(crate) initial: Expression,
     pub(crate) convection: Convection,
     pub(crate) sides: Vec<[ScalarSide; 2]>,
@@ -142,6 +145,8 @@ pub(super) fn scalars(
             name: name.into(),
             unit: t.text("unit").unwrap_or_default().into(),
             diffusivity: t.number("diffusivity").unwrap_or(0.0),
+            turbulent_prandtl: t.number("turbulent_prandtl").unwrap_or(0.85),
+            source: t.formula("source", &["x", "y", "z"])?,
             initial: t.formula("initial", &["x", "y", "z"])?.unwrap_or(Expression::constant(0.0)),
             convection: match t.text("convection") {
                 Some("central") => Convection::Central,

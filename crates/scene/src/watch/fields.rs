@@ -1,11 +1,11 @@
 //! VTK files of the fields.
-use super::{Watch, output};
+use super::{Solids, Taken, Watch, output};
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
+use example_support::files::write_over;
 use fv_mesh::TimeSeries;
 use interfaces::{Checkpoint, RestartError};
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -70,37 +70,27 @@ impl Watch for FieldsWatch {
     fn name(&self) -> &'static str {
         "fields"
     }
-    fn takes_lambda(&self, _: usize) -> bool {
-        self.fields.is_some()
+    fn takes_lambda(&self, _: usize) -> Taken {
+        if self.fields.is_some() { Taken::All } else { Taken::None }
     }
     fn snapshot(
         &mut self,
         view: &mut dyn View,
-        lambda: &[f64],
+        solids: &Solids,
         index: usize,
         info: &StepInfo,
     ) -> Result<(), CouplingError> {
         if let Some(series) = &mut self.fields {
             let name = format!("fields/{index:05}.{}", view.extension());
             let path = self.folder.join(&name);
-            let write = || -> io::Result<()> {
-                let mut file = BufWriter::new(File::create(&path)?);
-                view.write_fields(lambda, &mut file).map_err(io::Error::other)?;
-                file.flush()
-            };
-            write().map_err(output("writing", &path))?;
+            write_over(&path, |out| view.write_fields(&solids.lambda, out).map_err(io::Error::other))
+                .map_err(output("writing", &path))?;
             series.add(info.time, name).map_err(|e| output("listing", &path)(io::Error::other(e)))?;
         }
         if let Some(series) = &mut self.bodies {
             let name = format!("bodies/{index:05}.vtp");
             let path = self.folder.join(&name);
-            let write = || -> io::Result<bool> {
-                let mut file = BufWriter::new(File::create(&path)?);
-                let written = view.write_bodies(&mut file)?;
-                file.flush()?;
-                Ok(written)
-            };
-            if write().map_err(output("writing", &path))? {
+            if write_over(&path, |out| view.write_bodies(out)).map_err(output("writing", &path))? {
                 series.add(info.time, name).map_err(|e| output("listing", &path)(io::Error::other(e)))?;
             }
         }

@@ -1,5 +1,5 @@
 //! Pictures of the fields.
-use super::{Watch, output};
+use super::{Solids, Taken, Watch, output};
 use crate::setup::{Images, Quantity};
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
@@ -58,12 +58,12 @@ impl ImagesWatch {
 /// The numbers of the cells of the slice that is drawn, across fastest.
 pub(super) fn slice_of(view: &dyn View, images: &Images) -> Vec<usize> {
     let n: [usize; 3] = [0, 1, 2].map(|a| if a < view.dim() { view.axis(a).cells() } else { 1 });
-    let ([a, b], (normal, at)) = (images.axes, images.slice);
-    let layer = if normal < view.dim() { view.axis(normal).locate(at).unwrap_or(0) } else { 0 };
+    let [a, b] = images.axes;
     let stride = [1, n[0], n[0] * n[1]];
-    (0..n[b])
-        .flat_map(|j| (0..n[a]).map(move |i| i * stride[a] + j * stride[b] + layer * stride[normal]))
-        .collect()
+    let first = images.slice.map_or(0, |(normal, layer)| layer * stride[normal]);
+    let mut cells = Vec::with_capacity(n[a] * n[b]);
+    (0..n[b]).for_each(|j| cells.extend((0..n[a]).map(|i| first + i * stride[a] + j * stride[b])));
+    cells
 }
 
 /// The part of it that is shown.
@@ -86,13 +86,17 @@ impl Watch for ImagesWatch {
     fn name(&self) -> &'static str {
         "images"
     }
-    fn takes_lambda(&self, index: usize) -> bool {
-        index.is_multiple_of(self.images.every)
+    fn takes_lambda(&self, index: usize) -> Taken {
+        match self.images.slice {
+            _ if !index.is_multiple_of(self.images.every) => Taken::None,
+            Some((axis, number)) => Taken::Layer(axis, number),
+            None => Taken::All,
+        }
     }
     fn snapshot(
         &mut self,
         view: &mut dyn View,
-        lambda: &[f64],
+        solids: &Solids,
         index: usize,
         info: &StepInfo,
     ) -> Result<(), CouplingError> {
@@ -104,7 +108,7 @@ impl Watch for ImagesWatch {
         let dim = view.dim();
         let quantity = self.images.quantity.clone();
         if !matches!(quantity, Quantity::Field(_) | Quantity::Pressure) {
-            view.centred(&mut self.fields[..dim]);
+            view.shown(solids, &mut self.fields[..dim]);
         }
         let mut unit = String::new();
         match &quantity {
@@ -133,7 +137,7 @@ impl Watch for ImagesWatch {
         }
         let across = view.axis(a).cells();
         self.values = self.images.part(&self.values, across);
-        self.solid = self.images.part(&slice(lambda), across);
+        self.solid = self.images.part(&slice(&solids.lambda), across);
         let signed = match &quantity {
             Quantity::Speed => false,
             Quantity::Field(_) => self.values.iter().any(|v| *v < 0.0),

@@ -2,7 +2,7 @@
 mod fitted;
 
 use super::images::{section_of, slice_of};
-use super::{Watch, output};
+use super::{Solids, Taken, Watch, output};
 use crate::setup::{Images, ModelSetup};
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
@@ -170,20 +170,20 @@ impl Watch for ModelsWatch {
     fn name(&self) -> &'static str {
         "models"
     }
-    fn takes_lambda(&self, _: usize) -> bool {
-        self.fields.iter().any(|field| field.name == "lambda")
+    fn takes_lambda(&self, _: usize) -> Taken {
+        if self.fields.iter().any(|field| field.name == "lambda") { Taken::All } else { Taken::None }
     }
     fn snapshot(
         &mut self,
         view: &mut dyn View,
-        lambda: &[f64],
+        solids: &Solids,
         _: usize,
         info: &StepInfo,
     ) -> Result<(), CouplingError> {
         for recorded in &mut self.fields {
             self.field.clear();
             match recorded.name.as_str() {
-                "lambda" => self.field.extend(lambda),
+                "lambda" => self.field.extend(&solids.lambda),
                 "pressure" => view.pressure(&mut self.field),
                 "velocity" => {
                     let components = &mut self.components[..view.dim()];

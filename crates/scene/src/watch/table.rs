@@ -50,7 +50,11 @@ impl Table {
                 write!(self.file, ",{label}")?;
             }
             for value in values {
-                write!(self.file, ",{value:.9e}")?;
+                if value == 0.0 {
+                    self.file.write_all(b",0")?;
+                } else {
+                    write!(self.file, ",{value:.9e}")?;
+                }
             }
             writeln!(self.file)
         };

@@ -1,6 +1,6 @@
 //! Paths of bodies.
-use super::Watch;
 use super::table::Table;
+use super::{Solids, Watch};
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
 use interfaces::{BodyId, Checkpoint, RestartError};
@@ -65,7 +65,7 @@ impl Watch for TrajectoriesWatch {
     fn snapshot(
         &mut self,
         view: &mut dyn View,
-        _: &[f64],
+        _: &Solids,
         _: usize,
         info: &StepInfo,
     ) -> Result<(), CouplingError> {

@@ -10,7 +10,7 @@ fn a_block_slides_without_a_fluid() {
     let [whole, halves] = ["block-whole", "block-halves"].map(folder);
     let run = |out: &Path, more: &[&str], resume: bool| run(&text, more, &Options { resume, ..quiet(out) });
     let all = run(&whole, &[], false);
-    assert!(all.compared[0].error().abs() < 1e-4, "{:?}", all.compared);
+    assert!(all.compared[0].error().unwrap().abs() < 1e-4, "{:?}", all.compared);
     assert!(all.result.get("flow").is_none() && all.result["contacts"] == 1);
     run(&halves, &["time.end=0.2", "output.snapshots=20"], false);
     assert_eq!(all.result, run(&halves, &[], true).result);

@@ -1,7 +1,7 @@
 //! Folders that cannot be written to, and states of other scenes.
 use crate::physics::WARM;
 use crate::{folder, problems, quiet, root, run};
-use scene::{Ending, Options, Scene};
+use scene::{Ending, Options, Scene, empty_row};
 use std::sync::atomic::AtomicBool;
 
 #[test]
@@ -84,5 +84,39 @@ fn pictures_show_a_part() {
     ] {
         let error = problems(WARM, &format!("output.region={region}"));
         assert!(error.contains("output.region") && error.contains(told), "{region}: {error}");
+    }
+}
+
+/// A table of runs tells how each ended, and never that something is not a number.
+#[test]
+fn a_run_that_was_stopped_is_told_in_the_table() {
+    let out = folder("row");
+    let set = ["grid.cells=[8, 8]", "time.end=1", "output.images=false", "output.snapshots=2"];
+    let scene = Scene::load(&root().join("scenes/cavity.toml"), &set.map(String::from)).unwrap();
+    let stopped = scene.run(&quiet(&out), &AtomicBool::new(true)).unwrap();
+    let whole = scene.run(&quiet(&out), &AtomicBool::new(false)).unwrap();
+    std::fs::remove_dir_all(&out).unwrap();
+    assert_eq!(stopped.ending, Ending::Stopped);
+    assert!(stopped.row().contains("**stopped** at 0.0000 s of 1 s"), "{}", stopped.row());
+    assert!(whole.row().contains("Ghia") && !whole.row().contains("stopped"), "{}", whole.row());
+    // What a run was to be compared by and does not have.
+    let mut nothing = whole.clone();
+    nothing.compared.iter_mut().for_each(|c| c.found = None);
+    nothing.timings = serde_json::Value::Null;
+    assert!(nothing.row().contains("is not in the results"), "{}", nothing.row());
+    for text in [
+        stopped.row(),
+        stopped.summary(),
+        whole.row(),
+        nothing.row(),
+        nothing.summary(),
+        empty_row("a", "b|c"),
+    ] {
+        assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+        let cells = |line: &str| line.replace("\\|", "").matches('|').count();
+        assert!(
+            text.starts_with("Lid") || text.lines().all(|line| cells(line) == 7 || !line.starts_with('|')),
+            "{text}"
+        );
     }
 }

@@ -1,6 +1,7 @@
 //! Scenes as their users have them: every file in `scenes/`, spoilt files, interrupted runs, folders that cannot be written to.
 mod dry;
 mod files;
+mod heat;
 mod ledger;
 mod models;
 mod physics;

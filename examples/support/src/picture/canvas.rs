@@ -1,12 +1,12 @@
 //! A bitmap to draw on: anti-aliased lines and circles, written as PNG.
 
-use std::fs::File;
-use std::io::{self, BufWriter};
+use crate::files::write_over;
+use std::io;
 use std::path::Path;
 
 use png::{BitDepth, ColorType, Compression, Encoder};
 
-use super::colour::{Colour, WHITE, mix};
+use super::colour::{Colour, mix};
 
 /// A point on the canvas in pixels: x to the right, y downwards.
 pub(crate) type Pixel = (f64, f64);
@@ -40,7 +40,7 @@ pub(crate) struct Canvas {
     width: usize,
     height: usize,
     rgb: Vec<u8>,
-    /// Coverage of the shape at work; zero between shapes.
+    /// Coverage of the line at work; zero between lines, empty before the first.
     mask: Vec<f32>,
     clip: [i32; 4],
 }
@@ -49,8 +49,7 @@ impl Canvas {
     /// A white canvas.
     pub(crate) fn new(width: usize, height: usize) -> Self {
         let clip = [0, 0, width as i32, height as i32];
-        let rgb = WHITE.repeat(width * height);
-        Self { width, height, rgb, mask: vec![0.0; width * height], clip }
+        Self { width, height, rgb: vec![u8::MAX; 3 * width * height], mask: Vec::new(), clip }
     }
 
     /// Keeps what follows inside `rect`, or lifts that with `None`.
@@ -81,9 +80,15 @@ impl Canvas {
 
     /// A filled rectangle with edges on whole pixels.
     pub(crate) fn fill(&mut self, rect: Rect, colour: Colour, share: f64) {
-        for y in rect.top.round() as i32..rect.bottom().round() as i32 {
-            for x in rect.left.round() as i32..rect.right().round() as i32 {
-                self.blend(x, y, colour, share);
+        let [left, top, right, bottom] = self.clip;
+        let within = |from: f64, to: f64, [low, high]: [i32; 2]| {
+            let end = |x: f64| (x.round() as i32).clamp(low, high) as usize;
+            end(from)..end(to)
+        };
+        let across = within(rect.left, rect.right(), [left, right]);
+        for y in within(rect.top, rect.bottom(), [top, bottom]) {
+            for pixel in self.row(y, across.start, across.end.max(across.start)).as_chunks_mut().0 {
+                *pixel = if share < 1.0 { mix(*pixel, colour, share) } else { colour };
             }
         }
     }
@@ -99,6 +104,7 @@ impl Canvas {
     /// A line through `points`, of one piece: where it meets itself nothing is laid twice.
     pub(crate) fn line(&mut self, points: &[Pixel], width: f64, colour: Colour) {
         let half = 0.5 * width;
+        self.mask.resize(self.width * self.height, 0.0);
         let mut hull = [f64::MAX, f64::MAX, f64::MIN, f64::MIN];
         for pair in points.windows(2) {
             let [a, b] = [pair[0], pair[1]];
@@ -160,13 +166,14 @@ impl Canvas {
 
     /// Writes the canvas as an RGB picture.
     pub(crate) fn save(&self, path: &Path) -> io::Result<()> {
-        let file = BufWriter::new(File::create(path)?);
-        let mut encoder = Encoder::new(file, self.width as u32, self.height as u32);
-        encoder.set_color(ColorType::Rgb);
-        encoder.set_depth(BitDepth::Eight);
-        encoder.set_compression(Compression::Fast);
-        let mut writer = encoder.write_header().map_err(io::Error::other)?;
-        writer.write_image_data(&self.rgb).map_err(io::Error::other)?;
-        writer.finish().map_err(io::Error::other)
+        write_over(path, |out| {
+            let mut encoder = Encoder::new(out, self.width as u32, self.height as u32);
+            encoder.set_color(ColorType::Rgb);
+            encoder.set_depth(BitDepth::Eight);
+            encoder.set_compression(Compression::Fast);
+            let mut writer = encoder.write_header().map_err(io::Error::other)?;
+            writer.write_image_data(&self.rgb).map_err(io::Error::other)?;
+            writer.finish().map_err(io::Error::other)
+        })
     }
 }

@@ -73,7 +73,7 @@ impl Map {
     /// The colour at `fraction` of the range; what lies outside takes the colour of the end, NaN of the start.
     #[inline]
     pub(crate) fn at(&self, fraction: f64) -> Colour {
-        self.0[(fraction * 255.0 + 0.5).clamp(0.0, 255.0) as usize]
+        self.0[usize::from((fraction * 255.0 + 0.5) as u8)]
     }
 }
 

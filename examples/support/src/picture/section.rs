@@ -81,21 +81,24 @@ impl Section<'_> {
         let rows = places(self.up, plot.height as usize, true);
         let n = self.across.len() - 1;
         let [low, high] = layer.limits;
-        let at = |field: &[f64], column: &(usize, usize, f64), row: &(usize, usize, f64)| {
-            let along = |j: usize| {
-                let (a, b) = (field[j * n + column.0], field[j * n + column.1]);
-                a + column.2 * (b - a)
-            };
-            let (a, b) = (along(row.0), along(row.1));
-            a + row.2 * (b - a)
-        };
+        let per_value = 1.0 / (high - low);
+        // Between rows of cells first, which whole rows of pixels share.
+        let (mut values, mut solid) = (vec![0.0; n], vec![0.0; n]);
+        let solid_rows: Vec<bool> = layer.solid.map_or(vec![false; self.up.len()], |all| {
+            all.chunks_exact(n).map(|row| row.iter().any(|share| *share > 0.0)).collect()
+        });
+        let at = |line: &[f64], &(low, high, t): &Place| line[low] + t * (line[high] - line[low]);
+        let left = plot.left as usize;
         for (y, row) in rows.iter().enumerate() {
-            let left = plot.left as usize;
+            between(layer.values, row, &mut values);
+            let solids = layer.solid.filter(|_| solid_rows[row.0] || solid_rows[row.1]);
+            if let Some(all) = solids {
+                between(all, row, &mut solid);
+            }
             let pixels = canvas.row(plot.top as usize + y, left, left + columns.len());
-            for (pixel, column) in pixels.chunks_exact_mut(3).zip(&columns) {
-                let value = at(layer.values, column, row);
-                let mut colour = map.at((value - low) / (high - low));
-                let share = layer.solid.map_or(0.0, |solid| at(solid, column, row).clamp(0.0, 1.0));
+            for (pixel, column) in pixels.as_chunks_mut().0.iter_mut().zip(&columns) {
+                let mut colour = map.at((at(&values, column) - low) * per_value);
+                let share = if solids.is_some() { at(&solid, column).clamp(0.0, 1.0) } else { 0.0 };
                 if layer.solids_alone {
                     colour = mix(WHITE, colour, share);
                 }
@@ -108,14 +111,24 @@ impl Section<'_> {
                         colour = mix(colour, BLACK, 0.9 - 3.6 * (share - 0.5).abs());
                     }
                 }
-                pixel.copy_from_slice(&colour);
+                *pixel = colour;
             }
         }
     }
 }
 
-/// Where pixels fall between the centres of cells: lower cell, upper cell, share of the upper.
-fn places(faces: &[f64], pixels: usize, flip: bool) -> Vec<(usize, usize, f64)> {
+/// Lower cell, upper cell, share of the upper.
+type Place = (usize, usize, f64);
+
+/// The row of cells at this place between two.
+fn between(field: &[f64], &(low, high, t): &Place, out: &mut [f64]) {
+    let n = out.len();
+    let rows = field[low * n..][..n].iter().zip(&field[high * n..][..n]);
+    out.iter_mut().zip(rows).for_each(|(out, (a, b))| *out = a + t * (b - a));
+}
+
+/// Where pixels fall between the centres of cells.
+fn places(faces: &[f64], pixels: usize, flip: bool) -> Vec<Place> {
     let n = faces.len() - 1;
     let centre = |i: usize| 0.5 * (faces[i] + faces[i + 1]);
     let (from, to) = (faces[0], faces[n]);

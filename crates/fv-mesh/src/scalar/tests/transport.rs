@@ -226,8 +226,8 @@ fn none_one_or_many() {
     many.advance(&velocity, 0.0, 0.01).unwrap();
     assert_eq!(one.field().data(), many[1].field().data());
     assert_eq!(size_of::<()>(), 0);
-    assert_eq!(many.longest_step(), one.longest_step());
-    assert_eq!(ScalarTransport::<2>::longest_step(&()), f64::INFINITY);
+    assert_eq!(many.longest_step(0.0), one.longest_step(0.0));
+    assert_eq!(ScalarTransport::<2>::longest_step(&(), 1.0), f64::INFINITY);
 }
 
 #[test]

@@ -55,6 +55,7 @@ pub(crate) struct Iteration<'a, const D: usize> {
     pub(crate) viscosity: f64,
     pub(crate) density: f64,
     pub(crate) force: f64,
+    pub(crate) source: Option<&'a Field<D>>,
     pub(crate) relaxation: f64,
     pub(crate) viscous_share: f64,
 }
@@ -178,7 +179,8 @@ impl<const D: usize> SimpleWalls<D> {
         self.shut[c].iter().for_each(|&cell| centre[cell] = 1.0);
         for ((sum, rate), row) in self.sums.iter().zip(&self.rates).zip(rows) {
             *terms += volume(row.index) * (sum.abs() - equations.tendency(row.index).abs());
-            equations.rhs[row.cell] = sum - slope(row.index) + it.force;
+            let source = it.source.map_or(0.0, |source| source.data()[row.index]);
+            equations.rhs[row.cell] = sum - slope(row.index) + it.force + source;
             centre[row.cell] += (1.0 / it.relaxation - 1.0) * rate;
         }
     }

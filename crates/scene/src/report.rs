@@ -1,0 +1,126 @@
+//! Results as people read them.
+use crate::result::{Compared, Ending, RunResult};
+use serde_json::Value;
+
+/// The head of a table of runs.
+pub const TABLE_HEAD: &str =
+    "| scene | cells | steps | CPU s | for output | results |\n|---|---|---|---|---|---|\n";
+
+/// The row of a run that came to nothing, and why.
+pub fn empty_row(scene: &str, why: &str) -> String {
+    format!("| {scene} | | | | | {} |\n", why.replace('\n', " ").replace('|', "\\|"))
+}
+
+/// A number in `text`'s format, or a dash for what is not there.
+fn shown(value: &Value, text: impl Fn(f64) -> String) -> String {
+    value.as_f64().filter(|x| x.is_finite()).map_or_else(|| "–".into(), text)
+}
+
+impl Compared {
+    /// With `digits` behind the point.
+    fn line(&self, digits: usize) -> String {
+        let Self { name, reference, source, .. } = self;
+        let source = if source.is_empty() { String::new() } else { format!("{source}: ") };
+        match (self.found, self.error()) {
+            (Some(found), Some(error)) if *reference == 0.0 => {
+                format!("{name} {found:.digits$} ({source}0, off by {error:.2e})")
+            }
+            (Some(found), Some(error)) => {
+                format!("{name} {found:.digits$} ({source}{reference}, {:+.2} %)", 100.0 * error)
+            }
+            _ => format!("{name} is not in the results ({source}{reference})"),
+        }
+    }
+}
+
+impl RunResult {
+    /// Share of the wall time that went into files and pictures.
+    fn output_share(&self) -> f64 {
+        let seconds = |key: &str| self.timings[key].as_f64().unwrap_or(0.0);
+        seconds("output") / seconds("wall").max(1e-9)
+    }
+
+    /// A row of a table of runs, under [`TABLE_HEAD`]: what it took, how it ended if not as it should, what came out beside what others found, and what the books
+    /// leave: energy over work, momentum over impulses.
+    pub fn row(&self) -> String {
+        let r = &self.result;
+        let cells: Vec<String> =
+            r["cells"].as_array().into_iter().flatten().map(ToString::to_string).collect();
+        let mut notes = Vec::new();
+        let residual = shown(&r["residual"], |x| format!("residual {x:.1e}"));
+        match self.ending {
+            Ending::Stopped => {
+                let end = shown(&r["end"], |x| format!(" of {x} s"));
+                let time = shown(&r["time"], |x| format!("{x:.4} s"));
+                notes.push(format!("**stopped** at {time}{end}, `--resume` goes on"));
+            }
+            Ending::NotConverged => notes.push(format!("**not converged**, {residual}")),
+            Ending::Done if r.get("residual").is_some() => notes.push(residual),
+            Ending::Done => {}
+        }
+        if self.ending != Ending::Stopped {
+            notes.extend(self.compared.iter().map(|c| c.line(5)));
+            if let Some(l) = r.get("ledger") {
+                let of = |key: &str| l[key].as_f64().unwrap_or(0.0);
+                let work = of("work").abs().max(of("driving_work").abs()).max(of("side_work").abs());
+                if work > 0.0 {
+                    notes.push(format!("energy {:+.3} %", 100.0 * of("energy_residual") / work));
+                }
+                notes.push(shown(&l["momentum_whole_run"], |x| format!("momentum {x:.0e}")));
+            }
+        }
+        format!(
+            "| {} | {} | {}{} | {} | {:.0} % | {} |\n",
+            r["scene"].as_str().unwrap_or_default(),
+            cells.join(" × "),
+            r["steps"],
+            if r.get("residual").is_some() { " iterations" } else { "" },
+            shown(&self.timings["cpu"], |x| format!("{x:.1}")),
+            100.0 * self.output_share(),
+            notes.join("; "),
+        )
+    }
+
+    /// A few lines.
+    pub fn summary(&self) -> String {
+        let (r, t) = (&self.result, &self.timings);
+        let mut out = format!(
+            "{}: {} steps to t = {} s, {} CPU s ({:.0} % of the wall time for files and pictures)\n",
+            r["title"].as_str().unwrap_or_default(),
+            r["steps"],
+            shown(&r["time"], |x| format!("{x:.6}")),
+            shown(&t["cpu"], |x| format!("{x:.1}")),
+            100.0 * self.output_share(),
+        );
+        for body in r["forces"].as_array().into_iter().flatten().take(12) {
+            let (name, load) = (body["body"].as_str().unwrap_or_default(), &body["load"]);
+            let force: Vec<String> =
+                (0..3).map(|a| shown(&load["last"][a], |x| format!("{x:.6e}"))).collect();
+            out += &format!("  body {name}: force {}", force.join(", "));
+            if let Some(c) = body["coefficients"]["mean"].as_array() {
+                let mean: Vec<String> = c.iter().take(2).map(|c| shown(c, |x| format!("{x:.5}"))).collect();
+                out += &format!("; mean coefficients {}", mean.join(", "));
+            }
+            if let Some(strouhal) = body["strouhal"].as_f64() {
+                out += &format!("; Strouhal {strouhal:.4}");
+            }
+            out.push('\n');
+        }
+        if let Some(l) = r.get("ledger") {
+            let of = |key: &str| shown(&l[key], |x| format!("{x:.2e}"));
+            out += &format!(
+                "  books: momentum {} of the impulses, energy residual {} J of {} J of work\n",
+                of("momentum_whole_run"),
+                of("energy_residual"),
+                of("work"),
+            );
+        }
+        for c in &self.compared {
+            out += &format!("  {}\n", c.line(6));
+        }
+        if let Some(residual) = r["residual"].as_f64() {
+            out += &format!("  residual {residual:.2e}\n");
+        }
+        out + &format!("  files in {}\n", self.folder.display())
+    }
+}

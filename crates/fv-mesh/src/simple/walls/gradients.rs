@@ -13,8 +13,8 @@ pub(super) struct Gradients<const D: usize> {
     slots: HashMap<usize, u32>,
     nodes: Vec<Node<D>>,
     terms: Vec<Term<D>>,
-    /// Places on walls: the piece, and how far from it the node is taken to be \[m\].
-    walls: Vec<(usize, f64)>,
+    /// Places on walls: the piece of each.
+    walls: Vec<usize>,
     at_walls: Vec<AtWall>,
     pub(super) values: Vec<[f64; D]>,
 }
@@ -84,7 +84,7 @@ impl<const D: usize> Gradients<D> {
             let y = norm2(&to_wall(&wall, x)).sqrt().max(nearest * openings.extent(cell, &wall));
             if y > 0.0 {
                 seen.push((Point::Wall(self.walls.len()), std::array::from_fn(|a| -y * wall.normal[a])));
-                self.walls.push((piece, y));
+                self.walls.push(piece);
             }
         }
         let held = if seen.len() > free.len() { fit(&seen) } else { free.clone() };
@@ -103,12 +103,12 @@ impl<const D: usize> Gradients<D> {
         slot
     }
 
-    /// Looks at the flow; `at_wall`: what is so at a distance from a piece of wall.
-    pub(super) fn update(&mut self, u: &Field<D>, at_wall: impl Fn(usize, f64) -> AtWall) {
+    /// Looks at the flow; `at_wall`: what is so at a piece of wall.
+    pub(super) fn update(&mut self, u: &Field<D>, at_wall: impl Fn(usize) -> AtWall) {
         let u = u.data();
         let Self { nodes, terms, walls, at_walls, values, .. } = self;
         at_walls.clear();
-        at_walls.extend(walls.iter().map(|&(piece, y)| at_wall(piece, y)));
+        at_walls.extend(walls.iter().map(|&piece| at_wall(piece)));
         let mut starts = [0; 2];
         for (node, value) in nodes.iter().zip(values) {
             let walls = &at_walls[starts[1]..node.ends[1]];

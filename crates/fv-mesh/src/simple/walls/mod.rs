@@ -1,5 +1,6 @@
 //! Immersed walls in the steady algorithm: conservative balances over what they leave of the control volumes.
 mod beside;
+mod edges;
 mod gradients;
 mod openings;
 mod rows;
@@ -130,7 +131,7 @@ impl<const D: usize> SimpleWalls<D> {
     pub(super) fn update(&mut self, velocity: &[Field<D>; D], k: Option<&Field<D>>, viscosity: f64) {
         self.stresses.update(velocity, k, viscosity);
         for (c, (gradients, u)) in self.gradients.iter_mut().zip(velocity).enumerate() {
-            gradients.update(u, |piece, y| self.stresses.at_wall(piece, y, c, viscosity));
+            gradients.update(u, |piece| self.stresses.at_wall(piece, c, viscosity));
         }
     }
 

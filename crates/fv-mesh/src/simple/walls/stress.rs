@@ -201,21 +201,15 @@ impl<const D: usize> Stresses<D> {
         self.speeds[piece].unwrap_or_else(|| self.traction[piece].norm().sqrt())
     }
 
-    /// What a wall tells gradients of component `c` at distance `y`: the velocity that a straight profile has on it if its value and
-    /// slope at `y` are the law's, which is the wall's own in the viscous sublayer. Where cells are much larger than that
-    /// layer, the nodes around say more of the flow.
-    pub(super) fn at_wall(&self, piece: usize, y: f64, c: usize, nu: f64) -> AtWall {
+    /// What a wall tells gradients of component `c`: where cells are much larger than the viscous sublayer the nodes around say more of
+    /// the flow.
+    pub(super) fn at_wall(&self, piece: usize, c: usize, nu: f64) -> AtWall {
         let probe = &self.probes[piece];
-        let velocity = probe.velocity[c];
-        let speed = self.speed(piece);
-        let law = match self.law {
-            WallStress::Law { law, .. } if speed > 0.0 => law,
-            _ => return AtWall { velocity, share: 1.0 },
+        let share = match self.law {
+            WallStress::Law { .. } => 1.0 / (1.0 + (self.speed(piece) * probe.half / nu / RESOLVED).powi(2)),
+            _ => 1.0,
         };
-        let plus = speed * y / nu;
-        let slip = law.u_plus(plus) - plus * law.slope(plus);
-        let share = 1.0 / (1.0 + (speed * probe.half / nu / RESOLVED).powi(2));
-        AtWall { velocity: velocity + self.traction[piece][c] / speed * slip, share }
+        AtWall { velocity: probe.velocity[c], share }
     }
 
     /// Tangential velocity at distance `y` from the wall that goes with its friction, by the law where there is one.

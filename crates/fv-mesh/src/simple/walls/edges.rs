@@ -1,0 +1,271 @@
+//! The edges of control volumes beside walls.
+use super::gradients::{Gradients, dot};
+use super::openings::Openings;
+use super::rows::{Flow, coordinate};
+use crate::{Convection, Field};
+
+/// Faces with a smaller open share carry by first order: what is extrapolated from them would not settle.
+const SLIVER: f64 = 0.1;
+
+/// A face of a control volume, or a part of one.
+pub(super) struct Edge<const D: usize> {
+    /// Its normal's axis, and whether it is the upper one.
+    pub(super) axis: usize,
+    pub(super) upper: bool,
+    /// Storage index of the node across, and whether that is the next one along the axis.
+    pub(super) other: usize,
+    pub(super) next: bool,
+    /// Storage index of the node above it, which numbers it.
+    pub(super) number: usize,
+    /// Open area over the volume \[1/m\].
+    pub(super) area: f64,
+    /// Nodes that carry and their part of the area, per volume.
+    pub(super) carriers: [(usize, f64); 2],
+    /// Open part of the area over the volume and the distance of the nodes \[1/m²\].
+    pub(super) conduct: f64,
+    pub(super) kind: Kind<D>,
+}
+
+pub(super) enum Kind<const D: usize> {
+    /// No wall near: as everywhere else.
+    Plain,
+    /// On a side of the box, whose value is half way to the ghost.
+    Side,
+    /// No node in the fluid behind it.
+    Blind { to_edge: [f64; D] },
+    /// Between two nodes.
+    Cut(Link<D>),
+}
+
+pub(super) struct Link<const D: usize> {
+    pub(super) other: u32,
+    /// From this node, and from the other one, to the middle of the edge; to the other one.
+    pub(super) to_edge: [f64; D],
+    pub(super) from_other: [f64; D],
+    pub(super) step: [f64; D],
+    /// Where between the nodes, as a share of the step along the axis.
+    pub(super) share: f64,
+    /// One of the nodes has next to no volume: what is carried is the upwind node's.
+    pub(super) sliver: bool,
+    /// How the carriers' velocity changes along the component's axis: their gradients and the step between them.
+    pub(super) across: [Option<u32>; 2],
+    pub(super) between: [f64; D],
+}
+
+/// One side of a node's control volume: that of component `c` at `index`, its upper or lower side along `b`.
+#[derive(Clone, Copy)]
+pub(super) struct VolumeSide<'a, const D: usize> {
+    pub(super) openings: &'a Openings<'a, D>,
+    pub(super) c: usize,
+    pub(super) b: usize,
+    pub(super) upper: bool,
+    pub(super) index: usize,
+    pub(super) inv_volume: f64,
+    pub(super) nearest: Option<f64>,
+}
+
+impl<const D: usize> VolumeSide<'_, D> {
+    /// The node above it, which numbers it.
+    fn number(&self) -> usize {
+        if self.upper { self.index + self.openings.grid.stride()[self.b] } else { self.index }
+    }
+
+    /// The next node along `b`.
+    fn next(&self, index: usize) -> usize {
+        let s = self.openings.grid.stride()[self.b];
+        if self.upper { index + s } else { index - s }
+    }
+
+    /// Adds the edges of the side. A cell is shared by the nodes of its two faces along `c`, and is all of the one's through whose face something
+    /// passes if nothing passes the other: so whatever leaves one control volume comes into another.
+    pub(super) fn add(
+        self,
+        kind: Option<Kind<D>>,
+        gradients: &mut [Gradients<D>; D],
+        edges: &mut Vec<Edge<D>>,
+    ) {
+        let Self { openings, c, b, index, .. } = self;
+        let (s, number, next) = (openings.grid.stride(), self.number(), self.next(index));
+        let area = |o: usize| 0.5 * openings.open[b].data()[o] * openings.area(b, o);
+        let pair = if b == c { [number - s[b], number] } else { [number - s[c], number] };
+        // The other face of either cell.
+        let behind = |k: usize, o: usize| if k == 0 { o - s[c] } else { o + s[c] };
+        let alone = |k: usize| b != c && !openings.alive(c, behind(k, index));
+        let whole = [0, 1].map(|k| (pair[k], if alone(k) { 2.0 } else { 1.0 } * area(pair[k])));
+        if kind.is_some() {
+            edges.push(self.edge(next, whole, kind, gradients));
+            return;
+        }
+        if b == c {
+            if openings.alive(c, next) {
+                edges.push(self.edge(next, whole, None, gradients));
+            }
+            return;
+        }
+        let mut main = pair.map(|face| (face, 0.0));
+        for (k, face) in pair.into_iter().enumerate() {
+            // Across the half beside the node, and across the other one.
+            let halves = [next, behind(k, next)];
+            for half in 0..if alone(k) { 2 } else { 1 } {
+                let owner = [halves[half], halves[1 - half]].into_iter().find(|&o| openings.alive(c, o));
+                match owner.unwrap_or(next) {
+                    owner if owner == next => main[k].1 += area(face),
+                    owner => {
+                        let carriers = [(face, area(face)), (face, 0.0)];
+                        edges.push(self.edge(owner, carriers, None, gradients));
+                    }
+                }
+            }
+        }
+        if main[0].1 + main[1].1 > 0.0 {
+            edges.push(self.edge(next, main, None, gradients));
+        }
+    }
+
+    /// The edge to the node `other`, through these areas of faces.
+    fn edge(
+        &self,
+        other: usize,
+        carriers: [(usize, f64); 2],
+        kind: Option<Kind<D>>,
+        gradients: &mut [Gradients<D>; D],
+    ) -> Edge<D> {
+        let Self { openings, c, b, upper, index, inv_volume, nearest } = *self;
+        let metrics = openings.metrics;
+        let number = self.number();
+        let at = openings.at(number);
+        let open = carriers[0].1 + carriers[1].1;
+        let gap = 1.0 / metrics.of(Some(c), b).inv_gap[at[b]];
+        let mut edge = Edge {
+            axis: b,
+            upper,
+            other,
+            next: other == self.next(index),
+            number,
+            area: open * inv_volume,
+            carriers: carriers.map(|(o, area)| (o, area * inv_volume)),
+            conduct: open * inv_volume / gap,
+            kind: Kind::Plain,
+        };
+        if let Some(kind) = kind {
+            edge.kind = kind;
+            return edge;
+        }
+        let pair = carriers.map(|(o, _)| o);
+        let (x, middle) = (openings.node(c, index), middle(openings, [c, b], number, carriers));
+        let to_edge = std::array::from_fn(|a| middle[a] - x[a]);
+        if !openings.alive(c, other) {
+            edge.kind = Kind::Blind { to_edge };
+            return edge;
+        }
+        let y = openings.node(c, other);
+        let step: [f64; D] = std::array::from_fn(|a| y[a] - x[a]);
+        edge.conduct = open * inv_volume / step[b].abs();
+        let mut slot =
+            |c: usize, o: usize| openings.alive(c, o).then(|| gradients[c].slot(openings, c, o, nearest));
+        let [v, w] = [openings.node(b, pair[0]), openings.node(b, pair[1])];
+        edge.kind = Kind::Cut(Link {
+            other: slot(c, other).unwrap_or_default(),
+            to_edge,
+            from_other: std::array::from_fn(|a| middle[a] - y[a]),
+            step,
+            share: (to_edge[b] / step[b]).clamp(0.0, 1.0),
+            sliver: [index, other].iter().any(|&o| openings.open[c].data()[o] < SLIVER),
+            across: if b == c {
+                [None; 2]
+            } else if pair[0] == pair[1] {
+                [slot(b, pair[0]), None]
+            } else {
+                [slot(b, pair[0]), slot(b, pair[1])]
+            },
+            between: std::array::from_fn(|a| w[a] - v[a]),
+        });
+        edge
+    }
+}
+
+impl<const D: usize> Edge<D> {
+    /// ν_t on the edge, linear between the cells around.
+    pub(super) fn viscosity(&self, flow: &Flow<D>, [c, b]: [usize; 2]) -> f64 {
+        let Some(eddy) = flow.eddy.map(Field::data) else { return 0.0 };
+        let (k, s) = (self.number, flow.grid.stride());
+        if b == c {
+            return eddy[k - s[b]];
+        }
+        if let [(face, _), (other, _)] = self.carriers
+            && face == other
+        {
+            return 0.5 * (eddy[face - s[b]] + eddy[face]);
+        }
+        let (j, m) = (coordinate(flow.grid, k, b), coordinate(flow.grid, k, c));
+        let (along_b, along_c) = (&flow.metrics.axes[b].share, &flow.metrics.axes[c].share);
+        let beside = |k: usize| along_c[1][m] * eddy[k - s[c]] + along_c[0][m] * eddy[k];
+        along_b[1][j] * beside(k - s[b]) + along_b[0][j] * beside(k)
+    }
+}
+
+/// Middle of the open part of an edge.
+fn middle<const D: usize>(
+    openings: &Openings<D>,
+    [c, b]: [usize; 2],
+    number: usize,
+    carriers: [(usize, f64); 2],
+) -> [f64; D] {
+    let at = openings.at(number);
+    let sum = carriers[0].1 + carriers[1].1;
+    let weights = if sum > 0.0 { carriers.map(|(_, area)| area / sum) } else { [0.5; 2] };
+    let places = carriers.map(|(o, _)| openings.node(b, o));
+    let mut x: [f64; D] = std::array::from_fn(|a| weights[0] * places[0][a] + weights[1] * places[1][a]);
+    if b == c {
+        x[c] = openings.metrics.axes[c].centres.x[at[c] - 1];
+    } else if carriers[0].0 != carriers[1].0 {
+        let width = &openings.metrics.axes[c].width;
+        let face = openings.metrics.axes[c].faces.x[at[c]];
+        x[c] = face + 0.25 * (weights[1] * width[at[c]] - weights[0] * width[at[c] - 1]);
+        x[b] = openings.metrics.axes[b].faces.x[at[b]];
+    }
+    x
+}
+
+impl<const D: usize> Link<D> {
+    /// The velocity that is carried through the edge.
+    pub(super) fn value(&self, scheme: Convection, out: f64, u: [f64; 2], g: [&[f64; D]; 2]) -> f64 {
+        let linear = |k: usize| u[k] + dot(g[k], if k == 0 { &self.to_edge } else { &self.from_other });
+        let upwind = usize::from(out < 0.0);
+        let mean = || {
+            let side: [f64; D] = std::array::from_fn(|a| self.to_edge[a] - self.share * self.step[a]);
+            u[0] + self.share * (u[1] - u[0]) + 0.5 * (dot(g[0], &side) + dot(g[1], &side))
+        };
+        match scheme {
+            _ if self.sliver => u[upwind],
+            Convection::Upwind => u[upwind],
+            Convection::LinearUpwind => linear(upwind),
+            Convection::Central => mean(),
+            Convection::Quick | Convection::Limited => 0.5 * (mean() + linear(upwind)),
+        }
+    }
+
+    /// ∂u/∂x_b on the edge.
+    pub(super) fn slope(&self, b: usize, u: [f64; 2], g: [&[f64; D]; 2]) -> f64 {
+        directed(b, u, g, &self.step)
+    }
+
+    /// ∂u_b/∂x_c on the edge.
+    pub(super) fn cross(&self, edge: &Edge<D>, [c, b]: [usize; 2], flow: &Flow<D>) -> f64 {
+        let gradient = |slot: u32| &flow.gradients[b].values[slot as usize];
+        match self.across {
+            [Some(low), Some(high)] => {
+                let u = edge.carriers.map(|(o, _)| flow.velocity[b].data()[o]);
+                directed(c, u, [gradient(low), gradient(high)], &self.between)
+            }
+            [Some(one), None] | [None, Some(one)] => gradient(one)[c],
+            _ => 0.0,
+        }
+    }
+}
+
+/// The derivative along `b` between two nodes that are not beside each other along it alone.
+fn directed<const D: usize>(b: usize, u: [f64; 2], g: [&[f64; D]; 2], step: &[f64; D]) -> f64 {
+    let aside: f64 = (0..D).filter(|&a| a != b).map(|a| 0.5 * (g[0][a] + g[1][a]) * step[a]).sum();
+    (u[1] - u[0] - aside) / step[b]
+}

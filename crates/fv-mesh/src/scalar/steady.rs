@@ -28,6 +28,29 @@ const DAMPING: f64 = 0.7;
 const REDUCTION: f64 = 1e-2;
 const SWEEPS: usize = 500;
 
+/// A δ = rest in a steady velocity.
+struct System<const D: usize> {
+    matrix: StencilMatrix<D>,
+    rest: Vec<f64>,
+    delta: Vec<f64>,
+    solver: MomentumSolver,
+    /// Solutions begun.
+    iterations: u64,
+}
+
+impl<const D: usize> System<D> {
+    fn new(scalar: &Scalar<D>, velocity: &Velocity<D>) -> Result<Self, FlowError> {
+        let n = scalar.grid.n_cells();
+        Ok(Self {
+            matrix: scalar.steady_matrix(velocity)?,
+            rest: vec![0.0; n],
+            delta: vec![0.0; n],
+            solver: MomentumSolver::new(n, REDUCTION, SWEEPS),
+            iterations: 0,
+        })
+    }
+}
+
 impl<const D: usize> Scalar<D> {
     /// The steady φ in a steady `velocity` under what is given at `time` \[s\], from the φ there is:
     ///
@@ -57,9 +80,11 @@ impl<const D: usize> Scalar<D> {
             let what = "sides that all give a scalar's gradient, by which its steady state is known but for a constant; give its value somewhere";
             return Err(FlowError::Boundary { what: what.into() });
         }
+        self.begin(time, &mut hold);
+        let mut system = System::new(self, velocity)?;
         let mut change = f64::INFINITY;
         for iteration in 1..=max_iterations {
-            change = self.approach(velocity, time, held, &mut hold)?;
+            change = self.correct(&mut system, velocity, time, held, &mut hold)?;
             if change <= tolerance {
                 return Ok(iteration);
             }
@@ -78,28 +103,43 @@ impl<const D: usize> Scalar<D> {
         held: &[usize],
         mut hold: impl FnMut(&mut [f64]),
     ) -> Result<f64, FlowError> {
-        let n = self.grid.n_cells();
+        self.begin(time, &mut hold);
+        let mut system = System::new(self, velocity)?;
+        self.correct(&mut system, velocity, time, held, &mut hold)
+    }
+
+    fn begin(&mut self, time: f64, hold: &mut impl FnMut(&mut [f64])) {
         self.boundaries.set_time(time);
-        self.impose(&mut hold);
+        self.impose(hold);
         self.step = 0;
-        let mut matrix = self.steady_matrix(velocity)?;
-        let (mut rest, mut delta) = (vec![0.0; n], vec![0.0; n]);
-        self.rest(velocity, &mut rest);
+    }
+
+    /// Solves for δ and takes its part; answers the largest change of φ over the largest |φ|.
+    fn correct(
+        &mut self,
+        System { matrix, rest, delta, solver, iterations }: &mut System<D>,
+        velocity: &Velocity<D>,
+        time: f64,
+        held: &[usize],
+        hold: &mut impl FnMut(&mut [f64]),
+    ) -> Result<f64, FlowError> {
+        *iterations += 1;
+        self.rest(velocity, rest);
         for &o in held {
             // Ghosts belong to no cell.
             if let Some(cell) = self.grid.cell_at(o) {
-                momentum::pin(&mut matrix, self.grid.index(cell), 0.0, &mut rest);
+                momentum::pin(matrix, self.grid.index(cell), 0.0, rest);
             }
         }
-        MomentumSolver::new(n, REDUCTION, SWEEPS).solve(&matrix, &rest, &mut delta)?;
+        solver.solve(matrix, rest, delta)?;
         self.next.data_mut().copy_from_slice(self.phi.data());
         delta.iter_mut().for_each(|delta| *delta *= DAMPING);
-        kernels::add_dense(&self.grid, &delta, &mut self.phi);
-        self.impose(&mut hold);
+        kernels::add_dense(&self.grid, delta, &mut self.phi);
+        self.impose(hold);
         let mut largest = [0.0_f64; 2];
         for (now, before) in self.phi.values().zip(self.next.values()) {
             if !now.is_finite() {
-                return Err(FlowError::ScalarDiverged { step: 0, time, dt: 0.0 });
+                return Err(FlowError::ScalarDiverged { step: *iterations, time, dt: 0.0 });
             }
             largest = [largest[0].max((now - before).abs()), largest[1].max(now.abs())];
         }

@@ -180,7 +180,7 @@ impl<const D: usize> Simple<D> {
     /// (continuity).
     ///
     /// # Errors
-    /// [`FlowError::Diverged`] when the velocity is not finite; [`FlowError::MassBalance`] if what enters cannot leave.
+    /// [`FlowError::Diverged`] when the velocity is not finite or so large that the pressure equation cannot be solved; [`FlowError::MassBalance`] if what enters cannot leave.
     pub fn iterate(&mut self) -> Result<SimpleInfo, FlowError> {
         per_dimension!(self, Simple, iterate_here() -> Result<SimpleInfo, FlowError>)
     }

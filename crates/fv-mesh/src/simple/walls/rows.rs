@@ -7,7 +7,7 @@ use crate::metrics::Metrics;
 use crate::momentum_matrix::MomentumEquations;
 use crate::{CartesianGrid, Convection, Field};
 
-/// One control volume: the halves of two cells.
+/// One control volume: the halves of two cells, or all of one whose other face is shut.
 pub(super) struct Row<const D: usize> {
     /// Dense number and storage index of its face.
     pub(super) cell: usize,

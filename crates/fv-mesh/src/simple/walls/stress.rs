@@ -14,8 +14,8 @@ pub enum WallStress {
     NoSlip,
     /// It slips along them.
     Slip,
-    /// τ = ρ u_τ u/u+(u_τ y/ν) from the velocity u at some distance y, u_τ = C_μ^¼ √k where the turbulence kinetic energy k is known
-    /// (Launder & Spalding 1974), else u/u+.
+    /// τ = ρ u_τ u/u+(u_τ y/ν), u_τ = C_μ^¼ √k where the turbulence kinetic energy k is known (Launder & Spalding 1974), else u/u+; u is what
+    /// the law has at some distance y if it has Σ w u of the nodes around, w the weights of that place.
     Law {
         /// u+.
         law: LawOfTheWall,
@@ -24,7 +24,7 @@ pub enum WallStress {
     },
 }
 
-/// Nodes nearer to a wall than this share of a cell are taken to be there.
+/// Velocity nodes nearer to a wall than this share of a cell are taken to be there.
 const NEAREST: f64 = 0.05;
 /// y+ of half a cell at which the gradients beside it take the wall for half.
 const RESOLVED: f64 = 30.0;
@@ -178,17 +178,17 @@ impl<const D: usize> Stresses<D> {
             });
             self.speeds[p] = k.map(|k: f64| C_MU * k.max(0.0).sqrt());
             let scale = self.speed(p) / nu;
+            // In fluid at rest the law is that of the viscous sublayer.
+            let law_at = |y: f64| if scale > 0.0 { law.u_plus(scale * y) } else { y };
             let mut u = Vector::zeros();
             for c in 0..D {
                 let (first, last) = probe.ranges[c];
-                let data = velocity[c].data();
                 let [mut sum, mut plus] = [0.0; 2];
                 for &(o, w, y) in &self.terms[first..last] {
-                    sum += w * (data[o] - probe.velocity[c]);
-                    plus += w * if scale > 0.0 { law.u_plus(scale * y) } else { y };
+                    sum += w * (velocity[c].data()[o] - probe.velocity[c]);
+                    plus += w * law_at(y);
                 }
-                // What it is at `y` by the law.
-                u[c] = sum / plus * if scale > 0.0 { law.u_plus(scale * probe.y) } else { probe.y };
+                u[c] = sum / plus * law_at(probe.y);
             }
             u -= probe.normal * probe.normal.dot(&u);
             self.friction[p] = friction(law, [probe.y, u.norm()], self.speeds[p], nu);

@@ -61,7 +61,7 @@ fn of_model<L: Law>(name: &str, law: L, text: &str, angle: f64, cells: usize) ->
     let [along, up] = ducts.along();
     let fluid = Fluid { density: 1.0, viscosity: VISCOSITY };
     let mut flow = Simple::new(grid.clone(), [Side::Periodic.both(), Side::Periodic.both()], fluid)?
-        .with_convection(Convection::LinearUpwind)
+        .with_convection(Convection::Quick)
         .with_params(SimpleParams { velocity_relaxation: 0.97, ..SimpleParams::turbulent() })?;
     let cuts = cut_cells(flow.velocity(), &StaticBodies::new().with(ducts, ducts.pose()))?;
     flow.set_walls(Some((&cuts, WallStress::LAW_OF_THE_WALL)))?;

@@ -146,7 +146,7 @@ fn sides(cli: &Cli, duct: Duct) -> [[Side; 2]; 2] {
 fn run<C: Closure>(cli: &Cli, duct: Duct, grid: CartesianGrid<2>, closure: C, name: &str) -> Outcome<()> {
     let fluid = Fluid { density: 1.0, viscosity: 1.0 / cli.re };
     let mut flow = Simple::new(grid.clone(), sides(cli, duct), fluid)?
-        .with_convection(Convection::LinearUpwind)
+        .with_convection(Convection::Quick)
         .with_params(SimpleParams { velocity_relaxation: cli.relaxation, ..SimpleParams::turbulent() })?;
     let walls = StaticBodies::new().with(duct, Pose::at([0.0; 3]));
     let cuts = cut_cells(flow.velocity(), &walls)?;

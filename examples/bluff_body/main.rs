@@ -103,8 +103,7 @@ fn run<const D: usize, S: Solid + Copy + 'static>(cli: &Cli, body: S, face: f64)
     });
     let fluid = Fluid { density: 1.0, viscosity: 1.0 / cli.re };
     let params = SimpleParams { velocity_relaxation: cli.relaxation, ..SimpleParams::turbulent() };
-    let mut flow =
-        Simple::new(grid, sides, fluid)?.with_convection(Convection::LinearUpwind).with_params(params)?;
+    let mut flow = Simple::new(grid, sides, fluid)?.with_convection(Convection::Quick).with_params(params)?;
     let centre = std::array::from_fn(|a| place.get(a).copied().unwrap_or(0.0));
     let walls = StaticBodies::new().with(body, Pose::at(centre));
     let cuts = cut_cells(flow.velocity(), &walls)?;

@@ -122,6 +122,22 @@ impl Document {
         if problems.is_empty() { Ok(this) } else { Err(this.problems(problems)) }
     }
 
+    /// What is wrong with the value under a key from the top (`bodies.2`), or with the nearest that is there.
+    pub(crate) fn problem(&self, key: &str, message: String) -> Problems {
+        let mut steps = key.split('.');
+        let mut item = steps.next().and_then(|step| self.root.get(step));
+        for step in steps {
+            let inner = item.and_then(|item| match &item.value {
+                Value::Table(table) => table.get(step),
+                Value::List(list) => list.get(step.parse::<usize>().ok()?),
+                _ => None,
+            });
+            item = inner.or(item);
+        }
+        let place = item.map_or(Place::File(0..0), |item| item.place.clone());
+        self.problems(vec![Problem::new(key.into(), place, message)])
+    }
+
     /// These problems, with what is needed to show where they are.
     pub(crate) fn problems(&self, list: Vec<Problem>) -> Problems {
         Problems {

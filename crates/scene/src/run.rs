@@ -215,7 +215,7 @@ impl Stage<'_> {
             watches.push(Box::new(TrajectoriesWatch::new(folder, names.clone(), resume)?));
         }
         if let Some(images) = out.images.clone() {
-            watches.push(Box::new(ImagesWatch::new(folder, &setup.title, images)?));
+            watches.push(Box::new(ImagesWatch::new(folder, setup, images)?));
         }
         if !setup.probes.is_empty() {
             watches.push(Box::new(ProbesWatch::new(folder, &setup.probes, dim, resume)?));
@@ -288,6 +288,12 @@ impl Stage<'_> {
             setup.cells(),
             setup.bodies.list.len(),
         ))?;
+        for warning in setup.warnings() {
+            log.line(&format!("warning: {warning}"))?;
+            if !self.options.quiet {
+                eprintln!("warning: {warning}");
+            }
+        }
         let mut look = Look {
             setup,
             audience,

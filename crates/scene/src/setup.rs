@@ -61,6 +61,9 @@ pub(crate) struct Setup {
     pub(crate) save_at_end: bool,
 }
 
+/// No run makes more steps of a length that is given.
+const MOST_STEPS: f64 = 1e12;
+
 /// Where the scene is being read.
 pub(crate) struct Context<'a> {
     /// Folder of the file: paths in it begin there.
@@ -115,7 +118,7 @@ impl Setup {
             title: root.text("title").map_or_else(|| name.clone(), Into::into),
             output: measures::output(&table("output"), &name, &axes)?,
             probes: measures::probes(root, &context, &axes, &sides)?,
-            forces: root.table("forces").map(|t| measures::forces(&t, end)),
+            forces: root.table("forces").map(|t| measures::forces(&t, end)).transpose()?,
             averages: root.table("averages").map(|t| measures::averages(&t, end, dim)).transpose()?,
             references: measures::references(root)?,
             name,
@@ -159,6 +162,13 @@ impl Setup {
                 "sides",
                 Sides::new([self.sides[0].clone(), self.sides[1].clone(), self.sides[2].clone()]).map(drop),
             )?,
+        }
+        if let (Some(dt), Some(time)) = (self.dt, root.table("time"))
+            && self.end / dt > MOST_STEPS
+        {
+            let least = self.end / MOST_STEPS;
+            return Err(time
+                .fail("dt", format!("{:.0e} steps to time.end; give {least:e} s at least", self.end / dt)));
         }
         let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
         let flow = root.table("flow");
@@ -242,6 +252,9 @@ impl Setup {
                 s.name
             );
             return Err(root.fail("scalars", message));
+        }
+        if self.forces.is_some() && !bodies {
+            return Err(root.fail("forces", "loads are those on bodies, and there are none; leave this out"));
         }
         if dim == 2 && self.bodies.lubrication.is_some() {
             return Err(

@@ -35,7 +35,7 @@ pub(crate) struct Images {
 
 impl Images {
     /// What is shown of the values of a slice, which has so many cells across.
-    pub(crate) fn part(&self, slice: &[f64], across: usize) -> Vec<f64> {
+    pub(crate) fn part<T: Copy>(&self, slice: &[T], across: usize) -> Vec<T> {
         let [i, j] = self.region.clone();
         let mut part = Vec::with_capacity(i.len() * j.len());
         slice.chunks(across).skip(j.start).take(j.len()).for_each(|row| part.extend(&row[i.clone()]));
@@ -257,11 +257,19 @@ pub(super) fn probes(
     Ok(out)
 }
 
-pub(super) fn forces(t: &Reader<'_>, end: f64) -> Forces {
-    Forces {
-        reference: t.number("velocity").zip(t.number("area")),
-        start: t.number("start").unwrap_or(0.5 * end),
-        every: t.number("every"),
+pub(super) fn forces(t: &Reader<'_>, end: f64) -> Result<Forces, Problem> {
+    let reference = t.number("velocity").zip(t.number("area"));
+    Ok(Forces { reference, start: start(t, end)?, every: t.number("every") })
+}
+
+/// When means begin: before the run ends.
+fn start(t: &Reader<'_>, end: f64) -> Result<f64, Problem> {
+    match t.number("start") {
+        Some(start) if start >= end => Err(t.fail(
+            "start",
+            format!("means begin at {start} s and the run ends at {end} s; give less than that"),
+        )),
+        start => Ok(start.unwrap_or(0.5 * end)),
     }
 }
 
@@ -273,5 +281,5 @@ pub(super) fn averages(t: &Reader<'_>, end: f64, dim: usize) -> Result<Averages,
         Some("z") => Some(2),
         _ => None,
     };
-    Ok(Averages { start: t.number("start").unwrap_or(0.5 * end), profile })
+    Ok(Averages { start: start(t, end)?, profile })
 }

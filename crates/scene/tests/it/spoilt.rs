@@ -1,5 +1,5 @@
 //! Spoilt scene files.
-use crate::{coarse, folder, quiet, scenes};
+use crate::{coarse, folder, problems, quiet, root, scenes};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestCaseError, TestRunner};
 use scene::Scene;
@@ -154,4 +154,77 @@ fn spoilt_scenes_are_told_about() {
     });
     let _ = std::fs::remove_dir_all(&out);
     result.unwrap();
+}
+
+/// What only the libraries know to be wrong has its line, too, in a plan and in a run.
+#[test]
+fn what_cannot_be_built_has_its_line() {
+    let text = r#"
+[grid]
+cells = [16, 16]
+size = [1.0, 1.0]
+[sides]
+x = "periodic"
+y = "wall"
+[fluid]
+density = 1000.0
+nu = 1e-3
+[time]
+end = 0.1
+"#;
+    let disc = |radius: f64, x: f64, y: f64| {
+        format!(
+            "[[bodies]]\nshape = {{ type = \"disc\", radius = {radius} }}\ndensity = 2000.0\nposition = [{x}, {y}]\n"
+        )
+    };
+    let inlet =
+        text.replace("x = \"periodic\"", "x_min = { type = \"inlet\", velocity = [V, 0.0] }\nx_max = \"E\"");
+    let cases = [
+        (disc(0.2, 0.5, 3.0), 13, "bodies.0: body 0 stands 2.200e0 m deep in wall 1"),
+        (disc(0.2, 0.5, 0.5) + &disc(0.2, 0.6, 0.5), 17, "bodies.1: bodies 0 and 1 overlap by 3.000e-1 m"),
+        (disc(0.8, 0.5, 0.5), 13, "bodies.0: body 0 is 1.600e0 m long along axis 0"),
+        (disc(0.1, 0.5, 0.5), 13, "bodies.0: body 0 is 2.000e-1 m across, 3.2 cells"),
+        (
+            "[[factories]]\ntype = \"lattice\"\nspacing = [0.5, 0.5]\nshape = { type = \"disc\", radius = 0.01 }\ndensity = 2000.0\n".into(),
+            13,
+            "factories.0: body 0 is 2.000e-2 m across",
+        ),
+        ("[initial]\nvelocity = [0.0, \"log(x - 0.5)\"]\n".into(), 14, "initial.velocity: the initial velocity is NaN at"),
+    ];
+    let told = |text: &str| {
+        let scene = Scene::parse("bad.toml", text, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let out = folder("unbuilt");
+        let run = scene.run(&quiet(&out), &AtomicBool::new(false)).unwrap_err().to_string();
+        let _ = std::fs::remove_dir_all(&out);
+        [scene.plan().unwrap_err().to_string(), run]
+    };
+    for (more, line, message) in cases {
+        for found in told(&format!("{text}{more}")) {
+            assert!(found.starts_with(&format!("bad.toml:{line}:")) && found.contains(message), "{found}");
+        }
+    }
+    for (speed, end, message) in
+        [("1.0", "wall", "m³/s more out than in"), ("\"sqrt(-y)\"", "outlet", "an inlet that is not finite")]
+    {
+        for found in told(&inlet.replace('V', speed).replace('E', end)) {
+            assert!(found.starts_with("bad.toml:5:") && found.contains(message), "{found}");
+        }
+    }
+}
+
+#[test]
+fn steps_and_formulas_without_end_are_told() {
+    let cavity = std::fs::read_to_string(root().join("scenes/cavity.toml")).unwrap();
+    let found = problems(&cavity, "time.dt=1e-300");
+    assert!(found.contains("time.dt: ") && found.contains("steps to time.end; give"), "{found}");
+    let found = problems(&cavity, "averages={ start = 1e6 }");
+    assert!(found.contains("averages.start: means begin at 1000000 s"), "{found}");
+    let found = problems(&cavity, "forces={ start = 1.0 }");
+    assert!(found.contains("forces: loads are those on bodies"), "{found}");
+    let long = format!("initial.velocity=[\"x{}\", 0.0]", "+q".repeat(10000));
+    let found = problems(&cavity, &long);
+    assert!(
+        found.contains("… asks for \"q\"") && found.split("the formula").nth(1).unwrap().len() < 600,
+        "{found}"
+    );
 }

@@ -92,7 +92,7 @@ pub enum SceneError {
 }
 
 /// Keys that may change when a run goes on.
-const LOOSE: [&str; 6] = ["title", "about", "output", "checkpoint", "references", "time.end"];
+const LOOSE: [&str; 7] = ["title", "about", "output", "checkpoint", "references", "time.end", "time.steps"];
 
 impl Scene {
     /// Reads the file at `path`, with the values that `overrides` set (`fluid.nu=2e-6`).

@@ -107,9 +107,8 @@ pub(super) fn references(root: &Reader<'_>) -> Result<Vec<Reference>, Problem> {
         .collect()
 }
 
-pub(super) fn output(t: &Reader<'_>, name: &str, axes: &[Axis]) -> Result<Output, Problem> {
+pub(super) fn output(t: &Reader<'_>, name: &str, axes: &[Axis], snapshots: usize) -> Result<Output, Problem> {
     let flag = |key: &str| t.flag(key).unwrap_or(true);
-    let snapshots = t.whole("snapshots").unwrap_or(50);
     Ok(Output {
         folder: t.text("folder").map_or_else(|| PathBuf::from("out").join(name), PathBuf::from),
         snapshots,

@@ -185,7 +185,7 @@ end = 0.1
         (disc(0.8, 0.5, 0.5), 13, "bodies.0: body 0 is 1.600e0 m long along axis 0"),
         (disc(0.1, 0.5, 0.5), 13, "bodies.0: body 0 is 2.000e-1 m across, 3.2 cells"),
         (
-            "[[factories]]\ntype = \"lattice\"\nspacing = [0.5, 0.5]\nshape = { type = \"disc\", radius = 0.01 }\ndensity = 2000.0\n".into(),
+            "[[factories]]\ntype = \"lattice\"\ndistance = 0.5\nshape = { type = \"disc\", radius = 0.01 }\ndensity = 2000.0\n".into(),
             13,
             "factories.0: body 0 is 2.000e-2 m across",
         ),
@@ -221,10 +221,43 @@ fn steps_and_formulas_without_end_are_told() {
     assert!(found.contains("averages.start: means begin at 1000000 s"), "{found}");
     let found = problems(&cavity, "forces={ start = 1.0 }");
     assert!(found.contains("forces: loads are those on bodies"), "{found}");
-    let long = format!("initial.velocity=[\"x{}\", 0.0]", "+q".repeat(10000));
+    // Whatever is in an override stands in it, not in the file.
+    let found = problems(&cavity, "initial.velocity=[\"q\", 0.0]");
+    assert!(found.starts_with("--set initial.velocity="), "{found}");
+    let long = format!("initial.velocity=[\"x{}\", 0.0]", "+q".repeat(500));
     let found = problems(&cavity, &long);
     assert!(
         found.contains("… asks for \"q\"") && found.split("the formula").nth(1).unwrap().len() < 600,
         "{found}"
+    );
+}
+
+#[test]
+fn so_many_steps_are_made() {
+    let cavity = std::fs::read_to_string(root().join("scenes/cavity.toml")).unwrap();
+    let text: String = cavity.lines().filter(|l| !l.starts_with("end =")).map(|l| format!("{l}\n")).collect();
+    let out = folder("steps");
+    let small = ["grid.cells=[8, 8]", "output.fields=false", "output.images=false"];
+    for (snapshots, steps) in [(None, 77), (Some(11), 77), (Some(0), 13)] {
+        let mut more = small.map(String::from).to_vec();
+        more.extend([format!("time.steps={steps}"), "time.dt=1e-3".into()]);
+        more.extend(snapshots.map(|n| format!("output.snapshots={n}")));
+        let scene = Scene::parse("cavity.toml", &text, &more).unwrap_or_else(|e| panic!("{e}"));
+        let result = scene.run(&quiet(&out), &AtomicBool::new(false)).unwrap().result;
+        assert_eq!(result["steps"], steps);
+        assert!((result["time"].as_f64().unwrap() - f64::from(steps) * 1e-3).abs() < 1e-12);
+    }
+    std::fs::remove_dir_all(&out).unwrap();
+    let told = |set: &[&str]| {
+        let set: Vec<String> = set.iter().map(|s| (*s).into()).collect();
+        Scene::parse("cavity.toml", &text, &set).err().map(|e| e.to_string()).unwrap_or_default()
+    };
+    assert!(told(&[]).contains("time: how long is the run?"));
+    assert!(told(&["time.steps=10"]).contains("time.steps: of which length?"));
+    assert!(told(&["time.steps=10", "time.dt=0.1", "time.end=1"]).contains("leave out one of the two"));
+    let uneven = told(&["time.steps=77", "time.dt=0.1", "output.snapshots=10"]);
+    assert!(
+        uneven.contains("output.snapshots: 10 equal intervals of 77 steps") && uneven.contains("7 for"),
+        "{uneven}"
     );
 }

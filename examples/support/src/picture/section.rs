@@ -94,7 +94,7 @@ impl Ground {
     }
 }
 
-/// What sections are drawn on, one after the other: a picture whose axes and colour bar are those of the one before costs half.
+/// What sections are drawn on, one after the other: axes and colour bar are drawn anew only where they change.
 #[derive(Default)]
 pub struct Sheet(Option<Kept>);
 
@@ -242,5 +242,44 @@ mod tests {
         assert_eq!(found[3], (0, 1, 0.625));
         assert_eq!(found[7].0, 1);
         assert_eq!(places(&[0.0, 1.0, 4.0], 8, true)[7], found[0]);
+    }
+
+    /// A picture is the same whatever was drawn on its sheet before.
+    #[test]
+    fn pictures_do_not_depend_on_those_before() {
+        let faces: Vec<f64> = (0..=8).map(|i| 0.125 * f64::from(i)).collect();
+        let section = Section { across: &faces, up: &faces, names: ["x", "y"] };
+        let values: Vec<f64> = (0..64).map(|i| f64::from(i) / 63.0).collect();
+        let solid: Vec<f64> = (0..64).map(|i| if (24..40).contains(&i) { 1.0 } else { 0.0 }).collect();
+        let layer = |high, solid, alone| Layer {
+            values: &values,
+            solid,
+            solids_alone: alone,
+            limits: [0.0, high],
+            label: "speed",
+            signed: false,
+        };
+        let layers = [
+            (layer(1.0, None, false), "t = 1"),
+            (layer(1.0, Some(&solid[..]), false), "t = 22222"),
+            (layer(2.0, Some(&solid[..]), true), ""),
+            (layer(1.0, None, false), "t = 1"),
+        ];
+        let path = std::env::temp_dir().join(format!("siltflow-sheet-{}.png", std::process::id()));
+        let mut sheet = Sheet::default();
+        let draw = |sheet: Option<&mut Sheet>, (layer, title): &(Layer<'_>, &str)| {
+            section.draw(sheet.unwrap_or(&mut Sheet::default()), &path, layer, title).unwrap();
+            std::fs::read(&path).unwrap()
+        };
+        let pictures: Vec<Vec<u8>> = layers
+            .iter()
+            .map(|layer| {
+                let kept = draw(Some(&mut sheet), layer);
+                assert_eq!(kept, draw(None, layer));
+                kept
+            })
+            .collect();
+        std::fs::remove_file(&path).unwrap();
+        assert!(pictures[0] == pictures[3] && pictures[0] != pictures[1] && pictures[1] != pictures[2]);
     }
 }

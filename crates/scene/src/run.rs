@@ -21,6 +21,7 @@ use example_support::cpu::Stopwatch;
 use example_support::progress::Progress;
 use ibm::Forcing;
 use interfaces::{Checkpoint, RestartError};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -291,7 +292,8 @@ impl Stage<'_> {
         for warning in setup.warnings() {
             log.line(&format!("warning: {warning}"))?;
             if !self.options.quiet {
-                eprintln!("warning: {warning}");
+                // Nobody may be reading.
+                let _ = writeln!(std::io::stderr(), "warning: {warning}");
             }
         }
         let mut look = Look {

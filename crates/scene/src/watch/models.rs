@@ -233,7 +233,8 @@ impl Watch for ModelsWatch {
         for model in &self.models {
             let name = &model.setup.name;
             if !self.quiet {
-                eprintln!("model \"{name}\" of {} snapshots", self.times.len());
+                // Nobody may be reading.
+                let _ = writeln!(io::stderr(), "model \"{name}\" of {} snapshots", self.times.len());
             }
             let Some(recorded) = self.fields.iter().find(|field| field.name == model.setup.field) else {
                 continue;

@@ -162,6 +162,15 @@ impl Setup {
                 "cells are {thin:.0} times longer than wide: is the box in metres along all axes?"
             ));
         }
+        let starts = [("forces", self.forces.map(|f| f.start)), ("averages", self.averages.map(|a| a.start))];
+        for (key, start) in starts {
+            if let Some(start) = start.filter(|start| *start >= self.end) {
+                let end = self.end;
+                out.push(format!(
+                    "{key}.start = {start} s is not before the end at {end} s: there will be no means"
+                ));
+            }
+        }
         let list = &self.bodies.list;
         let extent = |b: &crate::setup::BodySetup| {
             let size = b.shape.aabb().posed(&b.pose).extent();

@@ -118,7 +118,7 @@ impl Setup {
             title: root.text("title").map_or_else(|| name.clone(), Into::into),
             output: measures::output(&output, &name, &axes, snapshots)?,
             probes: measures::probes(root, &context, &axes, &sides)?,
-            forces: root.table("forces").map(|t| measures::forces(&t, end)).transpose()?,
+            forces: root.table("forces").map(|t| measures::forces(&t, end)),
             averages: root.table("averages").map(|t| measures::averages(&t, end, dim)).transpose()?,
             references: measures::references(root)?,
             name,

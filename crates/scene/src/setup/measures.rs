@@ -256,19 +256,11 @@ pub(super) fn probes(
     Ok(out)
 }
 
-pub(super) fn forces(t: &Reader<'_>, end: f64) -> Result<Forces, Problem> {
-    let reference = t.number("velocity").zip(t.number("area"));
-    Ok(Forces { reference, start: start(t, end)?, every: t.number("every") })
-}
-
-/// When means begin: before the run ends.
-fn start(t: &Reader<'_>, end: f64) -> Result<f64, Problem> {
-    match t.number("start") {
-        Some(start) if start >= end => Err(t.fail(
-            "start",
-            format!("means begin at {start} s and the run ends at {end} s; give less than that"),
-        )),
-        start => Ok(start.unwrap_or(0.5 * end)),
+pub(super) fn forces(t: &Reader<'_>, end: f64) -> Forces {
+    Forces {
+        reference: t.number("velocity").zip(t.number("area")),
+        start: t.number("start").unwrap_or(0.5 * end),
+        every: t.number("every"),
     }
 }
 
@@ -280,5 +272,5 @@ pub(super) fn averages(t: &Reader<'_>, end: f64, dim: usize) -> Result<Averages,
         Some("z") => Some(2),
         _ => None,
     };
-    Ok(Averages { start: start(t, end)?, profile })
+    Ok(Averages { start: t.number("start").unwrap_or(0.5 * end), profile })
 }

@@ -2,7 +2,7 @@
 use example_support::Outcome;
 use example_support::cpu::Stopwatch;
 use example_support::moved_body::{Noise, Swinging};
-use example_support::picture::section::{Layer, Section};
+use example_support::picture::section::{Layer, Section, Sheet};
 use example_support::sliding_plate::with_model;
 use siltflow::flow::Projection;
 use siltflow::ibm::SmoothForcing;
@@ -140,7 +140,12 @@ fn picture<L: Law>(
             signed: false,
         };
         let path = format!("{FOLDER}/shaken_{file}.png");
-        section.draw(Path::new(&path), &layer, "Swinging cylinder, SST, Re 10 000, KC 5")?;
+        section.draw(
+            &mut Sheet::default(),
+            Path::new(&path),
+            &layer,
+            "Swinging cylinder, SST, Re 10 000, KC 5",
+        )?;
     }
     Ok(())
 }

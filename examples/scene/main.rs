@@ -13,7 +13,7 @@
 use clap::Parser;
 use scene::{Ending, Options, Scene, TABLE_HEAD, empty_row};
 use serde_json::json;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -58,7 +58,7 @@ struct Cli {
 fn main() -> ExitCode {
     let cli = Cli::parse();
     if cli.manual || cli.schema {
-        return print(&if cli.manual { scene::manual() } else { scene::json_schema() });
+        return code_of(print(&if cli.manual { scene::manual() } else { scene::json_schema() }), 0);
     }
     let stop = Arc::new(AtomicBool::new(false));
     let flag = stop.clone();
@@ -89,10 +89,8 @@ fn main() -> ExitCode {
         };
         worst = worst.max(code);
     }
-    if several && !cli.check {
-        print(&format!("{TABLE_HEAD}{table}"));
-    }
-    ExitCode::from(worst)
+    let printed = if several && !cli.check { print(&format!("{TABLE_HEAD}{table}")) } else { Ok(()) };
+    code_of(printed, worst)
 }
 
 type Failure = (u8, Box<dyn std::error::Error>);
@@ -102,7 +100,7 @@ fn one(cli: &Cli, path: &Path, several: bool, table: &mut String, stop: &AtomicB
     let scene = Scene::load(path, &cli.set).map_err(|e| (2, e.into()))?;
     if cli.check {
         let plan = scene.plan().map_err(|e| (2, e.into()))?;
-        print(&plan.to_string());
+        print(&plan.to_string())?;
         return Ok(0);
     }
     // A folder of its own for each.
@@ -114,9 +112,9 @@ fn one(cli: &Cli, path: &Path, several: bool, table: &mut String, stop: &AtomicB
     let result = scene.run(&options, stop).map_err(|e| (1, e.into()))?;
     if cli.json {
         let both = json!({ "result": result.result, "timings": result.timings });
-        print(&format!("{both:#}\n"));
+        print(&format!("{both:#}\n"))?;
     } else if !cli.quiet {
-        print(&result.summary());
+        print(&result.summary())?;
     }
     *table += &result.row();
     Ok(match result.ending {
@@ -131,8 +129,21 @@ fn fail(code: u8, error: &dyn std::error::Error) -> ExitCode {
     ExitCode::from(code)
 }
 
-/// Nobody may be reading any more: that is no error.
-fn print(text: &str) -> ExitCode {
-    let _ = std::io::stdout().write_all(text.as_bytes());
-    ExitCode::SUCCESS
+/// This code, unless something could not be printed.
+fn code_of(printed: Result<(), Failure>, code: u8) -> ExitCode {
+    match printed {
+        Ok(()) => ExitCode::from(code),
+        Err((code, error)) => fail(code, &*error),
+    }
+}
+
+/// Nobody may be reading any more: that is no error. A full disk is one.
+fn print(text: &str) -> Result<(), Failure> {
+    let mut out = std::io::stdout();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err((1, format!("what was to be printed could not be: {error}").into()))
+        }
+        _ => Ok(()),
+    }
 }

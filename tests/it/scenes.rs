@@ -161,3 +161,18 @@ fn nobody_has_to_read() {
     }
     std::fs::remove_dir_all(&out).unwrap();
 }
+
+/// A disk that is full where results are printed to is told.
+#[cfg(target_os = "linux")]
+#[test]
+fn results_that_cannot_be_printed_are_told() {
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let ended = Command::new(program())
+        .arg(format!("{}/scenes/taylor_green.toml", env!("CARGO_MANIFEST_DIR")))
+        .arg("--check")
+        .stdout(full)
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&ended.stderr);
+    assert!(ended.status.code() == Some(1) && told.contains("could not be: "), "{told}");
+}

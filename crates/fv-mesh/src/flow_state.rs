@@ -254,7 +254,7 @@ macro_rules! show_state {
             let u = velocity.components[c].data();
             (0..pressure.n_rows()).flat_map(move |r| {
                 let o = pressure.row_start(r);
-                (o..o + n).map(move |i| 0.5 * (u[i] + u[i + s]))
+                u[o..o + n].iter().zip(&u[o + s..o + s + n]).map(|(a, b)| 0.5 * (a + b))
             })
         }
     };

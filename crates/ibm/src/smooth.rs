@@ -58,6 +58,9 @@ pub struct SmoothForcing {
 }
 
 impl SmoothForcing {
+    /// Fewer cells across a body than this cannot hold its markers.
+    pub const LEAST_CELLS: f64 = 4.0;
+
     /// Markers 1 (plane) or 1¼ (space) cells apart, the kernel [suited](Kernel::suited) and three passes, in a fluid of `density`
     /// \[kg/m³\].
     pub fn new(density: f64) -> Self {
@@ -116,8 +119,8 @@ impl SmoothForcing {
         if markers.elements.is_empty() || (cell / markers.cell - 1.0).abs() > 3.0 * UNEQUAL {
             let extent = bodies.solid(b).aabb().extent();
             let size = extent.x.min(extent.y).min(if dim == 3 { extent.z } else { f64::INFINITY });
-            if size < LEAST_CELLS * h {
-                return Err(IbmError::TooCoarse { body: b, size, spacing: h, least: LEAST_CELLS });
+            if size < Self::LEAST_CELLS * h {
+                return Err(IbmError::TooCoarse { body: b, size, spacing: h, least: Self::LEAST_CELLS });
             }
             markers.cell = cell;
             let spacing = if dim == 2 { 1.0 } else { SPACING };
@@ -214,9 +217,6 @@ fn uniform_cell(
 /// Cells from marker to marker in space. On a moving sphere the drag is the same to 1e-4 as with markers a cell apart, its noise
 /// stays below 0.2 %, and there are two thirds as many of them.
 const SPACING: f64 = 1.25;
-
-/// Fewer cells across a body than this cannot hold its markers.
-const LEAST_CELLS: f64 = 4.0;
 
 impl Forcing for SmoothForcing {
     fn place(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies) -> Result<(), IbmError> {

@@ -1,18 +1,23 @@
 //! From a setup to what the libraries run.
 use crate::cast::Cast;
+use crate::document::Document;
 use crate::physics::{Physics, Segregated};
+use crate::problem::Problems;
 use crate::setup::{Algorithm, Bodies, ContactLawChoice, ForcingChoice, InflowSetup, Motion, Setup};
 use crate::still::Still;
 use coupling::WithScalars;
 use dem::placing::{PlacingError, Region};
 use dem::{Chen, ContactLaw, DemError, Entrant, Inflow, Lubricated, Population, Repulsive, RigidBodies};
-use fv_mesh::{CartesianGrid, Diffusion, FlowError, Piso, PisoParams, Projection, Side, TimeScheme};
+use fv_mesh::{Axis, CartesianGrid, Diffusion, FlowError, Piso, PisoParams, Projection, Side, TimeScheme};
 use ibm::{Hfdib, IbmError, SmoothFilm, SmoothForcing, cut_walls};
-use interfaces::{Freedom, Kinematics, Periods, Twist};
+use interfaces::{BodyId, Freedom, Kinematics, Periods, Twist};
 
 /// Why a scene cannot be put together.
 #[derive(Debug, thiserror::Error)]
 pub enum BuildError {
+    /// Any of the others that a key of the file has to do with.
+    #[error(transparent)]
+    Scene(Box<Problems>),
     /// The flow.
     #[error(transparent)]
     Flow(#[from] FlowError),
@@ -46,11 +51,44 @@ pub enum BuildError {
     Formula {
         /// Of what.
         what: &'static str,
+        /// The key it stands under.
+        key: &'static str,
         /// Its value.
         value: f64,
         /// Where \[m\].
         at: [f64; 3],
     },
+}
+
+impl BuildError {
+    /// The key that has to do with it, if it is known.
+    fn key(&self, setup: &Setup) -> Option<String> {
+        let body = match self {
+            Self::Bodies(DemError::InWall { body, .. } | DemError::Period { body, .. }) => body,
+            Self::Bodies(DemError::OverlappingStart { a, b, .. }) => a.max(b),
+            Self::Immersed(
+                IbmError::TooCoarse { body, .. }
+                | IbmError::TooLarge { body, .. }
+                | IbmError::Unseen { body, .. },
+            ) => body,
+            Self::Turbulence(_) => return Some("turbulence".into()),
+            Self::Memory { .. } => return Some("grid".into()),
+            Self::Formula { key, .. } => return Some((*key).into()),
+            Self::Flow(FlowError::Boundary { .. } | FlowError::MassBalance { .. }) => {
+                return Some("sides".into());
+            }
+            _ => return None,
+        };
+        Some(setup.bodies.list.get(body.0)?.origin.clone())
+    }
+
+    /// The same with its place in the file, if a key has to do with it.
+    pub(crate) fn placed(self, setup: &Setup, document: &Document) -> Self {
+        match self.key(setup) {
+            Some(key) => Self::Scene(Box::new(document.problem(&key, self.to_string()))),
+            None => self,
+        }
+    }
 }
 
 /// Memory that may be had \[bytes\]; `None` where the system does not tell.
@@ -97,7 +135,12 @@ impl Setup {
             let velocity: [f64; D] = value(x);
             if let Some(value) = velocity.into_iter().find(|u| !u.is_finite()) {
                 let at = std::array::from_fn(|a| x.get(a).copied().unwrap_or(0.0));
-                return Err(BuildError::Formula { what: "the initial velocity", value, at });
+                return Err(BuildError::Formula {
+                    what: "the initial velocity",
+                    key: "initial.velocity",
+                    value,
+                    at,
+                });
             }
         }
         Ok(Some(value))
@@ -112,11 +155,30 @@ impl Setup {
         }
     }
 
+    /// Bodies that the smooth forcing cannot resolve, whatever the cells around them are.
+    pub(crate) fn check_sizes(&self) -> Result<(), BuildError> {
+        let least = SmoothForcing::LEAST_CELLS;
+        let spacing = self.axes.iter().map(Axis::narrowest).fold(f64::INFINITY, f64::min);
+        for (number, body) in self.bodies.list.iter().enumerate() {
+            let extent = body.shape.aabb().extent();
+            let size = (0..self.dim()).map(|a| extent[a]).fold(f64::INFINITY, f64::min);
+            if size < least * spacing {
+                return Err(IbmError::TooCoarse { body: BodyId(number), size, spacing, least }.into());
+            }
+        }
+        Ok(())
+    }
+
     /// The body force has to have a value at both ends of the run.
     pub(crate) fn check_force(&self) -> Result<(), BuildError> {
         for (t, force) in self.force.iter().flat_map(|f| [0.0, self.end].map(|t| (t, f))) {
             if let Some(value) = force.iter().map(|f| f.at(&[t])).find(|f| !f.is_finite()) {
-                return Err(BuildError::Formula { what: "the body force", value, at: [t, 0.0, 0.0] });
+                return Err(BuildError::Formula {
+                    what: "the body force",
+                    key: "force",
+                    value,
+                    at: [t, 0.0, 0.0],
+                });
             }
         }
         Ok(())

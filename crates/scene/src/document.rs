@@ -111,7 +111,7 @@ impl Document {
             let message = format!("this is not TOML: {}", error.message().trim_end());
             document(Section::default()).problems(vec![Problem::new(String::new(), place, message)])
         })?;
-        let mut this = document(section(table.get_ref()));
+        let mut this = document(section(table.get_ref(), &Place::File));
         let mut problems = Vec::new();
         for (number, text) in overrides.iter().enumerate() {
             if let Err(message) = this.set(number, text) {
@@ -120,6 +120,22 @@ impl Document {
             }
         }
         if problems.is_empty() { Ok(this) } else { Err(this.problems(problems)) }
+    }
+
+    /// What is wrong with the value under a key from the top (`bodies.2`), or with the nearest that is there.
+    pub(crate) fn problem(&self, key: &str, message: String) -> Problems {
+        let mut steps = key.split('.');
+        let mut item = steps.next().and_then(|step| self.root.get(step));
+        for step in steps {
+            let inner = item.and_then(|item| match &item.value {
+                Value::Table(table) => table.get(step),
+                Value::List(list) => list.get(step.parse::<usize>().ok()?),
+                _ => None,
+            });
+            item = inner.or(item);
+        }
+        let place = item.map_or(Place::File(0..0), |item| item.place.clone());
+        self.problems(vec![Problem::new(key.into(), place, message)])
     }
 
     /// These problems, with what is needed to show where they are.
@@ -150,7 +166,9 @@ impl Document {
         let (path, value) = (path.trim(), value.trim());
         let value = match DeTable::parse(&format!("value = {value}")) {
             Ok(table) => match table.get_ref().iter().next() {
-                Some((_, item)) if table.get_ref().len() == 1 => convert(item.get_ref()),
+                Some((_, item)) if table.get_ref().len() == 1 => {
+                    convert(item.get_ref(), &|_| Place::Override(number))
+                }
                 _ => return Err("a single value is needed behind the =".into()),
             },
             // A bare word is a text: shells take quotes away.
@@ -211,18 +229,18 @@ impl Item {
     }
 }
 
-fn section(table: &DeTable<'_>) -> Section {
+/// A table, whose spans are `at` these places.
+fn section(table: &DeTable<'_>, at: &dyn Fn(Range<usize>) -> Place) -> Section {
+    let mut entries: Vec<_> = table.iter().collect();
+    entries.sort_by_key(|(key, _)| key.span().start);
     let entry = |(key, item): (&toml::Spanned<std::borrow::Cow<'_, str>>, &toml::Spanned<DeValue<'_>>)| {
-        let place = Place::File(item.span());
-        (key.get_ref().to_string(), Place::File(key.span()), Item { value: convert(item.get_ref()), place })
+        let value = Item { value: convert(item.get_ref(), at), place: at(item.span()) };
+        (key.get_ref().to_string(), at(key.span()), value)
     };
-    let mut entries: Vec<_> = table.iter().map(entry).collect();
-    let start = |place: &Place| if let Place::File(range) = place { range.start } else { 0 };
-    entries.sort_by_key(|(_, place, _)| start(place));
-    Section(entries)
+    Section(entries.into_iter().map(entry).collect())
 }
 
-fn convert(value: &DeValue<'_>) -> Value {
+fn convert(value: &DeValue<'_>, at: &dyn Fn(Range<usize>) -> Place) -> Value {
     match value {
         DeValue::String(text) => Value::Text(text.to_string()),
         DeValue::Boolean(flag) => Value::Flag(*flag),
@@ -236,10 +254,10 @@ fn convert(value: &DeValue<'_>) -> Value {
         DeValue::Array(items) => Value::List(
             items
                 .iter()
-                .map(|item| Item { value: convert(item.get_ref()), place: Place::File(item.span()) })
+                .map(|item| Item { value: convert(item.get_ref(), at), place: at(item.span()) })
                 .collect(),
         ),
-        DeValue::Table(table) => Value::Table(section(table)),
+        DeValue::Table(table) => Value::Table(section(table, at)),
     }
 }
 

@@ -61,13 +61,16 @@ pub use result::{Compared, Ending, RunResult};
 pub use run::RunError;
 pub use schema::{json_schema, manual};
 
+use coupling::CouplingError;
 use document::Document;
+use ibm::IbmError;
 use setup::Setup;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 /// A scene, read and checked.
 pub struct Scene {
+    document: Document,
     setup: Setup,
     fingerprint: u64,
 }
@@ -89,7 +92,7 @@ pub enum SceneError {
 }
 
 /// Keys that may change when a run goes on.
-const LOOSE: [&str; 6] = ["title", "about", "output", "checkpoint", "references", "time.end"];
+const LOOSE: [&str; 7] = ["title", "about", "output", "checkpoint", "references", "time.end", "time.steps"];
 
 impl Scene {
     /// Reads the file at `path`, with the values that `overrides` set (`fluid.nu=2e-6`).
@@ -110,7 +113,7 @@ impl Scene {
     pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Self, Problems> {
         let document = Document::parse(name, text, overrides)?;
         let setup = Setup::new(&document, Path::new(name))?;
-        Ok(Self { setup, fingerprint: document.fingerprint(&LOOSE) })
+        Ok(Self { fingerprint: document.fingerprint(&LOOSE), setup, document })
     }
 
     /// What running it would mean. Puts it together, which finds what only the libraries know to be wrong.
@@ -118,7 +121,7 @@ impl Scene {
     /// # Errors
     /// [`BuildError`] if it cannot be put together.
     pub fn plan(&self) -> Result<Plan, BuildError> {
-        self.setup.plan()
+        self.setup.plan().map_err(|error| error.placed(&self.setup, &self.document))
     }
 
     /// Runs it until its end, or until `stop` is set.
@@ -126,6 +129,12 @@ impl Scene {
     /// # Errors
     /// [`RunError`]; states saved before it are whole.
     pub fn run(&self, options: &Options, stop: &AtomicBool) -> Result<RunResult, RunError> {
-        self.setup.run(options, self.fingerprint, stop)
+        self.setup.run(options, self.fingerprint, stop).map_err(|error| match error {
+            RunError::Build(error) => error.placed(&self.setup, &self.document).into(),
+            RunError::Coupling(CouplingError::Immersed(error @ IbmError::TooCoarse { .. })) => {
+                BuildError::from(error).placed(&self.setup, &self.document).into()
+            }
+            error => error,
+        })
     }
 }

@@ -266,7 +266,7 @@ impl Setup {
             let check = |formula: &Expression, what: &'static str| {
                 let places = (0..grid.n_cells()).map(|c| place(grid.centre(grid.cell(c))));
                 let (value, at) = places.map(|at| (formula.at(&at), at)).find(|(v, _)| !v.is_finite())?;
-                Some(BuildError::Formula { what, value, at })
+                Some(BuildError::Formula { what, key: "scalars", value, at })
             };
             let source = setup.source.as_ref();
             if let Some(error) = check(&setup.initial, "the initial field of a scalar")

@@ -1,6 +1,6 @@
 //! What a scene would do.
 use crate::build::BuildError;
-use crate::setup::{Algorithm, Setup};
+use crate::setup::{Algorithm, ForcingChoice, Setup};
 use crate::steady::Steady;
 use coupling::{Evolving, Grains};
 use fv_mesh::{Axis, Side};
@@ -38,6 +38,10 @@ const COST_OF_MARKER: f64 = 1.5e-6;
 const COST_OF_MODEL: [f64; 2] = [2.2e-7, 2.9e-7];
 /// CPU seconds per body and step (of 20 steps of the contacts) without a fluid, of smooth bodies and of polyhedra in a pile.
 const COST_OF_BODY: [f64; 2] = [8e-6, 2e-4];
+/// More steps than this are hardly meant.
+const MANY_STEPS: f64 = 1e8;
+/// Cells so much longer than wide are hardly meant.
+const THIN: f64 = 1000.0;
 /// CPU seconds per cell and iteration of the steady algorithm.
 const COST_OF_ITERATION: f64 = 4e-7;
 
@@ -56,6 +60,9 @@ impl Setup {
         // Bodies are put together without a flow, which they do not need for that.
         if moved && self.fluid.is_some() {
             self.cast(self.chen())?;
+            if self.bodies.forcing() == ForcingChoice::Smooth {
+                self.check_sizes()?;
+            }
         }
         let (dt, pressure) = match self.flow.algorithm {
             _ if self.fluid.is_none() => {
@@ -95,6 +102,12 @@ impl Setup {
                 Algorithm::Piso => 20.0 * cells * COST[D - 2] + markers * COST_OF_MARKER,
                 Algorithm::Simple => cells * COST_OF_ITERATION,
             };
+        let mut warnings = self.warnings();
+        if steps > MANY_STEPS {
+            warnings.push(format!(
+                "{steps:.0e} steps to time.end: is everything in metres and seconds, and no cell far narrower than the others?"
+            ));
+        }
         Ok(Plan {
             name: self.name.clone(),
             cells: self.axes.iter().map(Axis::cells).collect(),
@@ -105,7 +118,7 @@ impl Setup {
             cpu,
             parts: self.parts(),
             pressure,
-            warnings: self.warnings(),
+            warnings,
         })
     }
 
@@ -138,10 +151,26 @@ impl Setup {
     }
 
     /// What looks doubtful.
-    fn warnings(&self) -> Vec<String> {
+    pub(crate) fn warnings(&self) -> Vec<String> {
         let mut out = Vec::new();
         let Some(fluid) = self.fluid else { return out };
         let h = self.axes.iter().map(Axis::narrowest).fold(f64::INFINITY, f64::min);
+        let widths = self.axes.iter().map(|axis| axis.length() / axis.cells() as f64);
+        let thin = widths.clone().fold(0.0, f64::max) / widths.fold(f64::INFINITY, f64::min);
+        if thin > THIN {
+            out.push(format!(
+                "cells are {thin:.0} times longer than wide: is the box in metres along all axes?"
+            ));
+        }
+        let starts = [("forces", self.forces.map(|f| f.start)), ("averages", self.averages.map(|a| a.start))];
+        for (key, start) in starts {
+            if let Some(start) = start.filter(|start| *start >= self.end) {
+                let end = self.end;
+                out.push(format!(
+                    "{key}.start = {start} s is not before the end at {end} s: there will be no means"
+                ));
+            }
+        }
         let list = &self.bodies.list;
         let extent = |b: &crate::setup::BodySetup| {
             let size = b.shape.aabb().posed(&b.pose).extent();

@@ -95,6 +95,14 @@ impl fmt::Display for Problems {
     }
 }
 
+/// The beginning of a text in quotes: formulas may be long.
+pub(crate) fn shown(text: &str) -> String {
+    match text.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{:?} …", &text[..end]),
+        None => format!("{text:?}"),
+    }
+}
+
 fn write_message(f: &mut fmt::Formatter<'_>, problem: &Problem) -> fmt::Result {
     if !problem.path.is_empty() {
         write!(f, "{}: ", problem.path)?;

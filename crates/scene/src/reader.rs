@@ -1,7 +1,7 @@
 //! Values of a document that has been checked.
 use crate::document::{Item, Place, Section, Value};
 use crate::expression::Expression;
-use crate::problem::Problem;
+use crate::problem::{Problem, shown};
 use crate::schema::number;
 use interfaces::{Point, Vector};
 
@@ -121,7 +121,11 @@ impl<'a> Reader<'a> {
         match &item.value {
             Value::Text(text) => {
                 let told = |e| {
-                    Problem::new(self.path_of(key), item.place.clone(), format!("the formula {text:?} {e}"))
+                    Problem::new(
+                        self.path_of(key),
+                        item.place.clone(),
+                        format!("the formula {} {e}", shown(text)),
+                    )
                 };
                 Expression::new(text, variables).map_err(told)
             }

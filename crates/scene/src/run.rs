@@ -21,6 +21,7 @@ use example_support::cpu::Stopwatch;
 use example_support::progress::Progress;
 use ibm::Forcing;
 use interfaces::{Checkpoint, RestartError};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -215,7 +216,7 @@ impl Stage<'_> {
             watches.push(Box::new(TrajectoriesWatch::new(folder, names.clone(), resume)?));
         }
         if let Some(images) = out.images.clone() {
-            watches.push(Box::new(ImagesWatch::new(folder, &setup.title, images)?));
+            watches.push(Box::new(ImagesWatch::new(folder, setup, images)?));
         }
         if !setup.probes.is_empty() {
             watches.push(Box::new(ProbesWatch::new(folder, &setup.probes, dim, resume)?));
@@ -288,6 +289,13 @@ impl Stage<'_> {
             setup.cells(),
             setup.bodies.list.len(),
         ))?;
+        for warning in setup.warnings() {
+            log.line(&format!("warning: {warning}"))?;
+            if !self.options.quiet {
+                // Nobody may be reading.
+                let _ = writeln!(std::io::stderr(), "warning: {warning}");
+            }
+        }
         let mut look = Look {
             setup,
             audience,

@@ -9,6 +9,7 @@ mod models;
 mod physics;
 mod shapes;
 mod sides;
+mod time;
 
 pub(crate) use bodies::{Bodies, BodySetup, ContactLawChoice, ForcingChoice, Motion, StrategyChoice};
 pub(crate) use factories::InflowSetup;
@@ -26,6 +27,7 @@ use coupling::WeightBalance;
 use fv_mesh::{Axis, Fluid, Side, Sides};
 use interfaces::{Lattice, Point, Vector};
 use std::path::{Path, PathBuf};
+use time::Span;
 
 /// Everything that a scene says.
 pub(crate) struct Setup {
@@ -101,7 +103,8 @@ impl Setup {
         let empty = crate::document::Section::default();
         let table = |key: &str| root.table(key).unwrap_or(Reader::new(&empty, Place::File(0..0), key));
         let (time, checkpoint) = (table("time"), table("checkpoint"));
-        let end = time.number("end").unwrap_or(1.0);
+        let output = table("output");
+        let Span { end, snapshots } = Span::read(&time, &output)?;
         let moved = bodies.any_moves();
         let periodic_along = |a: usize| matches!(sides[a][0], Side::Periodic);
         let balance = match bodies.coupling.balance {
@@ -113,7 +116,7 @@ impl Setup {
         };
         let mut setup = Self {
             title: root.text("title").map_or_else(|| name.clone(), Into::into),
-            output: measures::output(&table("output"), &name, &axes)?,
+            output: measures::output(&output, &name, &axes, snapshots)?,
             probes: measures::probes(root, &context, &axes, &sides)?,
             forces: root.table("forces").map(|t| measures::forces(&t, end)),
             averages: root.table("averages").map(|t| measures::averages(&t, end, dim)).transpose()?,
@@ -127,7 +130,7 @@ impl Setup {
             end,
             dt: time.number("dt"),
             courant: time.number("courant").unwrap_or(if moved { 0.1 } else { 0.4 }),
-            ramp: time.flag("ramp").unwrap_or(bodies.any_free() && fluid.is_some()),
+            ramp: time.flag("ramp").unwrap_or(bodies.any_free() && fluid.is_some() && !time.has("steps")),
             save_every: checkpoint.number("every").unwrap_or(10.0),
             save_at_end: checkpoint.flag("at_end").unwrap_or(true),
             turbulence: physics::turbulence(root, dim)?,
@@ -140,7 +143,6 @@ impl Setup {
         };
         let fields = setup.fields();
         let fields: Vec<&str> = fields.iter().map(String::as_str).collect();
-        let snapshots = setup.output.snapshots;
         setup.models = models::read(root, &setup.axes, &setup.bodies, (snapshots, &fields))?;
         setup.agrees(root)?;
         Ok(setup)
@@ -242,6 +244,9 @@ impl Setup {
                 s.name
             );
             return Err(root.fail("scalars", message));
+        }
+        if self.forces.is_some() && !bodies {
+            return Err(root.fail("forces", "loads are those on bodies, and there are none; leave this out"));
         }
         if dim == 2 && self.bodies.lubrication.is_some() {
             return Err(

@@ -166,10 +166,13 @@ impl Checkpoint for Audience {
 
 /// An error of a file.
 pub(crate) fn output(what: impl Into<String>, path: &Path) -> impl FnOnce(std::io::Error) -> CouplingError {
-    let what = format!(
-        "{} {} (is the disk full, or the folder not yours to write to?)",
-        what.into(),
-        path.display()
-    );
-    move |source| CouplingError::Output { what, source }
+    let what = format!("{} {}", what.into(), path.display());
+    move |source| {
+        // What cannot be written in that format is no fault of the disk.
+        let hint = match source.kind() {
+            std::io::ErrorKind::InvalidInput => "",
+            _ => " (is the disk full, or the folder not yours to write to?)",
+        };
+        CouplingError::Output { what: what + hint, source }
+    }
 }

@@ -31,8 +31,8 @@ impl<'a> Arrays<'a> {
         let mut beyond = None;
         let single = |v: f64| {
             let short = v as f32;
-            if short.is_infinite() && v.is_finite() {
-                beyond.get_or_insert(v);
+            if short.is_infinite() {
+                note(&mut beyond, v);
             }
             short.to_le_bytes()
         };
@@ -64,6 +64,14 @@ impl<'a> Arrays<'a> {
     }
 }
 
+/// Keeps the first finite value that single precision does not hold; seldom called, which keeps the loop over numbers short.
+#[cold]
+fn note(beyond: &mut Option<f64>, value: f64) {
+    if value.is_finite() {
+        beyond.get_or_insert(value);
+    }
+}
+
 /// The bytes of all numbers, cell after cell; an error is for how many cells there are numbers, at most one too many.
 fn collect<I: IntoIterator<Item = f64>, const N: usize, const W: usize>(
     components: usize,
@@ -76,13 +84,12 @@ fn collect<I: IntoIterator<Item = f64>, const N: usize, const W: usize>(
     let expected = cells * per_cell;
     let mut bytes = vec![0; expected * width];
     for (p, part) in parts.into_iter().enumerate() {
-        let (mut slots, mut found) = (bytes.chunks_exact_mut(width), 0);
-        part.into_iter().take(expected.saturating_add(1)).for_each(|value| {
-            if let Some(slot) = slots.next() {
-                slot[p * W..(p + 1) * W].copy_from_slice(&bytes_of(value));
-            }
-            found += 1;
+        // Where the next number comes.
+        let next = part.into_iter().try_fold(p * W, |place, value| {
+            bytes.get_mut(place..place + W)?.copy_from_slice(&bytes_of(value));
+            Some(place + width)
         });
+        let found = next.map_or(expected + 1, |place| place / width);
         if found != expected {
             return Err(found.div_ceil(per_cell));
         }

@@ -2,7 +2,7 @@
 use super::{Key, Kind, Need, Table};
 use crate::document::{Document, Item, Place, Section, Value};
 use crate::expression::Expression;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, shown};
 
 /// Checks every key of `document`: unknown ones, missing ones, kinds, ranges, formulas.
 ///
@@ -88,7 +88,7 @@ pub(crate) fn check_item(item: &Item, kind: &Kind, path: &str, problems: &mut Ve
         (Kind::Formula(variables, unit), value) => match value {
             Value::Text(text) => {
                 if let Err(error) = Expression::new(text, variables) {
-                    problem(format!("the formula {text:?} {error}"));
+                    problem(format!("the formula {} {error}", shown(text)));
                 }
             }
             value if number(value).is_some_and(f64::is_finite) => {}

@@ -6,7 +6,14 @@ const SECONDS: Kind = Kind::Number(Range::Positive, "s");
 pub(super) static TIME_TABLE: Table = Table {
     about: "How long, in which steps. (A steady flow is iterated, whatever stands here.)",
     keys: &[
-        required("end", SECONDS, "End of the run.", "0.6"),
+        optional("end", SECONDS, "`steps` tells", "End of the run.", "0.6"),
+        optional(
+            "steps",
+            Kind::Whole(1, 1_000_000_000),
+            "`end` tells",
+            "So many steps of the length `dt` instead.",
+            "1000",
+        ),
         optional("dt", SECONDS, "the largest that is stable at the Courant number", "The step.", "1e-4"),
         optional(
             "courant",

@@ -17,6 +17,8 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub(crate) struct BodySetup {
     pub(crate) name: String,
+    /// The key that made it: `bodies.2`, `factories.0`.
+    pub(crate) origin: String,
     pub(crate) shape: Arc<dyn Shape>,
     pub(crate) material: Material,
     pub(crate) pose: Pose,
@@ -360,6 +362,7 @@ fn body(
     let position = t.point_of("position", dim)?.unwrap_or_default() + orientation * centre;
     Ok(BodySetup {
         name: t.text("name").map_or_else(|| number.to_string(), Into::into),
+        origin: format!("bodies.{number}"),
         shape,
         material: materials.of(t)?,
         pose: Pose { position, orientation },

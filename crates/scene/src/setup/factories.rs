@@ -45,7 +45,7 @@ pub(super) fn read(
     list: &mut Vec<BodySetup>,
 ) -> Result<Vec<InflowSetup>, Problem> {
     let mut inflows = Vec::new();
-    for (kind, t) in root.choices("factories", "type") {
+    for (number, (kind, t)) in root.choices("factories", "type").into_iter().enumerate() {
         let factory = Factory { t: &t, context, place, material: materials.of(&t)? };
         let (shapes, poses) = match kind {
             "lattice" => factory.lattice()?,
@@ -65,6 +65,7 @@ pub(super) fn read(
         for (shape, (pose, own)) in shapes.into_iter().zip(poses) {
             list.push(BodySetup {
                 name: list.len().to_string(),
+                origin: format!("factories.{number}"),
                 shape,
                 material: factory.material,
                 pose,

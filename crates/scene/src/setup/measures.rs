@@ -35,7 +35,7 @@ pub(crate) struct Images {
 
 impl Images {
     /// What is shown of the values of a slice, which has so many cells across.
-    pub(crate) fn part(&self, slice: &[f64], across: usize) -> Vec<f64> {
+    pub(crate) fn part<T: Copy>(&self, slice: &[T], across: usize) -> Vec<T> {
         let [i, j] = self.region.clone();
         let mut part = Vec::with_capacity(i.len() * j.len());
         slice.chunks(across).skip(j.start).take(j.len()).for_each(|row| part.extend(&row[i.clone()]));
@@ -107,9 +107,8 @@ pub(super) fn references(root: &Reader<'_>) -> Result<Vec<Reference>, Problem> {
         .collect()
 }
 
-pub(super) fn output(t: &Reader<'_>, name: &str, axes: &[Axis]) -> Result<Output, Problem> {
+pub(super) fn output(t: &Reader<'_>, name: &str, axes: &[Axis], snapshots: usize) -> Result<Output, Problem> {
     let flag = |key: &str| t.flag(key).unwrap_or(true);
-    let snapshots = t.whole("snapshots").unwrap_or(50);
     Ok(Output {
         folder: t.text("folder").map_or_else(|| PathBuf::from("out").join(name), PathBuf::from),
         snapshots,

@@ -83,7 +83,7 @@ impl Watch for FieldsWatch {
         if let Some(series) = &mut self.fields {
             let name = format!("fields/{index:05}.{}", view.extension());
             let path = self.folder.join(&name);
-            write_over(&path, |out| view.write_fields(&solids.lambda, out).map_err(io::Error::other))
+            write_over(&path, |out| Ok(view.write_fields(&solids.lambda, out)?))
                 .map_err(output("writing", &path))?;
             series.add(info.time, name).map_err(|e| output("listing", &path)(io::Error::other(e)))?;
         }

@@ -1,9 +1,9 @@
 //! Pictures of the fields.
 use super::{Solids, Taken, Watch, output};
-use crate::setup::{Images, Quantity};
+use crate::setup::{Images, Quantity, Setup};
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
-use example_support::picture::section::{Layer, Section};
+use example_support::picture::section::{Layer, Section, Sheet};
 use interfaces::{Checkpoint, RestartError};
 use std::path::{Path, PathBuf};
 
@@ -12,19 +12,27 @@ pub(crate) struct ImagesWatch {
     folder: PathBuf,
     title: String,
     images: Images,
+    /// Is there no fluid?
+    alone: bool,
+    sheet: Sheet,
+    /// The cells that are shown, and all of the slice.
+    cells: [Vec<usize>; 2],
     fields: [Vec<f64>; 3],
     values: Vec<f64>,
     solid: Vec<f64>,
 }
 
 impl ImagesWatch {
-    pub(crate) fn new(folder: &Path, title: &str, images: Images) -> Result<Self, CouplingError> {
+    pub(crate) fn new(folder: &Path, setup: &Setup, images: Images) -> Result<Self, CouplingError> {
         let folder = folder.join("images");
         std::fs::create_dir_all(&folder).map_err(output("making", &folder))?;
         Ok(Self {
             folder,
-            title: title.into(),
+            title: setup.title.clone(),
             images,
+            alone: setup.fluid.is_none(),
+            sheet: Sheet::default(),
+            cells: Default::default(),
             fields: Default::default(),
             values: vec![],
             solid: vec![],
@@ -32,7 +40,7 @@ impl ImagesWatch {
     }
 
     /// Vorticity of the plane at the cells, from central differences of the centred velocity.
-    fn vorticity(view: &dyn View, [a, b]: [usize; 2], u: &[f64], v: &[f64], out: &mut Vec<f64>) {
+    fn vorticity(view: &dyn View, [a, b]: [usize; 2], u: &[f64], v: &[f64]) -> Vec<f64> {
         let (x, y) = (view.axis(a), view.axis(b));
         let (nx, ny) = (x.cells(), y.cells());
         let slope = |axis: &fv_mesh::Axis, i: usize, n: usize, periodic: bool, at: &dyn Fn(usize) -> f64| {
@@ -44,7 +52,7 @@ impl ImagesWatch {
             let room = axis.centre(after) - axis.centre(before);
             if room > 0.0 { (at(after) - at(before)) / room } else { 0.0 }
         };
-        out.clear();
+        let mut out = Vec::with_capacity(nx * ny);
         for j in 0..ny {
             for i in 0..nx {
                 let dv = slope(x, i, nx, view.periodic(a), &|i| v[j * nx + i]);
@@ -52,6 +60,7 @@ impl ImagesWatch {
                 out.push(dv - du);
             }
         }
+        out
     }
 }
 
@@ -103,50 +112,52 @@ impl Watch for ImagesWatch {
         if !index.is_multiple_of(self.images.every) {
             return Ok(());
         }
-        let (cells, [a, b]) = (slice_of(view, &self.images), self.images.axes);
-        let slice = |field: &[f64]| -> Vec<f64> { cells.iter().map(|&c| field[c]).collect() };
-        let dim = view.dim();
-        let quantity = self.images.quantity.clone();
+        let ([a, b], dim) = (self.images.axes, view.dim());
+        let across = view.axis(a).cells();
+        if self.cells[0].is_empty() {
+            let slice = slice_of(view, &self.images);
+            self.cells = [self.images.part(&slice, across), slice];
+        }
+        let [cells, slice] = &self.cells;
+        let of = |field: &[f64], cells: &[usize]| -> Vec<f64> { cells.iter().map(|&c| field[c]).collect() };
+        let quantity = &self.images.quantity;
         if !matches!(quantity, Quantity::Field(_) | Quantity::Pressure) {
             view.shown(solids, &mut self.fields[..dim]);
         }
         let mut unit = String::new();
-        match &quantity {
+        self.values = match quantity {
             Quantity::Field(name) => {
                 if let Some(other) = view.others().into_iter().find(|o| o.name == name) {
                     self.fields[0].clear();
                     self.fields[0].extend(other.values);
                     unit = other.unit.into();
                 }
-                self.values = slice(&self.fields[0]);
+                of(&self.fields[0], cells)
             }
             Quantity::Speed => {
                 let squares = |c: usize| self.fields[..dim].iter().map(|u| u[c] * u[c]).sum::<f64>();
-                self.values.clear();
-                self.values.extend(cells.iter().map(|&c| squares(c).sqrt()));
+                cells.iter().map(|&c| squares(c).sqrt()).collect()
             }
-            Quantity::Component(c) => self.values = slice(&self.fields[*c]),
+            Quantity::Component(c) => of(&self.fields[*c], cells),
             Quantity::Pressure => {
                 view.pressure(&mut self.fields[0]);
-                self.values = slice(&self.fields[0]);
+                of(&self.fields[0], cells)
             }
             Quantity::Vorticity => {
-                let (u, v) = (slice(&self.fields[a]), slice(&self.fields[b]));
-                Self::vorticity(view, [a, b], &u, &v, &mut self.values);
+                let [u, v] = [a, b].map(|a| of(&self.fields[a], slice));
+                self.images.part(&Self::vorticity(view, [a, b], &u, &v), across)
             }
-        }
-        let across = view.axis(a).cells();
-        self.values = self.images.part(&self.values, across);
-        self.solid = self.images.part(&slice(&solids.lambda), across);
-        let signed = match &quantity {
+        };
+        self.solid = of(&solids.lambda, cells);
+        let signed = match quantity {
             Quantity::Speed => false,
             Quantity::Field(_) => self.values.iter().any(|v| *v < 0.0),
             _ => true,
         };
-        let alone = view.statistics().is_none();
-        let limits = self.images.limits.unwrap_or_else(|| limits(&self.values, &self.solid, signed, alone));
+        let limits =
+            self.images.limits.unwrap_or_else(|| limits(&self.values, &self.solid, signed, self.alone));
         let of_field;
-        let label = match &quantity {
+        let label = match quantity {
             Quantity::Field(name) => {
                 of_field =
                     format!("{} in {}", name.replace('_', " "), if unit.is_empty() { "1" } else { &unit });
@@ -164,14 +175,14 @@ impl Watch for ImagesWatch {
         let layer = Layer {
             values: &self.values,
             solid: solids.then_some(&self.solid),
-            solids_alone: alone,
+            solids_alone: self.alone,
             limits,
             label,
             signed,
         };
         let path = self.folder.join(format!("{index:05}.png"));
         let title = format!("{}   t = {:.4} s", self.title, info.time);
-        section.draw(&path, &layer, &title).map_err(output("drawing", &path))
+        section.draw(&mut self.sheet, &path, &layer, &title).map_err(output("drawing", &path))
     }
 }
 

@@ -6,7 +6,7 @@ use super::{Solids, Taken, Watch, output};
 use crate::setup::{Images, ModelSetup};
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
-use example_support::picture::section::Layer;
+use example_support::picture::section::{Layer, Sheet};
 use fitted::{Fitted, Story};
 use interfaces::{BodyId, Checkpoint, Pose, RestartError, SnapshotSink};
 use mor::snapshots::{NpyArray, NpyWriter, SnapshotAxis, SnapshotSource};
@@ -92,7 +92,7 @@ impl ModelsWatch {
     /// The picture: the field between two snapshots that made the model, as it is and as the model has it, and their difference.
     fn draw(&self, view: &dyn View, model: &Followed, story: &Story) -> Result<(), CouplingError> {
         let Some(images) = &self.images else { return Ok(()) };
-        let (cells, across) = (slice_of(view, images), view.axis(images.axes[0]).cells());
+        let cells = images.part(&slice_of(view, images), view.axis(images.axes[0]).cells());
         let n = view.lattice().shape().iter().product::<usize>();
         // Of vectors their length.
         let slice = |field: &[f64]| -> Vec<f64> {
@@ -101,7 +101,7 @@ impl ModelsWatch {
                 1 => field[c],
                 _ => (0..components).map(|k| field[c + k * n].powi(2)).sum::<f64>().sqrt(),
             };
-            images.part(&cells.iter().map(value).collect::<Vec<_>>(), across)
+            cells.iter().map(value).collect()
         };
         let off: Vec<f64> = story.predicted.iter().zip(&story.field).map(|(p, f)| p - f).collect();
         let section = section_of(view, images);
@@ -117,6 +117,7 @@ impl ModelsWatch {
             "pressure" => "pressure in Pa",
             name => name,
         };
+        let mut sheet = Sheet::default();
         for (what, values, of) in
             [("run", &truth, &truth), ("model", &predicted, &truth), ("off", &off, &off)]
         {
@@ -124,7 +125,7 @@ impl ModelsWatch {
             let layer = Layer { values, solid: None, solids_alone: false, limits, label, signed: false };
             let path = self.folder.join(format!("{}_{what}.png", model.setup.name));
             let title = format!("{}, {what}   t = {:.4} s", model.setup.name, story.time);
-            section.draw(&path, &layer, &title).map_err(output("drawing", &path))?;
+            section.draw(&mut sheet, &path, &layer, &title).map_err(output("drawing", &path))?;
         }
         Ok(())
     }
@@ -232,7 +233,8 @@ impl Watch for ModelsWatch {
         for model in &self.models {
             let name = &model.setup.name;
             if !self.quiet {
-                eprintln!("model \"{name}\" of {} snapshots", self.times.len());
+                // Nobody may be reading.
+                let _ = writeln!(io::stderr(), "model \"{name}\" of {} snapshots", self.times.len());
             }
             let Some(recorded) = self.fields.iter().find(|field| field.name == model.setup.field) else {
                 continue;

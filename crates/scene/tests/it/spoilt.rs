@@ -1,5 +1,5 @@
 //! Spoilt scene files.
-use crate::{coarse, folder, quiet, scenes};
+use crate::{coarse, folder, problems, quiet, root, scenes};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestCaseError, TestRunner};
 use scene::Scene;
@@ -154,4 +154,115 @@ fn spoilt_scenes_are_told_about() {
     });
     let _ = std::fs::remove_dir_all(&out);
     result.unwrap();
+}
+
+/// What only the libraries know to be wrong has its line, too, in a plan and in a run.
+#[test]
+fn what_cannot_be_built_has_its_line() {
+    let text = r#"
+[grid]
+cells = [16, 16]
+size = [1.0, 1.0]
+[sides]
+x = "periodic"
+y = "wall"
+[fluid]
+density = 1000.0
+nu = 1e-3
+[time]
+end = 0.1
+"#;
+    let disc = |radius: f64, x: f64, y: f64| {
+        format!(
+            "[[bodies]]\nshape = {{ type = \"disc\", radius = {radius} }}\ndensity = 2000.0\nposition = [{x}, {y}]\n"
+        )
+    };
+    let inlet =
+        text.replace("x = \"periodic\"", "x_min = { type = \"inlet\", velocity = [V, 0.0] }\nx_max = \"E\"");
+    let cases = [
+        (disc(0.2, 0.5, 3.0), 13, "bodies.0: body 0 stands 2.200e0 m deep in wall 1"),
+        (disc(0.2, 0.5, 0.5) + &disc(0.2, 0.6, 0.5), 17, "bodies.1: bodies 0 and 1 overlap by 3.000e-1 m"),
+        (disc(0.8, 0.5, 0.5), 13, "bodies.0: body 0 is 1.600e0 m long along axis 0"),
+        (disc(0.1, 0.5, 0.5), 13, "bodies.0: body 0 is 2.000e-1 m across, 3.2 cells"),
+        (
+            "[[factories]]\ntype = \"lattice\"\ndistance = 0.5\nshape = { type = \"disc\", radius = 0.01 }\ndensity = 2000.0\n".into(),
+            13,
+            "factories.0: body 0 is 2.000e-2 m across",
+        ),
+        ("[initial]\nvelocity = [0.0, \"log(x - 0.5)\"]\n".into(), 14, "initial.velocity: the initial velocity is NaN at"),
+    ];
+    let told = |text: &str| {
+        let scene = Scene::parse("bad.toml", text, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let out = folder("unbuilt");
+        let run = scene.run(&quiet(&out), &AtomicBool::new(false)).unwrap_err().to_string();
+        let _ = std::fs::remove_dir_all(&out);
+        [scene.plan().unwrap_err().to_string(), run]
+    };
+    for (more, line, message) in cases {
+        for found in told(&format!("{text}{more}")) {
+            assert!(found.starts_with(&format!("bad.toml:{line}:")) && found.contains(message), "{found}");
+        }
+    }
+    for (speed, end, message) in
+        [("1.0", "wall", "m³/s more out than in"), ("\"sqrt(-y)\"", "outlet", "an inlet that is not finite")]
+    {
+        for found in told(&inlet.replace('V', speed).replace('E', end)) {
+            assert!(found.starts_with("bad.toml:5:") && found.contains(message), "{found}");
+        }
+    }
+}
+
+#[test]
+fn steps_and_formulas_without_end_are_told() {
+    let cavity = std::fs::read_to_string(root().join("scenes/cavity.toml")).unwrap();
+    let found = problems(&cavity, "time.dt=1e-300");
+    assert!(found.contains("time.dt: ") && found.contains("steps to time.end; give"), "{found}");
+    let late = Scene::parse("cavity.toml", &cavity, &["averages={ start = 1e6 }".into()]).unwrap();
+    let warnings = late.plan().unwrap().warnings;
+    assert!(warnings.iter().any(|w| w.contains("averages.start = 1000000 s is not before")), "{warnings:?}");
+    let found = problems(&cavity, "forces={ start = 1.0 }");
+    assert!(found.contains("forces: loads are those on bodies"), "{found}");
+    // Whatever is in an override stands in it, not in the file.
+    let found = problems(&cavity, "initial.velocity=[\"q\", 0.0]");
+    assert!(found.starts_with("--set initial.velocity="), "{found}");
+    let long = format!("initial.velocity=[\"x{}\", 0.0]", "+q".repeat(500));
+    let found = problems(&cavity, &long);
+    assert!(
+        found.contains("… asks for \"q\"") && found.split("the formula").nth(1).unwrap().len() < 600,
+        "{found}"
+    );
+}
+
+#[test]
+fn so_many_steps_are_made() {
+    let cavity = std::fs::read_to_string(root().join("scenes/cavity.toml")).unwrap();
+    let text: String = cavity
+        .lines()
+        .filter(|l| !l.starts_with("end =") && !l.starts_with("snapshots ="))
+        .map(|l| format!("{l}\n"))
+        .collect();
+    let out = folder("steps");
+    let small = ["grid.cells=[8, 8]", "output.fields=false", "output.images=false"];
+    for (snapshots, steps) in [(None, 77), (Some(11), 77), (Some(0), 13)] {
+        let mut more = small.map(String::from).to_vec();
+        more.extend([format!("time.steps={steps}"), "time.dt=1e-3".into()]);
+        more.extend(snapshots.map(|n| format!("output.snapshots={n}")));
+        let scene = Scene::parse("cavity.toml", &text, &more).unwrap_or_else(|e| panic!("{e}"));
+        let result = scene.run(&quiet(&out), &AtomicBool::new(false)).unwrap().result;
+        assert_eq!(result["steps"], steps);
+        assert!((result["time"].as_f64().unwrap() - f64::from(steps) * 1e-3).abs() < 1e-12);
+    }
+    std::fs::remove_dir_all(&out).unwrap();
+    let told = |set: &[&str]| {
+        let set: Vec<String> = set.iter().map(|s| (*s).into()).collect();
+        Scene::parse("cavity.toml", &text, &set).err().map(|e| e.to_string()).unwrap_or_default()
+    };
+    assert!(told(&[]).contains("time: how long is the run?"));
+    assert!(told(&["time.steps=10"]).contains("time.steps: of which length?"));
+    assert!(told(&["time.steps=10", "time.dt=0.1", "time.end=1"]).contains("leave out one of the two"));
+    let uneven = told(&["time.steps=77", "time.dt=0.1", "output.snapshots=10"]);
+    assert!(
+        uneven.contains("output.snapshots: 10 equal intervals of 77 steps") && uneven.contains("7 for"),
+        "{uneven}"
+    );
 }

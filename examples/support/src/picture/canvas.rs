@@ -4,7 +4,7 @@ use crate::files::write_over;
 use std::io;
 use std::path::Path;
 
-use png::{BitDepth, ColorType, Compression, Encoder};
+use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
 use super::colour::{Colour, mix};
 
@@ -76,6 +76,11 @@ impl Canvas {
     pub(crate) fn row(&mut self, y: usize, left: usize, right: usize) -> &mut [u8] {
         let start = y * self.width;
         &mut self.rgb[3 * (start + left)..3 * (start + right)]
+    }
+
+    /// The uppermost rows.
+    pub(crate) fn upper(&mut self, rows: usize) -> &mut [u8] {
+        &mut self.rgb[..3 * rows * self.width]
     }
 
     /// A filled rectangle with edges on whole pixels.
@@ -171,6 +176,7 @@ impl Canvas {
             encoder.set_color(ColorType::Rgb);
             encoder.set_depth(BitDepth::Eight);
             encoder.set_compression(Compression::Fast);
+            encoder.set_filter(Filter::Up);
             let mut writer = encoder.write_header().map_err(io::Error::other)?;
             writer.write_image_data(&self.rgb).map_err(io::Error::other)?;
             writer.finish().map_err(io::Error::other)

@@ -75,6 +75,15 @@ impl Map {
     pub(crate) fn at(&self, fraction: f64) -> Colour {
         self.0[usize::from((fraction * 255.0 + 0.5) as u8)]
     }
+
+    /// The same for a row of pixels, in single precision.
+    pub(crate) fn row(&self, fractions: &[f32], pixels: &mut [Colour]) {
+        for (fractions, pixels) in fractions.chunks(64).zip(pixels.chunks_mut(64)) {
+            let mut entries = [0; 64];
+            entries.iter_mut().zip(fractions).for_each(|(entry, f)| *entry = (f * 255.0 + 0.5) as u8);
+            pixels.iter_mut().zip(entries).for_each(|(pixel, entry)| *pixel = self.0[usize::from(entry)]);
+        }
+    }
 }
 
 /// `a` with a share of `b` in it, 0 to 1.

@@ -225,7 +225,10 @@ pub fn run<S: Evolving>(
     // Ends of intervals that are behind, up to round-off: other schedules cut time otherwise.
     let behind = info.time + ROUND_OFF * schedule.end / schedule.intervals as f64;
     let mut index = (0..=schedule.intervals).take_while(|&i| schedule.time(i) <= behind).count().max(1) - 1;
-    simulation.begin()?;
+    // Gone on from its end, a run has no step to make ready for: no body comes in.
+    if index < schedule.intervals {
+        simulation.begin()?;
+    }
     observer.begin(simulation);
     if info.step == 0 {
         info.snapshot = Some(0);

@@ -450,12 +450,14 @@ impl<L> Checkpoint for TwoEquation<L> {
         sink("scale", &self.scale);
         sink("eddy", &self.eddy);
         sink("walls", &self.layer.viscosity);
+        sink("y_plus", &self.y_plus.numbers());
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         for (name, list) in [("k", &mut self.k), ("scale", &mut self.scale), ("eddy", &mut self.eddy)] {
             RestartError::fill(source, name, list)?;
         }
         self.layer.restore(source("walls").ok_or_else(|| RestartError::Missing("walls".into()))?);
+        self.y_plus = source("y_plus").and_then(YPlus::from_numbers).unwrap_or_default();
         Ok(())
     }
 }

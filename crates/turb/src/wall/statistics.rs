@@ -43,6 +43,17 @@ impl YPlus {
         if s.rows == 0 { Self::default() } else { s }
     }
 
+    /// For a saved state.
+    pub(crate) fn numbers(&self) -> [f64; 6] {
+        [self.least, self.mean, self.most, self.between, self.beyond, self.rows as f64]
+    }
+
+    /// What [`numbers`](Self::numbers) gave; `None` for another list.
+    pub(crate) fn from_numbers(numbers: &[f64]) -> Option<Self> {
+        let &[least, mean, most, between, beyond, rows] = numbers else { return None };
+        Some(Self { least, mean, most, between, beyond, rows: rows as usize })
+    }
+
     /// What is wrong with the distance of the cells, and by which factor to change it.
     pub fn warnings(&self) -> Vec<String> {
         let mut list = Vec::new();

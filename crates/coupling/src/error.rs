@@ -90,7 +90,7 @@ pub enum CouplingError {
     },
     /// The velocity has grown so much that time stands still.
     #[error(
-        "a Courant number of {courant} allows no more than dt = {dt:.3e} s at t = {time:.6} s: the run is diverging; start again with a smaller Courant number or time step, or a finer grid; bodies much lighter than the fluid need a virtual mass (`Particles::with_virtual_mass`, in scene files `coupling.virtual_mass`)"
+        "a Courant number of {courant} allows no more than dt = {dt:.3e} s at t = {time:.6} s: the run is diverging; start again with a smaller Courant number or time step, or a finer grid; bodies much lighter than the fluid need a virtual mass (`Particles::with_virtual_mass`)"
     )]
     Collapsed {
         /// The step \[s\].

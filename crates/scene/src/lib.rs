@@ -134,6 +134,7 @@ impl Scene {
             RunError::Coupling(CouplingError::Immersed(error @ IbmError::TooCoarse { .. })) => {
                 BuildError::from(error).placed(&self.setup, &self.document).into()
             }
+            RunError::Coupling(error @ CouplingError::Collapsed { .. }) => RunError::Collapsed(error),
             error => error,
         })
     }

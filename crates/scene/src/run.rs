@@ -35,6 +35,9 @@ pub enum RunError {
     /// A step or a file could not be made.
     #[error(transparent)]
     Coupling(#[from] CouplingError),
+    /// Time stood still.
+    #[error("{0}; here that is `coupling.virtual_mass`")]
+    Collapsed(CouplingError),
     /// The saved state.
     #[error("{0}; without an interrupted run of this scene in the folder, leave out --resume")]
     Resume(CheckpointError),

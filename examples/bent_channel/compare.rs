@@ -106,6 +106,27 @@ impl Probe<'_> {
         sum / areas / self.flow.fluid().density
     }
 
+    /// Tables of the friction along the inner and the outer wall.
+    fn write_friction(&self, out: &Path) -> Outcome<()> {
+        for (outer, name) in [(false, "inner"), (true, "outer")] {
+            let mut rows = Vec::new();
+            for (wall, traction) in self.walls.iter().zip(self.flow.wall_tractions()) {
+                let [s, r] = self.duct.place([wall.foot.x, wall.foot.y]);
+                if (r > 1.5) == outer {
+                    let [t, n] = self.duct.along(s);
+                    rows.push([s, (traction.x * t + traction.y * n) / self.flow.fluid().density, wall.area]);
+                }
+            }
+            rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            let mut text = String::from("s [m],friction over density [m2/s2],area [m2]\n");
+            for [s, friction, area] in rows {
+                text += &format!("{s:.6},{friction:.6e},{area:.4e}\n");
+            }
+            std::fs::write(out.join(format!("friction_{name}.csv")), text)?;
+        }
+        Ok(())
+    }
+
     fn mean_pressure(&self, s: f64) -> f64 {
         let at = |k: usize| {
             let x = self.duct.point(s, 1.0 + (k as f64 + 0.5) / 100.0);
@@ -211,5 +232,5 @@ pub(crate) fn report(
     let names = ["immersed walls", "body-fitted"];
     Comparison { domain, fields: &[], panels: &panels, columns: 4, names }.draw(&out.join("profiles.png"))?;
     println!("{}", out.join("profiles.png").display());
-    Ok(())
+    probe.write_friction(out)
 }

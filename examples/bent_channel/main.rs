@@ -186,6 +186,7 @@ fn run<C: Closure>(cli: &Cli, duct: Duct, grid: CartesianGrid<2>, closure: C, na
     let file = CellWriter::new(&grid)
         .scalar("p", flow.pressure().values())
         .scalar("nu_t", eddy.iter().copied())
+        .scalar("k", model.closure.kinetic_energy().unwrap_or_default().iter().copied())
         .vector("u", [centred(0), centred(1)]);
     let path = cli.out.join(format!("flow.{}", file.extension()));
     file.write(&mut std::io::BufWriter::new(std::fs::File::create(path)?))?;

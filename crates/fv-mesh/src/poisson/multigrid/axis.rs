@@ -1,4 +1,5 @@
 //! One axis of a level: metrics, which cells to merge, and the transfer to the next coarser level.
+use super::coarsen::Path;
 use super::stencil::Real;
 use crate::poisson::AxisBounds;
 
@@ -111,6 +112,8 @@ pub(super) struct Transfer<T> {
     pub(super) neighbours: Vec<(usize, bool)>,
     /// For each group the cells that contribute to it, consecutive modulo the number of cells.
     pub(super) children: Vec<Vec<(usize, T)>>,
+    /// From each group to the next, those of the ends included.
+    pub(super) paths: Vec<Path>,
 }
 
 impl<T: Real> Transfer<T> {
@@ -175,6 +178,7 @@ impl<T: Real> Transfer<T> {
             shares: (0..n).map(|i| [T::of(share(i, 0)), T::of(share(i, 1))]).collect(),
             weights: weights.iter().map(|w| w.map(T::of)).collect(),
             neighbours: (0..n).map(neighbour).collect(),
+            paths: (0..groups.len()).map(|g| Path::new(fine, &groups, g)).collect(),
             groups,
             parents,
             children,

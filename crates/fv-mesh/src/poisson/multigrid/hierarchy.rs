@@ -1,5 +1,6 @@
 //! The levels and the V-cycle.
 use super::axis::{AxisLevel, Transfer};
+use super::coarsen::{Scratch, coarsen};
 use super::coarsest::Coarsest;
 use super::level::Level;
 use super::stencil::Real;
@@ -12,6 +13,7 @@ pub(super) struct Hierarchy<T> {
     pub(super) levels: Vec<Level<T>>,
     coarsest: Coarsest,
     sweeps: usize,
+    scratch: Scratch,
 }
 
 impl<T: Real> Hierarchy<T> {
@@ -46,13 +48,27 @@ impl<T: Real> Hierarchy<T> {
         }
         let coarsest = Coarsest::new(&axes);
         levels.push(Level::new(axes, None, unit, shift, variable));
-        let mut hierarchy = Self { levels, coarsest, sweeps };
+        let mut hierarchy = Self { levels, coarsest, sweeps, scratch: Scratch::default() };
         hierarchy.factorise(singular);
         hierarchy
     }
 
+    /// Copies β of the faces normal to `axes` to the finest level and coarsens it from there.
+    pub(super) fn renew(&mut self, beta: &[Vec<f64>; 3], axes: &[usize], singular: bool) {
+        if let Some(own) = self.levels.first_mut().and_then(|level| level.stencil.beta.as_mut()) {
+            for &axis in axes {
+                own[axis].iter_mut().zip(&beta[axis]).for_each(|(own, &b)| *own = T::of(b));
+            }
+        }
+        for l in 1..self.levels.len() {
+            let (fine, coarse) = self.levels.split_at_mut(l);
+            coarsen(&mut fine[l - 1], &mut coarse[0], axes, &mut self.scratch);
+        }
+        self.factorise(singular);
+    }
+
     /// Factorises the operator of the coarsest level.
-    pub(super) fn factorise(&mut self, singular: bool) {
+    fn factorise(&mut self, singular: bool) {
         if let Some(Level { stencil, phi, f, .. }) = self.levels.last_mut() {
             self.coarsest.factorise(stencil, singular, phi, f);
         }

@@ -37,6 +37,7 @@
 //! ```
 mod axis;
 mod cg;
+mod coarsen;
 mod coarsest;
 mod coefficients;
 mod fields;

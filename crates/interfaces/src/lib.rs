@@ -47,5 +47,5 @@ pub use renumbering::Renumbering;
 pub use restart::{Checkpoint, RestartError};
 pub use snapshots::SnapshotSink;
 pub use solid::{Polyhedron, Solid, SurfaceElement};
-pub use transport::{Closure, Equation, SolveError, SolveInfo, Transport};
+pub use transport::{Closure, Equation, LogSlope, SolveError, SolveInfo, Transport};
 pub use wall_row::{WallPoint, WallRow};

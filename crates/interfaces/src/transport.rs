@@ -64,6 +64,17 @@ pub struct SolveInfo {
     pub residual: f64,
 }
 
+/// A cell in which |S| is a part of what differences say, if the layer there is logarithmic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LogSlope {
+    /// The cell.
+    pub cell: usize,
+    /// Its distance from the nearest wall \[m\].
+    pub distance: f64,
+    /// The part, at most 1.
+    pub part: f64,
+}
+
 /// A flow on cells, as a closure sees it. All slices have one entry per cell.
 pub trait Transport {
     /// Number of cells.
@@ -80,6 +91,10 @@ pub trait Transport {
     /// # Errors
     /// [`SolveError::Length`].
     fn strain_rate(&mut self, out: &mut [f64]) -> Result<(), SolveError>;
+    /// Cells near walls in which differences between cells find a logarithmic layer too steep.
+    fn log_slopes(&mut self) -> &[LogSlope] {
+        &[]
+    }
     /// ∂u_a/∂x_b \[1/s\] at the cells' centres in `out[cell][a][b]`; zero along axes that the flow does not have.
     ///
     /// # Errors

@@ -1,6 +1,7 @@
 //! Implicit transport of cell-centred quantities for turbulence models.
 mod dry;
 mod kernels;
+mod log_slopes;
 mod near_solids;
 mod neighbours;
 mod sides;
@@ -20,7 +21,7 @@ use crate::linear::{
 };
 use crate::operators::{Operators, fill_dense};
 use crate::{CartesianGrid, Convection, Field, FlowError, Sides, Velocity};
-use interfaces::{Equation, SolveError, SolveInfo, Transport};
+use interfaces::{Equation, LogSlope, SolveError, SolveInfo, Transport};
 use kernels::{DotGradients, Neighbour};
 use near_solids::NearSolids;
 use sides::CellSides;
@@ -474,6 +475,10 @@ impl<const D: usize> Transport for FlowTransport<'_, D> {
         let ops = &self.cells.ops;
         fill_dense(ops.grid(), &ops.strain_kernel(&self.velocity.components), out);
         Ok(())
+    }
+    fn log_slopes(&mut self) -> &[LogSlope] {
+        let CellTransport { near, ops, wall_distance, .. } = &mut *self.cells;
+        near.as_mut().map_or(&[], |near| near.log_slopes(ops.grid(), self.velocity, wall_distance))
     }
     fn velocity_gradient(&mut self, out: &mut [[[f64; 3]; 3]]) -> Result<(), SolveError> {
         check_length("the velocity gradient", self.n_cells(), out.len())?;

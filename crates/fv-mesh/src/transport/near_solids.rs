@@ -1,8 +1,10 @@
 //! Convection near cells without fluid.
+use super::log_slopes::LogSlopes;
 use super::neighbours::{around, neighbour};
-use crate::Velocity;
 use crate::least_squares::{gradient_weights, norm2};
 use crate::operators::Operators;
+use crate::{CartesianGrid, Velocity};
+use interfaces::LogSlope;
 
 /// Faces of cells that are at most as many steps from one without fluid are near it.
 const LAYERS: u8 = 8;
@@ -37,6 +39,7 @@ type Linear<const D: usize> = (f64, [f64; D]);
 struct Distances<const D: usize> {
     dense: Vec<f64>,
     near: Vec<Linear<D>>,
+    log_slopes: LogSlopes<D>,
 }
 
 /// A face, and the cells below and above it: their places in the list, and how far from their centres it is \[m\].
@@ -146,18 +149,33 @@ impl<const D: usize> NearSolids<D> {
         }
     }
 
+    /// Where a logarithmic layer seems too steep in this flow.
+    pub(super) fn log_slopes(
+        &mut self,
+        grid: &CartesianGrid<D>,
+        velocity: &Velocity<D>,
+        distance: &[f64],
+    ) -> &[LogSlope] {
+        if self.distances.is_none() {
+            self.distances = self.measure(grid, distance);
+        }
+        self.distances.as_mut().map_or(&[], |distances| distances.log_slopes.update(grid, velocity))
+    }
+
     /// Distances have changed.
     pub(super) fn forget_distances(&mut self) {
         self.distances = None;
     }
 
     /// None where no walls are known of.
-    fn measure(&self, distance: &[f64]) -> Option<Distances<D>> {
+    fn measure(&self, grid: &CartesianGrid<D>, distance: &[f64]) -> Option<Distances<D>> {
         if self.terms.iter().any(|&(cell, _)| !distance[cell].is_finite()) {
             return None;
         }
         let (mut dense, mut near) = (distance.to_vec(), Vec::new());
         self.look(|c| distance[c], &mut near);
+        let cells = self.cells.iter().zip(&near).map(|(cell, &(y, slope))| (cell.cell, cell.width, y, slope));
+        let log_slopes = LogSlopes::new(grid, cells);
         for (cell, (y, slope)) in self.cells.iter().zip(&near) {
             let norm = norm2(slope).sqrt();
             let extent = match norm > 0.0 {
@@ -167,7 +185,7 @@ impl<const D: usize> NearSolids<D> {
             dense[cell.cell] = y.max(NEAREST * extent);
         }
         self.look(|c| dense[c], &mut near);
-        Some(Distances { dense, near })
+        Some(Distances { dense, near, log_slopes })
     }
 
     /// Adds to `out` what the faces bring to the cells \[m³/s φ\], less what upwind differences between cells with fluid bring.
@@ -180,7 +198,7 @@ impl<const D: usize> NearSolids<D> {
         out: &mut [f64],
     ) {
         if let (Some(distance), None) = (distance, &self.distances) {
-            self.distances = self.measure(distance);
+            self.distances = self.measure(velocity.components[0].grid(), distance);
         }
         let mut carried = std::mem::take(&mut self.carried);
         let distances = self.distances.as_ref().filter(|_| distance.is_some());

@@ -84,6 +84,8 @@ struct Work {
     terms: [Vec<f64>; 3],
 }
 
+/// The layer is logarithmic as far down as differences reach where y* is this many y+_lam.
+const LOGARITHMIC: f64 = 3.0;
 /// The least value of k \[m²/s²\] and of ω or ε.
 const FLOOR: f64 = 1e-30;
 /// k in solids: so little that it is none, and enough not to be counted as set after a solve.
@@ -259,6 +261,12 @@ impl<L: Law> TwoEquation<L> {
             strain.iter_mut().zip(&*gradient).for_each(|(s, g)| *s = Invariants::of(g).strain);
         } else {
             flow.strain_rate(&mut self.work.strain)?;
+        }
+        let functions = &self.layer.functions;
+        for slope in flow.log_slopes() {
+            let y_star = functions.y_star(slope.distance, self.k[slope.cell], nu);
+            let share = functions.turbulent_share(y_star / LOGARITHMIC);
+            self.work.strain[slope.cell] *= 1.0 + share * (slope.part - 1.0);
         }
         if L::CROSS_DIFFUSION {
             flow.dot_gradients(&self.k, &self.scale, &mut self.work.cross)?;

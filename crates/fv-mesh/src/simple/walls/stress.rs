@@ -30,8 +30,8 @@ const NEAREST: f64 = 0.05;
 const RESOLVED: f64 = 30.0;
 
 impl WallStress {
-    /// The usual law of the wall, seen from three quarters of a cell.
-    pub const LAW_OF_THE_WALL: Self = Self::Law { law: LawOfTheWall::USUAL, distance: 0.75 };
+    /// The usual law of the wall, seen from half a cell.
+    pub const LAW_OF_THE_WALL: Self = Self::Law { law: LawOfTheWall::USUAL, distance: 0.5 };
 
     /// The least distance at which gradients see walls, in extents of the cell along the normal; none if they do not.
     pub(super) fn nearest(self) -> Option<f64> {

@@ -3,9 +3,11 @@ use crate::cast::Cast;
 use crate::document::Document;
 use crate::physics::{Physics, Segregated};
 use crate::problem::Problems;
-use crate::setup::{Algorithm, Bodies, ContactLawChoice, ForcingChoice, InflowSetup, Motion, Setup};
+use crate::setup::{
+    Algorithm, Bodies, BodySetup, ContactLawChoice, ForcingChoice, InflowSetup, Motion, Setup,
+};
 use crate::still::Still;
-use coupling::WithScalars;
+use coupling::{CouplingError, WithScalars};
 use dem::placing::{PlacingError, Region};
 use dem::{Chen, ContactLaw, DemError, Entrant, Inflow, Lubricated, Population, Repulsive, RigidBodies};
 use fv_mesh::{Axis, CartesianGrid, Diffusion, FlowError, Piso, PisoParams, Projection, Side, TimeScheme};
@@ -35,7 +37,7 @@ pub enum BuildError {
     Turbulence(#[from] turb::TurbulenceError),
     /// Both together.
     #[error(transparent)]
-    Coupling(#[from] coupling::CouplingError),
+    Coupling(#[from] CouplingError),
     /// The grid is too large for this machine.
     #[error("{cells:.2e} cells need about {:.1} GB of memory, and {:.1} GB are free; take fewer cells", needed / 1e9, free / 1e9)]
     Memory {
@@ -63,32 +65,86 @@ pub enum BuildError {
 impl BuildError {
     /// The key that has to do with it, if it is known.
     fn key(&self, setup: &Setup) -> Option<String> {
-        let body = match self {
-            Self::Bodies(DemError::InWall { body, .. } | DemError::Period { body, .. }) => body,
-            Self::Bodies(DemError::OverlappingStart { a, b, .. }) => a.max(b),
-            Self::Immersed(
-                IbmError::TooCoarse { body, .. }
-                | IbmError::TooLarge { body, .. }
-                | IbmError::Unseen { body, .. },
-            ) => body,
-            Self::Turbulence(_) => return Some("turbulence".into()),
-            Self::Memory { .. } => return Some("grid".into()),
-            Self::Formula { key, .. } => return Some((*key).into()),
-            Self::Flow(FlowError::Boundary { .. } | FlowError::MassBalance { .. }) => {
-                return Some("sides".into());
-            }
-            _ => return None,
-        };
-        Some(setup.bodies.list.get(body.0)?.origin.clone())
+        let body = |b: &BodyId| Some(setup.bodies.list.get(b.0)?.origin.clone());
+        match self {
+            Self::Bodies(error) => body(&body_of(error)?),
+            Self::Placing(PlacingError::Shape(error)) => body(&body_of(error)?),
+            Self::Immersed(error) | Self::Coupling(CouplingError::Immersed(error)) => match error {
+                IbmError::TooCoarse { body: b, .. }
+                | IbmError::TooLarge { body: b, .. }
+                | IbmError::Unseen { body: b, .. } => body(b),
+                _ => None,
+            },
+            Self::Coupling(
+                CouplingError::Motion { body: b, .. }
+                | CouplingError::TooLarge { body: b, .. }
+                | CouplingError::Outside { body: b, .. }
+                | CouplingError::Escaped { body: b, .. },
+            ) => body(b),
+            Self::Coupling(CouplingError::Dynamics { source, .. }) => match source.downcast_ref() {
+                Some(PlacingError::Shape(error)) => body(&body_of(error)?),
+                _ => None,
+            },
+            Self::Turbulence(_) => Some("turbulence".into()),
+            Self::Memory { .. } => Some("grid".into()),
+            Self::Formula { key, .. } => Some((*key).into()),
+            Self::Flow(error) | Self::Coupling(CouplingError::Flow(error)) => match error {
+                FlowError::Boundary { .. } | FlowError::MassBalance { .. } => Some("sides".into()),
+                FlowError::ScalarNotSteady { .. }
+                | FlowError::ScalarDiverged { .. }
+                | FlowError::Scalar { .. } => Some("scalars".into()),
+                FlowError::Closure { .. } => Some("turbulence".into()),
+                FlowError::Diverged { .. } => Some(setup.pace()),
+                _ => None,
+            },
+            Self::Coupling(CouplingError::Courant { .. }) => Some(setup.pace()),
+            Self::Coupling(CouplingError::Collapsed { .. }) => Some(setup.light().unwrap_or(setup.pace())),
+            _ => None,
+        }
+    }
+
+    /// When the velocity had grown too much, if that is it \[s\].
+    fn too_fast_at(&self) -> Option<f64> {
+        match self {
+            Self::Flow(FlowError::Diverged { time, .. })
+            | Self::Coupling(
+                CouplingError::Flow(FlowError::Diverged { time, .. })
+                | CouplingError::Courant { time, .. }
+                | CouplingError::Collapsed { time, .. },
+            ) => Some(*time),
+            _ => None,
+        }
     }
 
     /// The same with its place in the file, if a key has to do with it.
     pub(crate) fn placed(self, setup: &Setup, document: &Document) -> Self {
+        if let Some((key, speed)) = self.too_fast_at().and_then(|time| setup.rush(time)) {
+            let message = format!("{self}; what enters or moves here has come to {speed:.3e} m/s by then");
+            return Self::Scene(Box::new(document.problem(&key, message)));
+        }
         match self.key(setup) {
             Some(key) => Self::Scene(Box::new(document.problem(&key, self.to_string()))),
             None => self,
         }
     }
+}
+
+/// The body that an error is about.
+fn body_of(error: &DemError) -> Option<BodyId> {
+    match error {
+        DemError::InWall { body, .. }
+        | DemError::Period { body, .. }
+        | DemError::PassedThrough { body, .. }
+        | DemError::Diverged { body, .. }
+        | DemError::TooFast { body, .. } => Some(*body),
+        DemError::OverlappingStart { a, b, .. } => Some(*a.max(b)),
+        _ => None,
+    }
+}
+
+/// A number of which one digit counts.
+fn about(x: f64) -> String {
+    if x < 10.0 { format!("{x:.1}") } else { format!("{x:.0}") }
 }
 
 /// Memory that may be had \[bytes\]; `None` where the system does not tell.
@@ -169,25 +225,22 @@ impl Setup {
         Ok(())
     }
 
-    /// The body force has to have a value at both ends of the run.
-    pub(crate) fn check_force(&self) -> Result<(), BuildError> {
-        for (t, force) in self.force.iter().flat_map(|f| [0.0, self.end].map(|t| (t, f))) {
-            if let Some(value) = force.iter().map(|f| f.at(&[t])).find(|f| !f.is_finite()) {
-                return Err(BuildError::Formula {
-                    what: "the body force",
-                    key: "force",
-                    value,
-                    at: [t, 0.0, 0.0],
-                });
-            }
-        }
-        Ok(())
+    /// The key of the step.
+    fn pace(&self) -> String {
+        if self.dt.is_some() { "time.dt" } else { "time.courant" }.into()
+    }
+    /// The key of what holds bodies that the fluid moves and that are lighter than it, or not much heavier by the paper's forcing, if there are such bodies.
+    fn light(&self) -> Option<String> {
+        let least = if self.bodies.forcing() == ForcingChoice::Hfdib { 3.0 } else { 1.0 };
+        let light = |b: &BodySetup| {
+            matches!(b.motion, Motion::Free(_)) && b.material.density < least * self.fluid().density
+        };
+        self.bodies.list.iter().any(light).then(|| "coupling.virtual_mass".into())
     }
 
     /// The projection algorithm, without bodies or anything that acts on it.
     pub(crate) fn projection<const D: usize>(&self) -> Result<Projection<D>, BuildError> {
         self.check_memory()?;
-        self.check_force()?;
         let grid = self.grid()?;
         // Bodies want explicit diffusion.
         let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
@@ -217,7 +270,6 @@ impl Setup {
     /// PISO by Euler's scheme in time, as the paper has it.
     pub(crate) fn piso<const D: usize>(&self) -> Result<Segregated<D>, BuildError> {
         self.check_memory()?;
-        self.check_force()?;
         let grid = self.grid()?;
         let params = PisoParams { time_scheme: TimeScheme::Euler, ..PisoParams::default() };
         let mut flow = Piso::new(grid.clone(), self.all_sides(), self.fluid())?
@@ -378,7 +430,12 @@ impl Setup {
             Some(t) if any && self.walls_move() => {
                 format!("{}, beside bodies wherever they are", t.model.name())
             }
-            Some(t) => t.model.name().to_owned(),
+            Some(t) => match self.y_plus() {
+                Some(y) => {
+                    format!("{}; first cells beside walls at y+ of about {}", t.model.name(), about(y))
+                }
+                None => t.model.name().to_owned(),
+            },
             None if !fluid => "no fluid".into(),
             None => "no `turbulence`: the flow is resolved, or laminar".into(),
         };

@@ -127,7 +127,7 @@ impl<const D: usize> Scalars<D> {
         for Carried { scalar, setup, held, .. } in list {
             let all = || (0..bodies.n_bodies()).map(BodyId);
             let cells: Vec<usize> = held.iter().flat_map(|held| all().flat_map(|b| held.held(b))).collect();
-            let value = setup.bodies.as_ref().map_or(0.0, |formula| formula.at(&[time]));
+            let value = setup.bodies.as_ref().map_or(0.0, |formula| formula.needed(&[time]));
             act(scalar, &cells, &mut |field| {
                 for (held, b) in held.iter().flat_map(|held| all().map(move |b| (held, b))) {
                     held.apply(b, field, |_, _| value, |_| value);
@@ -149,7 +149,7 @@ impl<const D: usize> ScalarTransport<D> for Scalars<D> {
                     Some(own) => source.copy_from_slice(own.data()),
                     None => source.fill(0.0),
                 }
-                surfaces.add(flux.at(&[time]), source);
+                surfaces.add(flux.needed(&[time]), source);
             }
             one.scalar.advance(velocity, time, dt)?;
             if !*moving {
@@ -196,7 +196,7 @@ impl<const D: usize> Carried<D> {
     }
     fn hold(&mut self, bodies: &dyn Bodies, time: f64) {
         if let (Some(held), Some(formula)) = (&self.held, &self.setup.bodies) {
-            let value = formula.at(&[time]);
+            let value = formula.needed(&[time]);
             self.scalar.impose(|field| {
                 for b in (0..bodies.n_bodies()).map(BodyId) {
                     held.apply(b, field, |_, _| value, |_| value);

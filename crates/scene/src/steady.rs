@@ -72,7 +72,6 @@ impl Setup {
     /// The steady algorithm with bodies at rest as walls.
     pub(crate) fn steady<const D: usize>(&self) -> Result<Steady<D>, BuildError> {
         self.check_memory()?;
-        self.check_force()?;
         let grid = self.grid()?;
         let params =
             if self.turbulence.is_some() { SimpleParams::turbulent() } else { SimpleParams::default() };
@@ -114,6 +113,7 @@ impl Stage<'_> {
             setup.cells(),
             setup.flow.tolerance
         ))?;
+        self.warn(&mut log)?;
         // Progress is the way of the residual's logarithm.
         let target = -setup.flow.tolerance.log10();
         let mut progress = (!self.options.quiet).then(|| Progress::new(0.0, target));

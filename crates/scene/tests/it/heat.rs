@@ -1,6 +1,7 @@
 //! Scalars that drive the flow, and eddies that mix them.
 use crate::{folder, quiet, root, run};
-use scene::{Ending, Scene};
+use scene::{Ending, Options, Scene};
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 /// The warm cavity at Ra 1e5 on 40 × 40 cells by SIMPLE and by PISO: the velocities of de Vahl Davis (1983) within a hundredth, and those of the projection within 0.3 %.
@@ -81,4 +82,65 @@ fn a_scalar_in_modelled_turbulence_is_the_velocity() {
     let other =
         off("analogy-other", &["flow.diffusion=\"explicit\"", "scalars.momentum.turbulent_prandtl=0.5"]);
     assert!(other.abs() > 1e-3, "{other}");
+}
+
+/// Scalars held on a disc that falls and one that is moved as told, mixed by SST or not: half a run and the rest are the whole, bit for bit.
+#[test]
+fn scalars_held_on_bodies_that_move_go_on() {
+    let text = r#"
+gravity = [0.0, -9.81]
+grid = { cells = [32, 48], size = [1.0, 1.5] }
+sides = { x = "periodic", y = "wall" }
+fluid = { density = 1.0, nu = 2e-3 }
+[scalars.warmth]
+diffusivity = 3e-3
+bodies = "1 + 0.5*sin(3*t)"
+expansion = 0.02
+[scalars.salt]
+diffusivity = 2e-3
+bodies_flux = "1e-2*t"
+initial = "y"
+[[bodies]]
+shape = { type = "disc", radius = 0.15 }
+density = 1.3
+position = [0.3, 1.1]
+[[bodies]]
+shape = { type = "disc", radius = 0.15 }
+position = [0.7, 0.5]
+motion = { type = "prescribed", shift = ["0.1*(1-cos(6*t))", 0.0] }
+[time]
+end = 0.4
+[output]
+snapshots = 4
+images = false
+"#;
+    for (name, more) in [
+        ("held", &[][..]),
+        ("held-sst", &["turbulence={model=\"sst\", speed=1.0}"]),
+        ("held-hfdib", &["coupling.forcing=\"hfdib\"", "bodies.0.density=4.0"]),
+        (
+            "held-piso",
+            &[
+                "flow.algorithm=\"piso\"",
+                "coupling.forcing=\"hfdib\"",
+                "time.dt=2e-3",
+                "time.ramp=false",
+                "bodies.0.density=4.0",
+            ],
+        ),
+    ] {
+        let [whole, halves] = [0, 1].map(|_| folder(name));
+        let part = |out: &Path, last: &[&str], resume: bool| {
+            run(text, &[more, last].concat(), &Options { resume, ..quiet(out) }).result
+        };
+        let all = part(&whole, &[], false);
+        part(&halves, &["time.end=0.2", "output.snapshots=2"], false);
+        assert_eq!(all, part(&halves, &[], true), "{name}");
+        let [a, b] = [&whole, &halves].map(|out| std::fs::read(out.join("fields/00004.vti")).unwrap());
+        assert!(a == b, "{name}: the fields differ");
+        let warmth = all["fields"]["warmth"]["mean"].as_f64().unwrap();
+        let salt = all["fields"]["salt"]["mean"].as_f64().unwrap();
+        assert!(warmth > 0.1 && salt > 0.75, "{name}: {warmth} {salt}");
+        [whole, halves].iter().for_each(|out| std::fs::remove_dir_all(out).unwrap());
+    }
 }

@@ -225,9 +225,14 @@ impl Setup {
         Ok(())
     }
 
-    /// The key of the step.
+    /// The key that says how fast the flow goes on.
     fn pace(&self) -> String {
-        if self.dt.is_some() { "time.dt" } else { "time.courant" }.into()
+        match self.flow.algorithm {
+            Algorithm::Simple => "flow",
+            _ if self.dt.is_some() => "time.dt",
+            _ => "time.courant",
+        }
+        .into()
     }
     /// The key of what holds bodies that the fluid moves and that are lighter than it, or not much heavier by the paper's forcing, if there are such bodies.
     fn light(&self) -> Option<String> {

@@ -251,6 +251,14 @@ impl Setup {
                 b.material.density / fluid
             ));
         }
+        let by_law = self.flow.algorithm == Algorithm::Simple;
+        let modelled = self.turbulence.as_ref().is_some_and(|t| t.model.averages());
+        if let Some(s) = self.scalars.iter().find(|s| modelled && !by_law && s.bodies.is_some()) {
+            out.push(format!(
+                "scalars.{}: what modelled eddies bring to bodies is that of the cells beside them, without a law of the wall; that acts on sides of the box, and on bodies in steady flow (flow.algorithm = \"simple\")",
+                s.name
+            ));
+        }
         let borne = self.borne();
         if borne > HEAVIEST {
             out.push(format!(

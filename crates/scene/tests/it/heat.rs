@@ -144,3 +144,75 @@ images = false
         [whole, halves].iter().for_each(|out| std::fs::remove_dir_all(out).unwrap());
     }
 }
+
+/// A duct at Re 10⁵ with warm walls, k–ε: with bodies as walls, along the grid and turned by 30°, it takes up what it does between sides of the box. A wall that
+/// is one of the box's and one that is a body are the same to the scalar where they are the same to the flow.
+#[test]
+fn warm_walls_that_are_bodies_warm_as_sides_do() {
+    let text = r#"
+turbulence = { model = "k-epsilon", intensity = 0.05, length = 0.1, speed = 1.0 }
+grid = { cells = [120, 20], size = [6.0, 1.0] }
+fluid = { density = 1.0, nu = 1e-5 }
+[sides]
+x_min = { type = "inlet", velocity = [1.0, 0.0] }
+x_max = "outlet"
+y = "wall"
+[initial]
+velocity = [1.0, 0.0]
+[scalars.heat]
+diffusivity = 1.4e-5
+sides = { y = { type = "value", value = 1.0 } }
+[flow]
+algorithm = "simple"
+convection = "quick"
+[time]
+end = 1.0
+[output]
+images = false
+fields = false
+"#;
+    let duct = |name: &str, more: &[&str]| {
+        let out = folder(name);
+        let result = run(text, more, &quiet(&out));
+        std::fs::remove_dir_all(&out).unwrap();
+        assert_eq!(result.ending, Ending::Done, "{name}");
+        let of = |value: &serde_json::Value| value.as_f64();
+        [of(&result.result["fields"]["heat"]["mean"]), of(&result.result["given_off"]["heat"])]
+    };
+    let sides = duct("duct-sides", &[])[0].unwrap();
+    let walls = |lower: &str, upper: &str, angle: f64| {
+        let body = |at: &str| {
+            format!(
+                r#"{{ shape = {{ type = "box", edges = [40.0, 4.0] }}, position = {at}, orientation = {angle:.1}, motion = "fixed" }}"#
+            )
+        };
+        format!("bodies=[{}, {}]", body(lower), body(upper))
+    };
+    let bodies = ["scalars.heat.bodies=1.0", "scalars.heat.sides={}"];
+    // A third of the box is warm wall.
+    let along = walls("[3.0, -1.75]", "[3.0, 3.25]", 0.0);
+    let along = duct(
+        "duct-along",
+        &[&["grid.cells=[120, 30]", "grid.size=[6.0, 1.5]", &along], &bodies[..]].concat(),
+    );
+    let fluid = 1.5 * (along[0].unwrap() - 1.0 / 3.0);
+    assert!((fluid / sides - 1.0).abs() < 0.03, "{fluid} {sides}");
+    let turned = walls("[3.6, 0.06906]", "[1.6, 4.68786]", 30.0);
+    let turned = duct(
+        "duct-turned",
+        &[
+            &[
+                "grid.cells=[104, 96]",
+                "grid.size=[5.2, 4.8]",
+                "sides.x_min.velocity=[0.8660254, 0.5]",
+                "initial.velocity=[0.8660254, 0.5]",
+                &turned,
+            ],
+            &bodies[..],
+        ]
+        .concat(),
+    );
+    // Both walls are 6 m long.
+    let off = turned[1].unwrap() / along[1].unwrap() - 1.0;
+    assert!(off.abs() < 0.04, "{off}");
+}

@@ -6,6 +6,7 @@ mod ledger;
 mod models;
 mod physics;
 mod spoilt;
+mod told;
 
 use scene::{Options, RunResult, Scene, json_schema, manual};
 use std::path::{Path, PathBuf};

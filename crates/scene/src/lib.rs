@@ -31,6 +31,7 @@
 #![deny(missing_docs)]
 
 mod build;
+mod build_error;
 mod cast;
 mod document;
 mod dry;
@@ -53,7 +54,7 @@ mod still;
 mod view;
 mod watch;
 
-pub use build::BuildError;
+pub use build_error::BuildError;
 pub use options::Options;
 pub use plan::Plan;
 pub use problem::Problems;

@@ -1,5 +1,5 @@
 //! The flow of a scene and what acts on it.
-use crate::build::BuildError;
+use crate::build_error::BuildError;
 use crate::expression::Expression;
 use crate::setup::{ForcingChoice, ModelChoice, ScalarSetup, ScaleChoice, Setup};
 use coupling::{Drive, Walled, WithScalars};

@@ -1,5 +1,5 @@
 //! What a scene would do.
-use crate::build::BuildError;
+use crate::build_error::BuildError;
 use crate::setup::{Algorithm, ForcingChoice, Setup};
 use crate::steady::Steady;
 use coupling::{Evolving, Grains};

@@ -1,5 +1,5 @@
 //! Runs a scene.
-use crate::build::BuildError;
+use crate::build_error::BuildError;
 use crate::cast::Cast;
 use crate::log::Log;
 use crate::look::{Books, Extremes, Kept, Look, Show, Whole};

@@ -1,5 +1,5 @@
 //! Steady flow.
-use crate::build::BuildError;
+use crate::build_error::BuildError;
 use crate::log::Log;
 use crate::look::Extremes;
 use crate::physics::{Lift, Model, Scalars};

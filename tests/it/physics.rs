@@ -264,7 +264,7 @@ fn what_does_not_fit_is_refused() {
     let fast = Twist { linear: Vector::new(0.0, -40.0, 0.0), ..Twist::default() };
     simulation.particles.bodies.set_twist(BodyId(0), fast);
     let error = (0..100).find_map(|_| simulation.step(2e-4).err()).unwrap();
-    assert!(matches!(error, CouplingError::Outside { axis: 1, .. }), "{error}");
+    assert!(matches!(error, CouplingError::Escaped { axis: 1, .. }), "{error}");
 }
 
 /// A step that is taken back and made again, shorter, sees the bodies where they were.

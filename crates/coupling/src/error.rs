@@ -68,6 +68,24 @@ pub enum CouplingError {
         /// Where the box begins and ends \[m\].
         box_: [f64; 2],
     },
+    /// A body went out through a bounded side.
+    #[error(
+        "body {} went out of the box along axis {axis} at {speed:.3e} m/s, up to t = {time:.6} s: its centre is at {centre:.3e} m, and the box reaches from {:.3e} to {:.3e} m; where there is a wall its contact was too soft to stop the body: give a larger Young's modulus, less load or less speed; where there is none, an exit", body.0, box_[0], box_[1]
+    )]
+    Escaped {
+        /// The body.
+        body: BodyId,
+        /// Axis, 0 for x.
+        axis: usize,
+        /// Where its centre is \[m\].
+        centre: f64,
+        /// Where the box begins and ends \[m\].
+        box_: [f64; 2],
+        /// Its speed \[m/s\].
+        speed: f64,
+        /// When \[s\].
+        time: f64,
+    },
     /// Flow and particles were told different densities.
     #[error(
         "the flow's density is {flow} kg/m³ but the particles were told {particles} kg/m³; give both the same"

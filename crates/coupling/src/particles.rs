@@ -240,22 +240,25 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
                 }
             }
         }
-        self.check_inside(flow)
+        match self.outside(flow) {
+            Some((body, axis, centre, box_)) => Err(CouplingError::Outside { body, axis, centre, box_ }),
+            None => Ok(()),
+        }
     }
 
-    /// No body's centre may leave through a bounded side.
-    fn check_inside<const D: usize, A: FlowSolver<D>>(&self, flow: &A) -> Result<(), CouplingError> {
+    /// The first body whose centre is beyond a bounded side: axis, where it is, where the box begins and ends \[m\].
+    fn outside<const D: usize, A: FlowSolver<D>>(&self, flow: &A) -> Option<(BodyId, usize, f64, [f64; 2])> {
         let grid = flow.grid();
         for axis in (0..D).filter(|&a| !flow.sides().periodic(a)) {
             let box_ = [grid.origin()[axis], grid.origin()[axis] + grid.lengths()[axis]];
             for body in (0..self.bodies.n_bodies()).map(BodyId) {
                 let centre = self.bodies.pose(body).position[axis];
                 if !(box_[0]..=box_[1]).contains(&centre) {
-                    return Err(CouplingError::Outside { body, axis, centre, box_ });
+                    return Some((body, axis, centre, box_));
                 }
             }
         }
-        Ok(())
+        None
     }
 
     /// Fluid and contact loads of the last step on body `b`.
@@ -338,7 +341,10 @@ where
     fn couple(&mut self, flow: &mut A, dt: f64, timings: &mut Timings) -> Result<(), CouplingError> {
         let time = flow.time();
         timings.measure(Module::Contact, || self.advance(dt, time))?;
-        self.check_inside(flow)?;
+        if let Some((body, axis, centre, box_)) = self.outside(flow) {
+            let speed = self.bodies.twist(body).linear.norm();
+            return Err(CouplingError::Escaped { body, axis, centre, box_, speed, time: time + dt });
+        }
         self.forcing.begin(flow.viscous_step(dt));
         timings.measure(Module::SolidFraction, || self.forcing.place(flow.velocity(), &self.bodies))?;
         S::exchange(self, flow, dt, timings)?;

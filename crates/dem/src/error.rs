@@ -326,6 +326,20 @@ pub enum DemError {
         /// How many there are.
         bodies: usize,
     },
+    /// A body is so fast that it passes the box again and again before anybody could look whom it meets.
+    #[error("body {} at {speed:.3e} m/s would come {way:.3e} m far before contacts are looked for again, {:.0} periods of the box along axis {axis}: the run diverges, or what pulls it is far too strong; check loads, densities and units, then take a smaller time step", body.0, way / period)]
+    TooFast {
+        /// The body.
+        body: BodyId,
+        /// Its speed \[m/s\].
+        speed: f64,
+        /// How far it would come \[m\].
+        way: f64,
+        /// Axis, 0 for x.
+        axis: usize,
+        /// The period \[m\].
+        period: f64,
+    },
     /// A body is lost.
     #[error("the motion of body {} is no longer finite (velocity {velocity:?} m/s); check the loads, then take a smaller time step or softer contacts", body.0)]
     Diverged {

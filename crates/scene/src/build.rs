@@ -1,94 +1,19 @@
 //! From a setup to what the libraries run.
+use crate::build_error::BuildError;
 use crate::cast::Cast;
-use crate::document::Document;
 use crate::physics::{Physics, Segregated};
-use crate::problem::Problems;
 use crate::setup::{Algorithm, Bodies, ContactLawChoice, ForcingChoice, InflowSetup, Motion, Setup};
 use crate::still::Still;
 use coupling::WithScalars;
 use dem::placing::{PlacingError, Region};
-use dem::{Chen, ContactLaw, DemError, Entrant, Inflow, Lubricated, Population, Repulsive, RigidBodies};
+use dem::{Chen, ContactLaw, Entrant, Inflow, Lubricated, Population, Repulsive, RigidBodies};
 use fv_mesh::{Axis, CartesianGrid, Diffusion, FlowError, Piso, PisoParams, Projection, Side, TimeScheme};
 use ibm::{Hfdib, IbmError, SmoothFilm, SmoothForcing, cut_walls};
 use interfaces::{BodyId, Freedom, Kinematics, Periods, Twist};
 
-/// Why a scene cannot be put together.
-#[derive(Debug, thiserror::Error)]
-pub enum BuildError {
-    /// Any of the others that a key of the file has to do with.
-    #[error(transparent)]
-    Scene(Box<Problems>),
-    /// The flow.
-    #[error(transparent)]
-    Flow(#[from] FlowError),
-    /// The bodies.
-    #[error(transparent)]
-    Bodies(#[from] DemError),
-    /// Where bodies come in.
-    #[error(transparent)]
-    Placing(#[from] PlacingError),
-    /// Bodies on the grid.
-    #[error(transparent)]
-    Immersed(#[from] IbmError),
-    /// The turbulence model.
-    #[error(transparent)]
-    Turbulence(#[from] turb::TurbulenceError),
-    /// Both together.
-    #[error(transparent)]
-    Coupling(#[from] coupling::CouplingError),
-    /// The grid is too large for this machine.
-    #[error("{cells:.2e} cells need about {:.1} GB of memory, and {:.1} GB are free; take fewer cells", needed / 1e9, free / 1e9)]
-    Memory {
-        /// Cells of the grid.
-        cells: f64,
-        /// What they need \[bytes\].
-        needed: f64,
-        /// What is there \[bytes\].
-        free: f64,
-    },
-    /// A formula without a value.
-    #[error("{what} is {value} at ({}); the formula needs a finite value all over the box", at.map(|x| format!("{x:.6}")).join(", "))]
-    Formula {
-        /// Of what.
-        what: &'static str,
-        /// The key it stands under.
-        key: &'static str,
-        /// Its value.
-        value: f64,
-        /// Where \[m\].
-        at: [f64; 3],
-    },
-}
-
-impl BuildError {
-    /// The key that has to do with it, if it is known.
-    fn key(&self, setup: &Setup) -> Option<String> {
-        let body = match self {
-            Self::Bodies(DemError::InWall { body, .. } | DemError::Period { body, .. }) => body,
-            Self::Bodies(DemError::OverlappingStart { a, b, .. }) => a.max(b),
-            Self::Immersed(
-                IbmError::TooCoarse { body, .. }
-                | IbmError::TooLarge { body, .. }
-                | IbmError::Unseen { body, .. },
-            ) => body,
-            Self::Turbulence(_) => return Some("turbulence".into()),
-            Self::Memory { .. } => return Some("grid".into()),
-            Self::Formula { key, .. } => return Some((*key).into()),
-            Self::Flow(FlowError::Boundary { .. } | FlowError::MassBalance { .. }) => {
-                return Some("sides".into());
-            }
-            _ => return None,
-        };
-        Some(setup.bodies.list.get(body.0)?.origin.clone())
-    }
-
-    /// The same with its place in the file, if a key has to do with it.
-    pub(crate) fn placed(self, setup: &Setup, document: &Document) -> Self {
-        match self.key(setup) {
-            Some(key) => Self::Scene(Box::new(document.problem(&key, self.to_string()))),
-            None => self,
-        }
-    }
+/// A number of which one digit counts.
+fn about(x: f64) -> String {
+    if x < 10.0 { format!("{x:.1}") } else { format!("{x:.0}") }
 }
 
 /// Memory that may be had \[bytes\]; `None` where the system does not tell.
@@ -169,25 +94,9 @@ impl Setup {
         Ok(())
     }
 
-    /// The body force has to have a value at both ends of the run.
-    pub(crate) fn check_force(&self) -> Result<(), BuildError> {
-        for (t, force) in self.force.iter().flat_map(|f| [0.0, self.end].map(|t| (t, f))) {
-            if let Some(value) = force.iter().map(|f| f.at(&[t])).find(|f| !f.is_finite()) {
-                return Err(BuildError::Formula {
-                    what: "the body force",
-                    key: "force",
-                    value,
-                    at: [t, 0.0, 0.0],
-                });
-            }
-        }
-        Ok(())
-    }
-
     /// The projection algorithm, without bodies or anything that acts on it.
     pub(crate) fn projection<const D: usize>(&self) -> Result<Projection<D>, BuildError> {
         self.check_memory()?;
-        self.check_force()?;
         let grid = self.grid()?;
         // Bodies want explicit diffusion.
         let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
@@ -217,7 +126,6 @@ impl Setup {
     /// PISO by Euler's scheme in time, as the paper has it.
     pub(crate) fn piso<const D: usize>(&self) -> Result<Segregated<D>, BuildError> {
         self.check_memory()?;
-        self.check_force()?;
         let grid = self.grid()?;
         let params = PisoParams { time_scheme: TimeScheme::Euler, ..PisoParams::default() };
         let mut flow = Piso::new(grid.clone(), self.all_sides(), self.fluid())?
@@ -378,7 +286,12 @@ impl Setup {
             Some(t) if any && self.walls_move() => {
                 format!("{}, beside bodies wherever they are", t.model.name())
             }
-            Some(t) => t.model.name().to_owned(),
+            Some(t) => match self.y_plus() {
+                Some(y) => {
+                    format!("{}; first cells beside walls at y+ of about {}", t.model.name(), about(y))
+                }
+                None => t.model.name().to_owned(),
+            },
             None if !fluid => "no fluid".into(),
             None => "no `turbulence`: the flow is resolved, or laminar".into(),
         };

@@ -40,9 +40,24 @@ impl Motion {
         let rate = |f: fn(&Self, f64) -> Vector| (f(self, t + dt) - f(self, t)) / dt;
         Twist { linear: rate(Self::shift), angular: rate(Self::angle) }
     }
-    /// Velocity at `t`, from differences over a part of `dt` to both sides.
+    /// Velocity at `t`, from differences over a part of `dt` to both sides, or to the one where the formulas have a value.
     pub(crate) fn velocity(&self, t: f64, dt: f64) -> Twist {
-        self.mean(t - SHARE * dt, 2.0 * SHARE * dt)
+        let h = SHARE * dt;
+        let both = self.mean(t - h, 2.0 * h);
+        let finite = |twist: &Twist| (twist.linear + twist.angular).iter().all(|v| v.is_finite());
+        if finite(&both) {
+            return both;
+        }
+        let before = self.mean(t - h, h);
+        if finite(&before) { before } else { self.mean(t, h) }
+    }
+    /// Notes whether the formulas have a value at `t`.
+    fn try_at(&self, t: f64) {
+        if let Self::Prescribed { shift, turn } = self {
+            shift.iter().flatten().chain(turn.iter().map(|(angle, _)| angle)).for_each(|f| {
+                f.needed(&[t]);
+            });
+        }
     }
 }
 
@@ -122,6 +137,7 @@ impl<L: ContactLaw> Dynamics for Cast<L> {
     /// Those who move by formulas are where these say at the end, up to round-off, and have the velocity there.
     fn advance(&mut self, dt: f64) -> Result<(), PlacingError> {
         let time = self.time;
+        self.scripts.iter().for_each(|(_, motion)| motion.try_at(time + dt));
         self.direct(|motion| motion.mean(time, dt));
         self.bodies.advance(dt)?;
         self.direct(|motion| motion.velocity(time + dt, dt));

@@ -10,13 +10,15 @@
 //!
 //! (No kept library does this: one reads −x^2 as (−x)² and no 1e-3, one is left alone since 2018, one is under a licence that binds its users.)
 use std::f64::consts::{E, PI};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A formula of some variables, ready to be evaluated.
 #[derive(Clone, Debug)]
 pub(crate) struct Expression {
     /// What to do, one after the other, on a stack.
     steps: Arc<[Step]>,
+    /// The variables that had no finite value, and what it was, if there were any.
+    fault: Arc<OnceLock<([f64; 4], f64)>>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -73,7 +75,7 @@ const DEEPEST: usize = 60;
 
 impl Expression {
     pub(crate) fn constant(value: f64) -> Self {
-        Self { steps: Arc::new([Step::Number(value)]) }
+        Self { steps: Arc::new([Step::Number(value)]), fault: Arc::default() }
     }
 
     /// Understands `text` as a formula of `variables`; the error is the rest of a sentence that begins "the formula …".
@@ -90,7 +92,7 @@ impl Expression {
                 parser.rest.chars().count()
             ));
         }
-        let formula = Self { steps: parser.steps.into() };
+        let formula = Self { steps: parser.steps.into(), fault: Arc::default() };
         if formula.fixed().is_some() {
             let value = formula.at(&[]);
             if !value.is_finite() {
@@ -136,6 +138,21 @@ impl Expression {
             }
         }
         stack[0]
+    }
+
+    /// Its value as a run needs it: whether it is finite is remembered.
+    pub(crate) fn needed(&self, variables: &[f64]) -> f64 {
+        let value = self.at(variables);
+        if !value.is_finite() {
+            let given = std::array::from_fn(|i| variables.get(i).copied().unwrap_or(0.0));
+            let _ = self.fault.set((given, value));
+        }
+        value
+    }
+
+    /// The first variables and value of [`needed`](Self::needed) that were not finite.
+    pub(crate) fn fault(&self) -> Option<([f64; 4], f64)> {
+        self.fault.get().copied()
     }
 
     /// Its value if it is the same everywhere.

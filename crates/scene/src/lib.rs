@@ -31,6 +31,7 @@
 #![deny(missing_docs)]
 
 mod build;
+mod build_error;
 mod cast;
 mod document;
 mod dry;
@@ -45,6 +46,7 @@ mod reader;
 mod report;
 mod result;
 mod run;
+mod sanity;
 mod schema;
 mod setup;
 mod steady;
@@ -52,7 +54,7 @@ mod still;
 mod view;
 mod watch;
 
-pub use build::BuildError;
+pub use build_error::BuildError;
 pub use options::Options;
 pub use plan::Plan;
 pub use problem::Problems;
@@ -61,9 +63,7 @@ pub use result::{Compared, Ending, RunResult};
 pub use run::RunError;
 pub use schema::{json_schema, manual};
 
-use coupling::CouplingError;
 use document::Document;
-use ibm::IbmError;
 use setup::Setup;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -121,7 +121,12 @@ impl Scene {
     /// # Errors
     /// [`BuildError`] if it cannot be put together.
     pub fn plan(&self) -> Result<Plan, BuildError> {
-        self.setup.plan().map_err(|error| error.placed(&self.setup, &self.document))
+        self.setup.try_formulas();
+        let plan = self.setup.plan();
+        match self.unset_formula() {
+            Some(problems) => Err(BuildError::Scene(Box::new(problems))),
+            None => plan.map_err(|error| error.placed(&self.setup, &self.document)),
+        }
     }
 
     /// Runs it until its end, or until `stop` is set.
@@ -129,13 +134,27 @@ impl Scene {
     /// # Errors
     /// [`RunError`]; states saved before it are whole.
     pub fn run(&self, options: &Options, stop: &AtomicBool) -> Result<RunResult, RunError> {
-        self.setup.run(options, self.fingerprint, stop).map_err(|error| match error {
-            RunError::Build(error) => error.placed(&self.setup, &self.document).into(),
-            RunError::Coupling(CouplingError::Immersed(error @ IbmError::TooCoarse { .. })) => {
-                BuildError::from(error).placed(&self.setup, &self.document).into()
+        let plan = self.plan()?;
+        self.setup.run(options, self.fingerprint, &plan.warnings, stop).map_err(|error| {
+            if let Some(problems) = self.unset_formula() {
+                return BuildError::Scene(Box::new(problems)).into();
             }
-            RunError::Coupling(error @ CouplingError::Collapsed { .. }) => RunError::Collapsed(error),
-            error => error,
+            let placed = |error: BuildError| error.placed(&self.setup, &self.document);
+            match error {
+                RunError::Build(error) => placed(error).into(),
+                // What no key has to do with stays as it is.
+                RunError::Coupling(error) => match placed(error.into()) {
+                    BuildError::Coupling(error) => error.into(),
+                    told => told.into(),
+                },
+                error => error,
+            }
         })
+    }
+
+    /// The first formula that was needed where it has no finite value, with its place.
+    fn unset_formula(&self) -> Option<Problems> {
+        let problem = self.setup.formulas.iter().find_map(reader::Formula::problem)?;
+        Some(self.document.problems(vec![problem]))
     }
 }

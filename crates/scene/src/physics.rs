@@ -1,5 +1,5 @@
 //! The flow of a scene and what acts on it.
-use crate::build::BuildError;
+use crate::build_error::BuildError;
 use crate::expression::Expression;
 use crate::setup::{ForcingChoice, ModelChoice, ScalarSetup, ScaleChoice, Setup};
 use coupling::{Drive, Walled, WithScalars};
@@ -8,7 +8,9 @@ use fv_mesh::{
     Piso, Projection, Scalar, ScalarTransport, Settling, Sides, TransportParams, Velocity,
 };
 use ibm::{Given, IbmError, ImmersedScalar, StaticBodies, SurfaceFlux, WallDistance};
-use interfaces::{Bodies, BodyId, Checkpoint, Closure, Kinematics, Lattice, RestartError, SolveError};
+use interfaces::{
+    Bodies, BodyId, Checkpoint, Closure, CutCells, Kinematics, Lattice, RestartError, SolveError,
+};
 use turb::{
     Inflow, KEpsilon, KOmega, KOmegaSst, Law, Realizable, RealizableKEpsilon, Smagorinsky,
     SmagorinskyConstants, Sst, StandardKEpsilon, TwoEquation, Wale, WaleConstants, Wilcox, YPlus,
@@ -102,6 +104,24 @@ impl<const D: usize> Scalars<D> {
     fn any_flux(&self) -> bool {
         self.list.iter().any(|one| one.setup.flux.is_some())
     }
+    /// Lets walls of cut cells, where each has the value that it has on bodies at `time`, give off what the law of the wall says, instead of holding cells.
+    pub(crate) fn stand_beside(&mut self, cuts: &CutCells, time: f64) -> Result<(), FlowError> {
+        for one in &mut self.list {
+            let value = one.setup.bodies.as_ref().map_or(0.0, |formula| formula.needed(&[time]));
+            one.scalar.set_walls(Some((cuts, value)))?;
+            one.held = None;
+        }
+        Ok(())
+    }
+    /// What those walls give off of each, by name \[its unit m³/s; plane scenes m²/s\].
+    pub(crate) fn given_off(&self) -> Vec<(String, f64)> {
+        let of = |one: &Carried<D>| Some((one.setup.name.clone(), one.scalar.given_off()?));
+        self.list.iter().filter_map(of).collect()
+    }
+    /// Tells those walls of the model's k.
+    pub(crate) fn rub(&mut self, k: &[f64], viscosity: f64) {
+        self.list.iter_mut().for_each(|one| one.scalar.rub(k, viscosity));
+    }
     /// Brings them to their steady state in a steady flow.
     pub(crate) fn settle(&mut self, velocity: &Velocity<D>, time: f64) -> Result<(), FlowError> {
         self.steadily(time, |scalar, cells, hold| {
@@ -127,7 +147,7 @@ impl<const D: usize> Scalars<D> {
         for Carried { scalar, setup, held, .. } in list {
             let all = || (0..bodies.n_bodies()).map(BodyId);
             let cells: Vec<usize> = held.iter().flat_map(|held| all().flat_map(|b| held.held(b))).collect();
-            let value = setup.bodies.as_ref().map_or(0.0, |formula| formula.at(&[time]));
+            let value = setup.bodies.as_ref().map_or(0.0, |formula| formula.needed(&[time]));
             act(scalar, &cells, &mut |field| {
                 for (held, b) in held.iter().flat_map(|held| all().map(move |b| (held, b))) {
                     held.apply(b, field, |_, _| value, |_| value);
@@ -149,7 +169,7 @@ impl<const D: usize> ScalarTransport<D> for Scalars<D> {
                     Some(own) => source.copy_from_slice(own.data()),
                     None => source.fill(0.0),
                 }
-                surfaces.add(flux.at(&[time]), source);
+                surfaces.add(flux.needed(&[time]), source);
             }
             one.scalar.advance(velocity, time, dt)?;
             if !*moving {
@@ -196,7 +216,7 @@ impl<const D: usize> Carried<D> {
     }
     fn hold(&mut self, bodies: &dyn Bodies, time: f64) {
         if let (Some(held), Some(formula)) = (&self.held, &self.setup.bodies) {
-            let value = formula.at(&[time]);
+            let value = formula.needed(&[time]);
             self.scalar.impose(|field| {
                 for b in (0..bodies.n_bodies()).map(BodyId) {
                     held.apply(b, field, |_, _| value, |_| value);

@@ -1,9 +1,9 @@
 //! What a scene would do.
-use crate::build::BuildError;
+use crate::build_error::BuildError;
 use crate::setup::{Algorithm, ForcingChoice, Setup};
 use crate::steady::Steady;
 use coupling::{Evolving, Grains};
-use fv_mesh::{Axis, Side};
+use fv_mesh::Axis;
 use std::fmt;
 
 /// What running a scene would mean: told before it is run.
@@ -40,8 +40,6 @@ const COST_OF_MODEL: [f64; 2] = [2.2e-7, 2.9e-7];
 const COST_OF_BODY: [f64; 2] = [8e-6, 2e-4];
 /// More steps than this are hardly meant.
 const MANY_STEPS: f64 = 1e8;
-/// Cells so much longer than wide are hardly meant.
-const THIN: f64 = 1000.0;
 /// CPU seconds per cell and iteration of the steady algorithm.
 const COST_OF_ITERATION: f64 = 4e-7;
 
@@ -87,7 +85,7 @@ impl Setup {
             Some(dt) => (self.end / dt).ceil(),
             None => self.flow.iterations as f64,
         };
-        let h = self.axes.iter().map(Axis::narrowest).fold(f64::INFINITY, f64::min);
+        let h = self.narrowest();
         let markers: f64 = if moved { self.bodies.list.iter().map(|b| surface(b, h, D)).sum() } else { 0.0 };
         let model = self.turbulence.as_ref().map_or(0.0, |t| COST_OF_MODEL[usize::from(t.model.averages())]);
         let cpu = steps
@@ -105,7 +103,9 @@ impl Setup {
         let mut warnings = self.warnings();
         if steps > MANY_STEPS {
             warnings.push(format!(
-                "{steps:.0e} steps to time.end: is everything in metres and seconds, and no cell far narrower than the others?"
+                "{} steps to time.end, {} on one core: is everything in metres and seconds, and no cell far narrower than the others?",
+                count(steps),
+                duration(cpu)
             ));
         }
         Ok(Plan {
@@ -120,122 +120,6 @@ impl Setup {
             pressure,
             warnings,
         })
-    }
-
-    /// A speed \[m/s\] that the scene is likely to see: of inlets and walls, of bodies, of what falls or is driven.
-    pub(crate) fn speed(&self) -> f64 {
-        let centre = self.axes.iter().map(|axis| 0.5 * (axis.lower() + axis.upper()));
-        let mut middle = [0.0; 4];
-        centre.enumerate().for_each(|(a, x)| middle[a] = x);
-        let norm = |u: [f64; 3]| u.iter().map(|u| u * u).sum::<f64>().sqrt();
-        let of_side = |side: &Side| match side {
-            Side::Wall(u) => norm(*u),
-            Side::Inlet(fv_mesh::Profile::Uniform(u)) => norm(*u),
-            Side::Inlet(fv_mesh::Profile::Parabolic { peak }) => peak.abs(),
-            Side::Inlet(fv_mesh::Profile::Function(u)) => norm(u([middle[0], middle[1], middle[2]], 0.0)),
-            _ => 0.0,
-        };
-        let sides = self.sides.iter().flatten().map(of_side).fold(0.0, f64::max);
-        let initial = self.initial.as_ref().map_or(0.0, |u| norm(u.each_ref().map(|u| u.at(&middle[..3]))));
-        let bodies = self.bodies.list.iter().map(|b| {
-            let radius = b.shape.bounding_radius();
-            let ratio = (b.material.density / self.fluid().density - 1.0).abs();
-            let fall = if self.bodies.any_free() {
-                (2.0 * radius * ratio * self.gravity.norm()).sqrt()
-            } else {
-                0.0
-            };
-            fall.max(b.twist.linear.norm() + b.twist.angular.norm() * radius)
-        });
-        sides.max(initial).max(bodies.fold(0.0, f64::max))
-    }
-
-    /// What looks doubtful.
-    pub(crate) fn warnings(&self) -> Vec<String> {
-        let mut out = Vec::new();
-        let Some(fluid) = self.fluid else { return out };
-        let h = self.axes.iter().map(Axis::narrowest).fold(f64::INFINITY, f64::min);
-        let widths = self.axes.iter().map(|axis| axis.length() / axis.cells() as f64);
-        let thin = widths.clone().fold(0.0, f64::max) / widths.fold(f64::INFINITY, f64::min);
-        if thin > THIN {
-            out.push(format!(
-                "cells are {thin:.0} times longer than wide: is the box in metres along all axes?"
-            ));
-        }
-        let starts = [("forces", self.forces.map(|f| f.start)), ("averages", self.averages.map(|a| a.start))];
-        for (key, start) in starts {
-            if let Some(start) = start.filter(|start| *start >= self.end) {
-                let end = self.end;
-                out.push(format!(
-                    "{key}.start = {start} s is not before the end at {end} s: there will be no means"
-                ));
-            }
-        }
-        let list = &self.bodies.list;
-        let extent = |b: &crate::setup::BodySetup| {
-            let size = b.shape.aabb().posed(&b.pose).extent();
-            (0..self.dim()).map(|a| size[a]).fold(f64::INFINITY, f64::min)
-        };
-        if let Some(least) = list.iter().map(extent).min_by(f64::total_cmp) {
-            let cells = least / h;
-            if cells < 8.0 {
-                out.push(format!("the smallest body is {cells:.1} cells across; below 8 its drag is off by 5 % and more: take more cells"));
-            }
-        }
-        // Bodies that reach beyond the box are its walls.
-        let within = |b: &&crate::setup::BodySetup| {
-            let bounds = b.shape.aabb().posed(&b.pose);
-            self.axes
-                .iter()
-                .enumerate()
-                .all(|(a, axis)| bounds.min[a] >= axis.lower() && bounds.max[a] <= axis.upper())
-        };
-        for (a, axis) in self.axes.iter().enumerate() {
-            let name = ["x", "y", "z"][a];
-            let widest = list
-                .iter()
-                .filter(within)
-                .map(|b| b.shape.aabb().posed(&b.pose).extent()[a])
-                .fold(0.0, f64::max);
-            if widest > 0.5 * axis.length() && !self.bodies.any_moves() {
-                out.push(format!(
-                    "bodies block {:.0} % of the box along {name}",
-                    100.0 * widest / axis.length()
-                ));
-            }
-            if axis.largest_ratio() > 1.3 {
-                out.push(format!(
-                    "cells along {name} grow by a factor of {:.2} from one to the next; above 1.2 errors grow with it",
-                    axis.largest_ratio()
-                ));
-            }
-        }
-        let speed = self.speed();
-        if fluid.viscosity > 0.0 && speed > 0.0 {
-            let cell = speed * h / fluid.viscosity;
-            if cell > 50.0 && self.flow.convection == fv_mesh::Convection::Central {
-                out.push(format!(
-                    "the Reynolds number of a cell is {cell:.0}: central convection may oscillate; take more cells, or convection = \"quick\" or \"limited\""
-                ));
-            }
-        }
-        if let Some(dt) = self.dt
-            && speed > 0.0
-        {
-            let rate: f64 = self.axes.iter().map(|axis| speed / axis.narrowest()).sum();
-            if rate * dt > 0.5 && self.flow.algorithm == Algorithm::Projection {
-                out.push(format!(
-                    "time.dt gives a Courant number of about {:.2}; above 0.5 runs may diverge",
-                    rate * dt
-                ));
-            }
-        }
-        let fluid_inside = list.iter().filter(within).map(|b| b.shape.inertia(1.0).volume).sum::<f64>();
-        let volume: f64 = self.axes.iter().map(Axis::length).product();
-        if fluid_inside > 0.6 * volume {
-            out.push(format!("bodies fill {:.0} % of the box", 100.0 * fluid_inside / volume));
-        }
-        out
     }
 }
 
@@ -255,7 +139,7 @@ impl fmt::Display for Plan {
         writeln!(f, "  bodies    {}", self.bodies)?;
         writeln!(f, "  memory    about {}", bytes(self.memory))?;
         match self.dt {
-            Some(dt) => writeln!(f, "  step      {dt:.3e} s, about {:.0} of them", self.steps)?,
+            Some(dt) => writeln!(f, "  step      {dt:.3e} s, about {} of them", count(self.steps))?,
             None => writeln!(f, "  steady    up to {:.0} iterations", self.steps)?,
         }
         writeln!(f, "  cost      about {} on one core", duration(self.cpu))?;
@@ -274,7 +158,18 @@ fn bytes(n: f64) -> String {
     if n < 1e9 { format!("{:.0} MB", (n / 1e6).max(1.0)) } else { format!("{:.1} GB", n / 1e9) }
 }
 
+/// A number that people can read.
+fn count(n: f64) -> String {
+    if n < 1e9 { format!("{n:.0}") } else { format!("{n:.1e}") }
+}
+
+/// Seconds of a year.
+const YEAR: f64 = 365.25 * 86400.0;
+
 fn duration(seconds: f64) -> String {
+    if seconds > YEAR {
+        return format!("{} years", count(seconds / YEAR));
+    }
     let duration = std::time::Duration::try_from_secs_f64(seconds).unwrap_or(std::time::Duration::MAX);
     example_support::cpu::readable(duration)
 }

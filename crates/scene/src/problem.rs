@@ -67,6 +67,11 @@ impl fmt::Display for Problems {
                 writeln!(f)?;
             }
             match &problem.place {
+                // What is not there has no line.
+                Place::File(range) if range.is_empty() && range.start == 0 && !problem.path.is_empty() => {
+                    write!(f, "{}: ", self.name)?;
+                    write_message(f, problem)?;
+                }
                 Place::File(range) => {
                     let (line, column, text) = self.line(range.start);
                     write!(f, "{}:{line}:{column}: ", self.name)?;

@@ -4,6 +4,34 @@ use crate::expression::Expression;
 use crate::problem::{Problem, shown};
 use crate::schema::number;
 use interfaces::{Point, Vector};
+use std::cell::RefCell;
+
+/// A formula of the file.
+#[derive(Clone, Debug)]
+pub(crate) struct Formula {
+    pub(crate) path: String,
+    pub(crate) place: Place,
+    pub(crate) text: String,
+    pub(crate) variables: Vec<String>,
+    pub(crate) expression: Expression,
+}
+
+impl Formula {
+    /// Where it had no finite value, if there was such a place or time.
+    pub(crate) fn problem(&self) -> Option<Problem> {
+        let (given, value) = self.expression.fault()?;
+        let at = self.variables.iter().zip(given).map(|(name, x)| format!("{name} = {x:.6}"));
+        let message = format!(
+            "the formula {} is {value} at {}; give one that is finite all over the box and until the end",
+            shown(&self.text),
+            at.collect::<Vec<_>>().join(", ")
+        );
+        Some(Problem::new(self.path.clone(), self.place.clone(), message))
+    }
+}
+
+/// All formulas that were read.
+pub(crate) type Formulas = RefCell<Vec<Formula>>;
 
 /// A table, to be read key by key. What the schema has checked is taken as it is; a value of another kind counts as absent.
 #[derive(Clone, Debug)]
@@ -11,11 +39,17 @@ pub(crate) struct Reader<'a> {
     section: &'a Section,
     place: Place,
     path: String,
+    formulas: &'a Formulas,
 }
 
 impl<'a> Reader<'a> {
-    pub(crate) fn new(section: &'a Section, place: Place, path: impl Into<String>) -> Self {
-        Self { section, place, path: path.into() }
+    pub(crate) fn new(
+        section: &'a Section,
+        place: Place,
+        path: impl Into<String>,
+        formulas: &'a Formulas,
+    ) -> Self {
+        Self { section, place, path: path.into(), formulas }
     }
 
     /// What is wrong with `key`, or with the table if it is not there.
@@ -127,21 +161,29 @@ impl<'a> Reader<'a> {
                         format!("the formula {} {e}", shown(text)),
                     )
                 };
-                Expression::new(text, variables).map_err(told)
+                let expression = Expression::new(text, variables).map_err(told)?;
+                self.formulas.borrow_mut().push(Formula {
+                    path: self.path_of(key),
+                    place: item.place.clone(),
+                    text: text.clone(),
+                    variables: variables.iter().map(|v| (*v).to_owned()).collect(),
+                    expression: expression.clone(),
+                });
+                Ok(expression)
             }
             value => Ok(Expression::constant(number(value).unwrap_or(0.0))),
         }
     }
 
     pub(crate) fn table(&self, key: &str) -> Option<Reader<'a>> {
-        self.section.get(key).and_then(|item| reader(item, self.path_of(key)))
+        self.section.get(key).and_then(|item| self.inner(item, self.path_of(key)))
     }
     pub(crate) fn tables(&self, key: &str) -> Vec<Reader<'a>> {
         let items = self.list(key).unwrap_or_default();
         items
             .iter()
             .enumerate()
-            .filter_map(|(i, item)| reader(item, format!("{}.{i}", self.path_of(key))))
+            .filter_map(|(i, item)| self.inner(item, format!("{}.{i}", self.path_of(key))))
             .collect()
     }
     /// The tables under names in `key`.
@@ -149,21 +191,38 @@ impl<'a> Reader<'a> {
         let Some(Value::Table(section)) = self.value(key) else { return Vec::new() };
         let path = self.path_of(key);
         let entry = |(name, _, item): &'a (String, Place, Item)| {
-            Some((name.as_str(), reader(item, format!("{path}.{name}"))?))
+            Some((name.as_str(), self.inner(item, format!("{path}.{name}"))?))
         };
         section.0.iter().filter_map(entry).collect()
     }
     /// The word that `tag` is in the table `key`, and that table; the word may stand there alone.
     pub(crate) fn choice(&self, key: &str, tag: &str) -> Option<(&'a str, Reader<'a>)> {
-        self.section.get(key).and_then(|item| choice(item, tag, self.path_of(key)))
+        self.section.get(key).and_then(|item| self.chosen(item, tag, self.path_of(key)))
     }
     pub(crate) fn choices(&self, key: &str, tag: &str) -> Vec<(&'a str, Reader<'a>)> {
         let items = self.list(key).unwrap_or_default();
         items
             .iter()
             .enumerate()
-            .filter_map(|(i, item)| choice(item, tag, format!("{}.{i}", self.path_of(key))))
+            .filter_map(|(i, item)| self.chosen(item, tag, format!("{}.{i}", self.path_of(key))))
             .collect()
+    }
+    fn inner(&self, item: &'a Item, path: String) -> Option<Self> {
+        match &item.value {
+            Value::Table(section) => Some(Self::new(section, item.place.clone(), path, self.formulas)),
+            _ => None,
+        }
+    }
+    fn chosen(&self, item: &'a Item, tag: &str, path: String) -> Option<(&'a str, Self)> {
+        let table = |section| Self::new(section, item.place.clone(), path, self.formulas);
+        match &item.value {
+            Value::Text(word) => Some((word, table(&EMPTY))),
+            Value::Table(section) => match &section.get(tag)?.value {
+                Value::Text(word) => Some((word, table(section))),
+                _ => None,
+            },
+            _ => None,
+        }
     }
 }
 
@@ -171,22 +230,4 @@ static EMPTY: Section = Section(Vec::new());
 
 fn numbers(items: &[Item]) -> Vec<f64> {
     items.iter().filter_map(|item| number(&item.value)).collect()
-}
-
-fn reader(item: &Item, path: String) -> Option<Reader<'_>> {
-    match &item.value {
-        Value::Table(section) => Some(Reader::new(section, item.place.clone(), path)),
-        _ => None,
-    }
-}
-
-fn choice<'a>(item: &'a Item, tag: &str, path: String) -> Option<(&'a str, Reader<'a>)> {
-    match &item.value {
-        Value::Text(word) => Some((word, Reader::new(&EMPTY, item.place.clone(), path))),
-        Value::Table(section) => match &section.get(tag)?.value {
-            Value::Text(word) => Some((word, Reader::new(section, item.place.clone(), path))),
-            _ => None,
-        },
-        _ => None,
-    }
 }

@@ -106,6 +106,18 @@ impl RunResult {
             }
             out.push('\n');
         }
+        if let Some(y) = r.get("y_plus") {
+            let of = |key: &str| shown(&y[key], |x| format!("{x:.1}"));
+            out += &format!(
+                "  y+ of first cells {} to {}, {} on average\n",
+                of("least"),
+                of("most"),
+                of("mean")
+            );
+            for warning in y["warnings"].as_array().into_iter().flatten().filter_map(Value::as_str) {
+                out += &format!("  warning: {warning}\n");
+            }
+        }
         if let Some(l) = r.get("ledger") {
             let of = |key: &str| shown(&l[key], |x| format!("{x:.2e}"));
             out += &format!(

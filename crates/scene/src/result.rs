@@ -77,7 +77,11 @@ impl RunResult {
             "scene": setup.name,
             "title": setup.title,
             "complete": ending == Ending::Done,
-            "version": env!("CARGO_PKG_VERSION"),
+            "versions": {
+                "siltflow": env!("CARGO_PKG_VERSION"),
+                "rustc": env!("SCENE_RUSTC"),
+                "target": env!("SCENE_TARGET"),
+            },
             "dimension": dim,
             "cells": (0..dim).map(|a| view.axis(a).cells()).collect::<Vec<_>>(),
             "time": view.time(),

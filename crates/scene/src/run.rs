@@ -1,5 +1,5 @@
 //! Runs a scene.
-use crate::build::BuildError;
+use crate::build_error::BuildError;
 use crate::cast::Cast;
 use crate::log::Log;
 use crate::look::{Books, Extremes, Kept, Look, Show, Whole};
@@ -35,9 +35,6 @@ pub enum RunError {
     /// A step or a file could not be made.
     #[error(transparent)]
     Coupling(#[from] CouplingError),
-    /// Time stood still.
-    #[error("{0}; here that is `coupling.virtual_mass`")]
-    Collapsed(CouplingError),
     /// The saved state.
     #[error("{0}; without an interrupted run of this scene in the folder, leave out --resume")]
     Resume(CheckpointError),
@@ -55,25 +52,21 @@ impl Setup {
         &self,
         options: &Options,
         fingerprint: u64,
+        warnings: &[String],
         stop: &AtomicBool,
     ) -> Result<RunResult, RunError> {
+        let stage = Stage { setup: self, options, fingerprint, warnings, stop };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
         pool.install(|| match self.dim() {
-            2 => self.run_in::<2>(options, fingerprint, stop),
-            _ => self.run_in::<3>(options, fingerprint, stop),
+            2 => self.run_in::<2>(&stage),
+            _ => self.run_in::<3>(&stage),
         })
     }
 
     /// The one choice of types, before the time loop.
-    fn run_in<const D: usize>(
-        &self,
-        options: &Options,
-        fingerprint: u64,
-        stop: &AtomicBool,
-    ) -> Result<RunResult, RunError> {
-        let stage = Stage { setup: self, options, fingerprint, stop };
+    fn run_in<const D: usize>(&self, stage: &Stage<'_>) -> Result<RunResult, RunError> {
         if self.fluid.is_none() {
-            return self.grains(&stage);
+            return self.grains(stage);
         }
         let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
         match self.flow.algorithm {
@@ -92,8 +85,8 @@ impl Setup {
             return stage.march(self.simulation(flow, still)?, ());
         }
         match self.bodies.forcing() {
-            ForcingChoice::Hfdib => self.bodies_by::<D, _>(&stage, self.hfdib()),
-            _ => self.bodies_by::<D, _>(&stage, self.smooth()),
+            ForcingChoice::Hfdib => self.bodies_by::<D, _>(stage, self.hfdib()),
+            _ => self.bodies_by::<D, _>(stage, self.smooth()),
         }
     }
 
@@ -166,7 +159,7 @@ impl Setup {
     ) -> Result<Simulation<D, P, A>, CouplingError> {
         let simulation = Simulation::new(flow, particles, self.balance)?;
         Ok(match self.force.clone() {
-            Some(force) => simulation.with_force(move |t| force.each_ref().map(|f| f.at(&[t])).into()),
+            Some(force) => simulation.with_force(move |t| force.each_ref().map(|f| f.needed(&[t])).into()),
             None => simulation,
         })
     }
@@ -177,6 +170,7 @@ pub(crate) struct Stage<'a> {
     pub(crate) setup: &'a Setup,
     pub(crate) options: &'a Options,
     fingerprint: u64,
+    warnings: &'a [String],
     pub(crate) stop: &'a AtomicBool,
 }
 
@@ -249,6 +243,18 @@ impl Stage<'_> {
         Ok(())
     }
 
+    /// Tells what looks doubtful.
+    pub(crate) fn warn(&self, log: &mut Log) -> Result<(), CouplingError> {
+        for warning in self.warnings {
+            log.line(&format!("warning: {warning}"))?;
+            if !self.options.quiet {
+                // Nobody may be reading.
+                let _ = writeln!(std::io::stderr(), "warning: {warning}");
+            }
+        }
+        Ok(())
+    }
+
     /// Steps to the end of the run, or until it is stopped.
     fn march<S: Show, K: Books<S>>(&self, mut simulation: S, mut books: K) -> Result<RunResult, RunError> {
         let watch = Stopwatch::start();
@@ -256,6 +262,8 @@ impl Stage<'_> {
         self.make_folder()?;
         let state = self.folder().join(STATE);
         let mut extremes = Extremes::default();
+        // Of the flow at rest: a run that goes on has the same.
+        let first = setup.first_step() / simulation.stable_dt(setup.courant);
         let mut resume = None;
         if self.options.resume {
             // First the simulation and its time; then what the observers have kept, in files that go on from that time.
@@ -278,7 +286,11 @@ impl Stage<'_> {
             intervals: setup.output.snapshots.max(1),
             dt: setup.dt,
             courant: setup.courant,
-            ramp: if setup.ramp { Schedule::default().ramp } else { [1.0, 2.0] },
+            ramp: match Schedule::default().ramp {
+                [share, growth] if setup.ramp => [share.min(first), growth],
+                [_, growth] if setup.dt.is_none() && first < 1.0 => [first, growth],
+                _ => [1.0, 2.0],
+            },
         };
         schedule.check()?;
         let mut log = Log::open(self.folder(), self.options.resume)?;
@@ -292,13 +304,7 @@ impl Stage<'_> {
             setup.cells(),
             setup.bodies.list.len(),
         ))?;
-        for warning in setup.warnings() {
-            log.line(&format!("warning: {warning}"))?;
-            if !self.options.quiet {
-                // Nobody may be reading.
-                let _ = writeln!(std::io::stderr(), "warning: {warning}");
-            }
-        }
+        self.warn(&mut log)?;
         let mut look = Look {
             setup,
             audience,

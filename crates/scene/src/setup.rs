@@ -21,7 +21,7 @@ pub(crate) use physics::{ModelChoice, ScalarSetup, ScaleChoice, TurbulenceSetup}
 use crate::document::{Document, Place};
 use crate::expression::Expression;
 use crate::problem::{Problem, Problems};
-use crate::reader::Reader;
+use crate::reader::{Formula, Formulas, Reader};
 use crate::schema;
 use coupling::WeightBalance;
 use fv_mesh::{Axis, Fluid, Side, Sides};
@@ -61,6 +61,8 @@ pub(crate) struct Setup {
     /// Seconds of the wall clock between saved states.
     pub(crate) save_every: f64,
     pub(crate) save_at_end: bool,
+    /// All formulas of the file, to be asked whether they had a finite value wherever they were needed.
+    pub(crate) formulas: Vec<Formula>,
 }
 
 /// Where the scene is being read.
@@ -80,10 +82,12 @@ impl Setup {
     /// Reads a document that has not been checked yet; `path` is its file's.
     pub(crate) fn new(document: &Document, path: &Path) -> Result<Self, Problems> {
         schema::check(document)?;
-        let root = Reader::new(&document.root, Place::File(0..0), "");
+        let formulas = Formulas::default();
+        let root = Reader::new(&document.root, Place::File(0..0), "", &formulas);
         let folder = path.parent().unwrap_or(Path::new(""));
         let name = path.file_stem().map_or("scene".into(), |stem| stem.to_string_lossy().into_owned());
-        Self::read(&root, folder, name).map_err(|problem| document.problems(vec![problem]))
+        let setup = Self::read(&root, folder, name).map_err(|problem| document.problems(vec![problem]))?;
+        Ok(Self { formulas: formulas.take(), ..setup })
     }
 
     fn read(root: &Reader<'_>, folder: &Path, name: String) -> Result<Self, Problem> {
@@ -101,7 +105,9 @@ impl Setup {
             None => None,
         };
         let empty = crate::document::Section::default();
-        let table = |key: &str| root.table(key).unwrap_or(Reader::new(&empty, Place::File(0..0), key));
+        let unread = Formulas::default();
+        let table =
+            |key: &str| root.table(key).unwrap_or(Reader::new(&empty, Place::File(0..0), key, &unread));
         let (time, checkpoint) = (table("time"), table("checkpoint"));
         let output = table("output");
         let Span { end, snapshots } = Span::read(&time, &output)?;
@@ -136,6 +142,7 @@ impl Setup {
             turbulence: physics::turbulence(root, dim)?,
             scalars: physics::scalars(root, &context, &sides)?,
             models: Vec::new(),
+            formulas: Vec::new(),
             axes,
             sides,
             flow,

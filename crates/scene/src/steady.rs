@@ -1,5 +1,5 @@
 //! Steady flow.
-use crate::build::BuildError;
+use crate::build_error::BuildError;
 use crate::log::Log;
 use crate::look::Extremes;
 use crate::physics::{Lift, Model, Scalars};
@@ -11,7 +11,7 @@ use crate::view::{Seen, View};
 use coupling::StepInfo;
 use example_support::cpu::Stopwatch;
 use example_support::progress::Progress;
-use fv_mesh::{FlowError, ScalarTransport, Simple, SimpleInfo, SimpleParams, TransportParams};
+use fv_mesh::{FlowError, ScalarTransport, Simple, SimpleInfo, SimpleParams, TransportParams, WallStress};
 use ibm::cut_cells;
 use interfaces::{Kinematics, Wrench};
 use std::sync::atomic::Ordering;
@@ -54,6 +54,9 @@ impl<const D: usize> Steady<D> {
         {
             self.scalars.mix(eddy, viscosity);
         }
+        if let Some(k) = self.model.as_ref().and_then(|model| model.closure.kinetic_energy()) {
+            self.scalars.rub(k, viscosity);
+        }
         Ok(())
     }
     /// Brings the scalars to their steady state.
@@ -72,18 +75,21 @@ impl Setup {
     /// The steady algorithm with bodies at rest as walls.
     pub(crate) fn steady<const D: usize>(&self) -> Result<Steady<D>, BuildError> {
         self.check_memory()?;
-        self.check_force()?;
         let grid = self.grid()?;
         let params =
             if self.turbulence.is_some() { SimpleParams::turbulent() } else { SimpleParams::default() };
         let mut flow = Simple::new(grid.clone(), self.all_sides(), self.fluid())?
             .with_convection(self.flow.convection)
             .with_params(params)?;
+        let mut scalars = self.scalars(flow.grid(), flow.sides())?;
         let bodies = self.still();
         if bodies.n_bodies() > 0 {
             let cuts = cut_cells(flow.velocity(), &bodies)?;
             let walls = self.turbulence.as_ref().map(|t| t.walls).unwrap_or_default();
             flow.set_walls(Some((&cuts, walls)))?;
+            if matches!(walls, WallStress::Law { .. }) {
+                scalars.stand_beside(&cuts, self.end)?;
+            }
         }
         if let Some(u) = self.initial(&grid)? {
             flow.set_velocity(u);
@@ -95,7 +101,6 @@ impl Setup {
         if let Some(model) = &mut model {
             self.stand_beside(model, flow.sides())?;
         }
-        let scalars = self.scalars(flow.grid(), flow.sides())?;
         Ok(Steady { flow, model, scalars, lift: self.lift(), loads: Vec::new(), time: self.end })
     }
 }
@@ -114,6 +119,7 @@ impl Stage<'_> {
             setup.cells(),
             setup.flow.tolerance
         ))?;
+        self.warn(&mut log)?;
         // Progress is the way of the residual's logarithm.
         let target = -setup.flow.tolerance.log10();
         let mut progress = (!self.options.quiet).then(|| Progress::new(0.0, target));
@@ -153,6 +159,7 @@ impl Stage<'_> {
             flow.settle().map_err(BuildError::from)?;
         }
         let still = Still(setup.still());
+        let given_off = flow.scalars.given_off();
         let mut seen = Seen { flow: &mut flow, guests: &still, timings: coupling::Timings::default() };
         // One "step" of a second, whose impulses are the loads.
         let info = StepInfo { step: seen.steps(), time: setup.end, dt: 1.0, courant: 0.0, snapshot: None };
@@ -163,6 +170,9 @@ impl Stage<'_> {
         let seconds = [audience.seconds, 0.0];
         let mut result = RunResult::new(setup, &mut seen, &extremes, None, &audience, ending, self.folder());
         result.set("residual", residual.into());
+        if !given_off.is_empty() {
+            result.set("given_off", given_off.into_iter().collect());
+        }
         Ok(result.with_timings(watch.elapsed(), self.options.threads, seconds, &seen).write()?)
     }
 }

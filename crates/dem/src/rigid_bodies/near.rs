@@ -27,11 +27,12 @@ impl Listed {
         Self { centre: Point::origin(), orientation: Rotation::identity(), margin: -1.0 }
     }
 
-    /// Of a body that is foreseen to move for `dt`.
-    fn new(body: &Body, constants: &Constants, pull: &Pull<'_>, dt: f64) -> Self {
+    /// Of a body that is foreseen to move for `dt`, the next `step` of it in any case and the rest if that is no farther than `room`.
+    fn new(body: &Body, constants: &Constants, pull: &Pull<'_>, [step, dt]: [f64; 2], room: f64) -> Self {
         let at_rest = !constants.movable() && body.twist == Default::default();
         let skin = if at_rest { 0.0 } else { SKIN * constants.size };
-        let margin = skin + path(body, constants, pull, dt);
+        let way = |dt: f64| path(body, constants, pull, dt);
+        let margin = skin + way(dt).min(way(step).max(room));
         Self { centre: body.pose.position, orientation: body.pose.orientation, margin }
     }
 
@@ -109,14 +110,14 @@ impl<L: ContactLaw> RigidBodies<L> {
     }
 
     /// Where body `b` may be within `dt`.
-    fn listing(&self, b: usize, dt: f64) -> Listed {
+    fn listing(&self, b: usize, times: [f64; 2], room: f64) -> Listed {
         let body = &self.bodies[b];
         if !L::TOUCHES || self.sleepers.is_asleep(b) {
             // Where nobody touches anybody, no way is too far.
             let margin = if L::TOUCHES { 0.0 } else { f64::INFINITY };
             Listed { centre: body.pose.position, orientation: body.pose.orientation, margin }
         } else {
-            Listed::new(body, &self.constants[b], &self.pull(b), dt)
+            Listed::new(body, &self.constants[b], &self.pull(b), times, room)
         }
     }
 
@@ -134,10 +135,12 @@ impl<L: ContactLaw> RigidBodies<L> {
     /// Lists the pairs whose boxes may meet within `dt`, or within some sub-steps: of all bodies, so that long passes before it has to be done again.
     /// (Of a few only, by `PairList::refresh`, it would have to be done for others soon after, and costs as much for all pairs.)
     pub(super) fn list(&mut self, dt: f64) -> Result<(), DemError> {
-        let dt = self.horizon(dt);
-        self.listed_for = dt;
+        let times = [dt, self.horizon(dt)];
+        self.listed_for = times[1];
+        // Farther than a period everybody is met again.
+        let room = (0..3).filter_map(|a| self.periods.along(a)).fold(f64::INFINITY, f64::min);
         for b in 0..self.bodies.len() {
-            self.listed[b] = self.listing(b, dt);
+            self.listed[b] = self.listing(b, times, room);
         }
         self.list_again()
     }
@@ -165,6 +168,11 @@ impl<L: ContactLaw> RigidBodies<L> {
             // Where bodies are to start was checked.
             PairListError::Box { body, .. } => {
                 DemError::Diverged { body: BodyId(body), velocity: self.bodies[body].twist.linear.into() }
+            }
+            // Bodies as such are no longer than a period.
+            PairListError::Size { body, axis, size, period } => {
+                let speed = self.bodies[body].twist.linear.norm();
+                DemError::TooFast { body: BodyId(body), speed, way: 0.5 * size, axis, period }
             }
             other => other.into(),
         })?;

@@ -1,6 +1,6 @@
 //! Which overlaps are computed, and what a step costs.
 use super::*;
-use dem::HalfSpace;
+use dem::{DemError, HalfSpace};
 use interfaces::{Dynamics, Point};
 
 #[test]
@@ -91,4 +91,28 @@ fn a_warm_advance_allocates_nothing() {
     });
     assert!(bodies.n_contacts() > 50, "they lie on one another");
     assert_eq!(info.count_total, 0);
+}
+
+/// Heavy, soft balls: what is a few sub-steps to their contact is hundreds of periods of the box at their speed. They are listed for less; and who passes
+/// the box hundreds of times in the very step is told to be too fast.
+#[test]
+fn heavy_balls_in_a_small_box_are_listed_for_less() {
+    let soft = Material { density: 1e8, youngs_modulus: 1e3, ..Material::default() };
+    let made = |speed: f64| {
+        let mut bodies = RigidBodies::new(Periods::new([Some(0.01); 3]));
+        for (x, speed) in [(0.0025, speed), (0.0075, 0.0)] {
+            let twist = Twist { linear: Vector::new(0.0, speed, 0.0), angular: Vector::zeros() };
+            bodies
+                .add(Sphere::new(1e-3).unwrap(), soft, Pose::at([x, 0.005, 0.005]), twist, Freedom::FREE)
+                .unwrap();
+        }
+        bodies
+    };
+    let mut bodies = made(10.0);
+    // Forty sub-steps of the contact are more than 250 periods.
+    assert!(40.0 * bodies.stable_dt() * 10.0 > 250.0 * 0.01, "{}", bodies.stable_dt());
+    bodies.advance(1e-4).unwrap();
+    assert!((bodies.pose(BodyId(0)).position.y - 0.006).abs() < 1e-12);
+    let error = made(1e6).advance(1e-4).unwrap_err();
+    assert!(matches!(error, DemError::TooFast { body: BodyId(0), .. }), "{error}");
 }

@@ -9,6 +9,7 @@ mod steady;
 mod tests;
 mod thermal_law;
 mod transported;
+mod walls;
 
 pub use boundaries::ScalarBoundaries;
 pub use side::{Given, ScalarPatch, ScalarSide};

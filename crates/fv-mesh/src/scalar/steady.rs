@@ -76,11 +76,13 @@ impl<const D: usize> Scalar<D> {
         let given = |a: usize| {
             self.boundaries.ends(a).is_some_and(|e| e.factor.iter().any(|f| f.iter().any(|f| *f != 1.0)))
         };
-        if held.is_empty() && !(0..D).any(given) {
+        if held.is_empty() && self.walls.is_none() && !(0..D).any(given) {
             let what = "sides that all give a scalar's gradient, by which its steady state is known but for a constant; give its value somewhere";
             return Err(FlowError::Boundary { what: what.into() });
         }
         self.begin(time, &mut hold);
+        let shown = self.through(velocity);
+        let velocity = shown.as_ref().unwrap_or(velocity);
         let mut system = System::new(self, velocity)?;
         let mut change = f64::INFINITY;
         for iteration in 1..=max_iterations {
@@ -104,6 +106,8 @@ impl<const D: usize> Scalar<D> {
         mut hold: impl FnMut(&mut [f64]),
     ) -> Result<f64, FlowError> {
         self.begin(time, &mut hold);
+        let shown = self.through(velocity);
+        let velocity = shown.as_ref().unwrap_or(velocity);
         let mut system = System::new(self, velocity)?;
         self.correct(&mut system, velocity, time, held, &mut hold)
     }
@@ -111,6 +115,7 @@ impl<const D: usize> Scalar<D> {
     fn begin(&mut self, time: f64, hold: &mut impl FnMut(&mut [f64])) {
         self.boundaries.set_time(time);
         self.impose(hold);
+        self.wet_through();
         self.step = 0;
     }
 
@@ -125,7 +130,7 @@ impl<const D: usize> Scalar<D> {
     ) -> Result<f64, FlowError> {
         *iterations += 1;
         self.rest(velocity, rest);
-        for &o in held {
+        for o in held.iter().copied().chain(self.dry()) {
             // Ghosts belong to no cell.
             if let Some(cell) = self.grid.cell_at(o) {
                 momentum::pin(matrix, self.grid.index(cell), 0.0, rest);
@@ -136,6 +141,7 @@ impl<const D: usize> Scalar<D> {
         delta.iter_mut().for_each(|delta| *delta *= DAMPING);
         kernels::add_dense(&self.grid, delta, &mut self.phi);
         self.impose(hold);
+        self.wet_through();
         let mut largest = [0.0_f64; 2];
         for (now, before) in self.phi.values().zip(self.next.values()) {
             if !now.is_finite() {
@@ -161,6 +167,7 @@ impl<const D: usize> Scalar<D> {
         let step = Step { dt: 1.0, weights: [1.0, 0.0], explicit: [self.diffusivity; D], implicit: [0.0; D] };
         advance(input, step, &mut self.next, &mut self.tendency);
         out.iter_mut().zip(self.tendency.values()).for_each(|(out, rest)| *out = rest);
+        self.shut(velocity, out);
     }
 
     /// u·∇δ − ∇·((Γ + D_t)∇δ) with upwind differences and the homogeneous conditions at the sides.
@@ -200,6 +207,7 @@ impl<const D: usize> Scalar<D> {
                 }
             }
         }
+        self.shut_matrix(&mut matrix);
         Ok(matrix)
     }
 }

@@ -2,6 +2,7 @@
 use super::diffusion::ScalarDiffusion;
 use super::kernel::{Input, Step, advance};
 use super::mixing::{self, Mixing};
+use super::walls::Walls;
 use super::{ScalarBoundaries, ScalarSide};
 use crate::diffusion::{SplitDiffusion, stiffness};
 use crate::metrics::Metrics;
@@ -45,6 +46,7 @@ pub struct Scalar<const D: usize> {
     pub(super) source: Option<Field<D>>,
     pub(super) turbulent_prandtl: f64,
     pub(super) mixing: Option<Box<Mixing<D>>>,
+    pub(super) walls: Option<Box<Walls<D>>>,
     pub(super) zeros: Vec<f64>,
     pub(super) step: u64,
     last_dt: f64,
@@ -80,6 +82,7 @@ impl<const D: usize> Scalar<D> {
             source: None,
             turbulent_prandtl: mixing::USUAL,
             mixing: None,
+            walls: None,
             zeros: vec![0.0; grid.cells()[0]],
             step: 0,
             last_dt: 0.0,

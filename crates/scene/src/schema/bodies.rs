@@ -262,7 +262,7 @@ pub(super) static BODY: Table = Table {
 
 const MOVING: Kind = Kind::Formula(TIME, "m");
 
-static MOTIONS: [(&str, &Table); 4] = [
+static MOTIONS: [(&str, &Table); 5] = [
     ("free", &Table { about: "The flow, gravity and other bodies.", keys: &[] }),
     (
         "axes",
@@ -285,6 +285,10 @@ static MOTIONS: [(&str, &Table); 4] = [
                 ),
             ],
         },
+    ),
+    (
+        "planar",
+        &Table { about: "The same, in the plane of x and y only: along both, and about z.", keys: &[] },
     ),
     (
         "fixed",

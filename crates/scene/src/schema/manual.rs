@@ -2,7 +2,7 @@
 use super::{Kind, Need, SCENE, Table};
 use std::fmt::Write;
 
-/// The manual of all keys, as Markdown: docs/scene.md is this text.
+/// The manual of all keys, of what a run leaves, and of limits, as Markdown: docs/scene.md is this text.
 pub fn manual() -> String {
     let mut out = String::from(
         "# Scene files\n\n<!-- Made of crates/scene/src/schema by `cargo run --release --example scene -- --manual`; do not edit. -->\n\n\
@@ -50,7 +50,7 @@ pub fn manual() -> String {
     }
     out.truncate(out.trim_end().len());
     out.push('\n');
-    out
+    out + include_str!("results.md") + include_str!("limits.md")
 }
 
 fn cell(text: &str) -> String {

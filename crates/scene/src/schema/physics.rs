@@ -108,7 +108,7 @@ pub(super) static SCALAR: Table = Table {
             "turbulent_prandtl",
             Kind::Number(Range::Positive, "1"),
             "0.85",
-            "Turbulent Prandtl (or Schmidt) number Pr_t: a turbulence model's eddies mix it by ν_t/Pr_t; beside walls with wall functions and a value given, by the law of the wall.",
+            "Turbulent Prandtl (or Schmidt) number Pr_t: a turbulence model's eddies mix it by ν_t/Pr_t; beside walls with wall functions and a value given (sides; bodies in steady flow), by the law of the wall.",
             "0.9",
         ),
         optional(

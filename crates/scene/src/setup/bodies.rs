@@ -376,6 +376,7 @@ fn motion(t: &Reader<'_>, dim: usize) -> Result<Motion, Problem> {
     let Some((kind, motion)) = t.choice("motion", "type") else { return Ok(Motion::Free(freedom(dim))) };
     Ok(match kind {
         "fixed" => Motion::Fixed,
+        "planar" => Motion::Free(Freedom::PLANAR),
         "axes" => {
             let all = freedom(dim);
             let both = |a: [bool; 3], b: [bool; 3]| std::array::from_fn(|i| a[i] && b[i]);

@@ -212,7 +212,7 @@ fn given(t: &Reader<'_>, key: &str) -> Result<ScalarSide, Problem> {
         let formula = t.formula(key, &["x", "y", "z", "t"])?.unwrap_or(Expression::constant(0.0));
         Ok(match formula.fixed() {
             Some(value) => Given::Uniform(value),
-            None => Given::function(move |x, time| formula.at(&[x[0], x[1], x[2], time])),
+            None => Given::function(move |x, time| formula.needed(&[x[0], x[1], x[2], time])),
         })
     };
     Ok(match kind {

@@ -77,7 +77,7 @@ fn inlet(t: &Reader<'_>, context: &Context<'_>) -> Result<Profile, Problem> {
             }
             Ok(Profile::function(move |x, time| {
                 let variables = [x[0], x[1], x[2], time];
-                u.each_ref().map(|u| u.at(&variables))
+                u.each_ref().map(|u| u.needed(&variables))
             }))
         }
         (Some(_), Some(_)) => Err(t.fail("peak", "the velocity is given already; leave out one of the two")),

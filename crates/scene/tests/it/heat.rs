@@ -1,6 +1,7 @@
 //! Scalars that drive the flow, and eddies that mix them.
 use crate::{folder, quiet, root, run};
-use scene::{Ending, Scene};
+use scene::{Ending, Options, Scene};
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 /// The warm cavity at Ra 1e5 on 40 × 40 cells by SIMPLE and by PISO: the velocities of de Vahl Davis (1983) within a hundredth, and those of the projection within 0.3 %.
@@ -81,4 +82,137 @@ fn a_scalar_in_modelled_turbulence_is_the_velocity() {
     let other =
         off("analogy-other", &["flow.diffusion=\"explicit\"", "scalars.momentum.turbulent_prandtl=0.5"]);
     assert!(other.abs() > 1e-3, "{other}");
+}
+
+/// Scalars held on a disc that falls and one that is moved as told, mixed by SST or not: half a run and the rest are the whole, bit for bit.
+#[test]
+fn scalars_held_on_bodies_that_move_go_on() {
+    let text = r#"
+gravity = [0.0, -9.81]
+grid = { cells = [32, 48], size = [1.0, 1.5] }
+sides = { x = "periodic", y = "wall" }
+fluid = { density = 1.0, nu = 2e-3 }
+[scalars.warmth]
+diffusivity = 3e-3
+bodies = "1 + 0.5*sin(3*t)"
+expansion = 0.02
+[scalars.salt]
+diffusivity = 2e-3
+bodies_flux = "1e-2*t"
+initial = "y"
+[[bodies]]
+shape = { type = "disc", radius = 0.15 }
+density = 1.3
+position = [0.3, 1.1]
+[[bodies]]
+shape = { type = "disc", radius = 0.15 }
+position = [0.7, 0.5]
+motion = { type = "prescribed", shift = ["0.1*(1-cos(6*t))", 0.0] }
+[time]
+end = 0.4
+[output]
+snapshots = 4
+images = false
+"#;
+    for (name, more) in [
+        ("held", &[][..]),
+        ("held-sst", &["turbulence={model=\"sst\", speed=1.0}"]),
+        ("held-hfdib", &["coupling.forcing=\"hfdib\"", "bodies.0.density=4.0"]),
+        (
+            "held-piso",
+            &[
+                "flow.algorithm=\"piso\"",
+                "coupling.forcing=\"hfdib\"",
+                "time.dt=2e-3",
+                "time.ramp=false",
+                "bodies.0.density=4.0",
+            ],
+        ),
+    ] {
+        let [whole, halves] = [0, 1].map(|_| folder(name));
+        let part = |out: &Path, last: &[&str], resume: bool| {
+            run(text, &[more, last].concat(), &Options { resume, ..quiet(out) }).result
+        };
+        let all = part(&whole, &[], false);
+        part(&halves, &["time.end=0.2", "output.snapshots=2"], false);
+        assert_eq!(all, part(&halves, &[], true), "{name}");
+        let [a, b] = [&whole, &halves].map(|out| std::fs::read(out.join("fields/00004.vti")).unwrap());
+        assert!(a == b, "{name}: the fields differ");
+        let warmth = all["fields"]["warmth"]["mean"].as_f64().unwrap();
+        let salt = all["fields"]["salt"]["mean"].as_f64().unwrap();
+        assert!(warmth > 0.1 && salt > 0.75, "{name}: {warmth} {salt}");
+        [whole, halves].iter().for_each(|out| std::fs::remove_dir_all(out).unwrap());
+    }
+}
+
+/// A duct at Re 10⁵ with warm walls, k–ε: with bodies as walls, along the grid and turned by 30°, it takes up what it does between sides of the box. A wall that
+/// is one of the box's and one that is a body are the same to the scalar where they are the same to the flow.
+#[test]
+fn warm_walls_that_are_bodies_warm_as_sides_do() {
+    let text = r#"
+turbulence = { model = "k-epsilon", intensity = 0.05, length = 0.1, speed = 1.0 }
+grid = { cells = [120, 20], size = [6.0, 1.0] }
+fluid = { density = 1.0, nu = 1e-5 }
+[sides]
+x_min = { type = "inlet", velocity = [1.0, 0.0] }
+x_max = "outlet"
+y = "wall"
+[initial]
+velocity = [1.0, 0.0]
+[scalars.heat]
+diffusivity = 1.4e-5
+sides = { y = { type = "value", value = 1.0 } }
+[flow]
+algorithm = "simple"
+convection = "quick"
+[time]
+end = 1.0
+[output]
+images = false
+fields = false
+"#;
+    let duct = |name: &str, more: &[&str]| {
+        let out = folder(name);
+        let result = run(text, more, &quiet(&out));
+        std::fs::remove_dir_all(&out).unwrap();
+        assert_eq!(result.ending, Ending::Done, "{name}");
+        let of = |value: &serde_json::Value| value.as_f64();
+        [of(&result.result["fields"]["heat"]["mean"]), of(&result.result["given_off"]["heat"])]
+    };
+    let sides = duct("duct-sides", &[])[0].unwrap();
+    let walls = |lower: &str, upper: &str, angle: f64| {
+        let body = |at: &str| {
+            format!(
+                r#"{{ shape = {{ type = "box", edges = [40.0, 4.0] }}, position = {at}, orientation = {angle:.1}, motion = "fixed" }}"#
+            )
+        };
+        format!("bodies=[{}, {}]", body(lower), body(upper))
+    };
+    let bodies = ["scalars.heat.bodies=1.0", "scalars.heat.sides={}"];
+    // A third of the box is warm wall.
+    let along = walls("[3.0, -1.75]", "[3.0, 3.25]", 0.0);
+    let along = duct(
+        "duct-along",
+        &[&["grid.cells=[120, 30]", "grid.size=[6.0, 1.5]", &along], &bodies[..]].concat(),
+    );
+    let fluid = 1.5 * (along[0].unwrap() - 1.0 / 3.0);
+    assert!((fluid / sides - 1.0).abs() < 0.03, "{fluid} {sides}");
+    let turned = walls("[3.6, 0.06906]", "[1.6, 4.68786]", 30.0);
+    let turned = duct(
+        "duct-turned",
+        &[
+            &[
+                "grid.cells=[104, 96]",
+                "grid.size=[5.2, 4.8]",
+                "sides.x_min.velocity=[0.8660254, 0.5]",
+                "initial.velocity=[0.8660254, 0.5]",
+                &turned,
+            ],
+            &bodies[..],
+        ]
+        .concat(),
+    );
+    // Both walls are 6 m long.
+    let off = turned[1].unwrap() / along[1].unwrap() - 1.0;
+    assert!(off.abs() < 0.04, "{off}");
 }

@@ -6,6 +6,7 @@ mod ledger;
 mod models;
 mod physics;
 mod spoilt;
+mod told;
 
 use scene::{Options, RunResult, Scene, json_schema, manual};
 use std::path::{Path, PathBuf};
@@ -104,5 +105,18 @@ fn every_scene_is_checked_in_a_second() {
         // Ten seconds where other tests run beside it; a second is what it takes alone.
         assert!(start.elapsed() < Duration::from_secs(10), "{}: {:?}", path.display(), start.elapsed());
         assert!(plan.steps > 0.0 && plan.cpu > 0.0, "{plan}");
+    }
+}
+
+/// Every scene has its line, its picture and its time in the folder's README.
+#[test]
+fn every_scene_is_shown() {
+    let text = std::fs::read_to_string(root().join("scenes/README.md")).unwrap();
+    for (path, _) in scenes() {
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        let line = text.lines().find(|line| line.contains(&format!("[{name}]({name}.toml)")));
+        let seconds = line.and_then(|line| line.rsplit('|').nth(1)?.trim().parse::<f64>().ok());
+        assert!(seconds.is_some(), "{name}: {line:?}");
+        assert!(root().join(format!("docs/images/scenes/{name}.png")).exists(), "{name}");
     }
 }

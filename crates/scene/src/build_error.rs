@@ -1,0 +1,158 @@
+//! Why a scene cannot be put together, or ends before its time, and the key that has to do with it.
+use crate::document::Document;
+use crate::problem::Problems;
+use crate::setup::{Algorithm, BodySetup, ForcingChoice, Motion, Setup};
+use coupling::CouplingError;
+use dem::DemError;
+use dem::placing::PlacingError;
+use fv_mesh::FlowError;
+use ibm::IbmError;
+use interfaces::BodyId;
+
+/// Why a scene cannot be put together.
+#[derive(Debug, thiserror::Error)]
+pub enum BuildError {
+    /// Any of the others that a key of the file has to do with.
+    #[error(transparent)]
+    Scene(Box<Problems>),
+    /// The flow.
+    #[error(transparent)]
+    Flow(#[from] FlowError),
+    /// The bodies.
+    #[error(transparent)]
+    Bodies(#[from] DemError),
+    /// Where bodies come in.
+    #[error(transparent)]
+    Placing(#[from] PlacingError),
+    /// Bodies on the grid.
+    #[error(transparent)]
+    Immersed(#[from] IbmError),
+    /// The turbulence model.
+    #[error(transparent)]
+    Turbulence(#[from] turb::TurbulenceError),
+    /// Both together.
+    #[error(transparent)]
+    Coupling(#[from] CouplingError),
+    /// The grid is too large for this machine.
+    #[error("{cells:.2e} cells need about {:.1} GB of memory, and {:.1} GB are free; take fewer cells", needed / 1e9, free / 1e9)]
+    Memory {
+        /// Cells of the grid.
+        cells: f64,
+        /// What they need \[bytes\].
+        needed: f64,
+        /// What is there \[bytes\].
+        free: f64,
+    },
+    /// A formula without a value.
+    #[error("{what} is {value} at ({}); the formula needs a finite value all over the box", at.map(|x| format!("{x:.6}")).join(", "))]
+    Formula {
+        /// Of what.
+        what: &'static str,
+        /// The key it stands under.
+        key: &'static str,
+        /// Its value.
+        value: f64,
+        /// Where \[m\].
+        at: [f64; 3],
+    },
+}
+
+impl BuildError {
+    /// The key that has to do with it, if it is known.
+    fn key(&self, setup: &Setup) -> Option<String> {
+        let body = |b: &BodyId| Some(setup.bodies.list.get(b.0)?.origin.clone());
+        match self {
+            Self::Bodies(error) => body(&body_of(error)?),
+            Self::Placing(PlacingError::Shape(error)) => body(&body_of(error)?),
+            Self::Immersed(error) | Self::Coupling(CouplingError::Immersed(error)) => match error {
+                IbmError::TooCoarse { body: b, .. }
+                | IbmError::TooLarge { body: b, .. }
+                | IbmError::Unseen { body: b, .. } => body(b),
+                _ => None,
+            },
+            Self::Coupling(
+                CouplingError::Motion { body: b, .. }
+                | CouplingError::TooLarge { body: b, .. }
+                | CouplingError::Outside { body: b, .. }
+                | CouplingError::Escaped { body: b, .. },
+            ) => body(b),
+            Self::Coupling(CouplingError::Dynamics { source, .. }) => match source.downcast_ref() {
+                Some(PlacingError::Shape(error)) => body(&body_of(error)?),
+                _ => None,
+            },
+            Self::Turbulence(_) => Some("turbulence".into()),
+            Self::Memory { .. } => Some("grid".into()),
+            Self::Formula { key, .. } => Some((*key).into()),
+            Self::Flow(error) | Self::Coupling(CouplingError::Flow(error)) => match error {
+                FlowError::Boundary { .. } | FlowError::MassBalance { .. } => Some("sides".into()),
+                FlowError::ScalarNotSteady { .. }
+                | FlowError::ScalarDiverged { .. }
+                | FlowError::Scalar { .. } => Some("scalars".into()),
+                FlowError::Closure { .. } => Some("turbulence".into()),
+                FlowError::Diverged { .. } => Some(setup.pace()),
+                _ => None,
+            },
+            Self::Coupling(CouplingError::Courant { .. }) => Some(setup.pace()),
+            Self::Coupling(CouplingError::Collapsed { .. }) => Some(setup.light().unwrap_or(setup.pace())),
+            _ => None,
+        }
+    }
+
+    /// When the velocity had grown too much, if that is it \[s\].
+    fn too_fast_at(&self) -> Option<f64> {
+        match self {
+            Self::Flow(FlowError::Diverged { time, .. })
+            | Self::Coupling(
+                CouplingError::Flow(FlowError::Diverged { time, .. })
+                | CouplingError::Courant { time, .. }
+                | CouplingError::Collapsed { time, .. },
+            ) => Some(*time),
+            _ => None,
+        }
+    }
+
+    /// The same with its place in the file, if a key has to do with it.
+    pub(crate) fn placed(self, setup: &Setup, document: &Document) -> Self {
+        if let Some((key, speed)) = self.too_fast_at().and_then(|time| setup.rush(time)) {
+            let message = format!("{self}; what enters or moves here has come to {speed:.3e} m/s by then");
+            return Self::Scene(Box::new(document.problem(&key, message)));
+        }
+        match self.key(setup) {
+            Some(key) => Self::Scene(Box::new(document.problem(&key, self.to_string()))),
+            None => self,
+        }
+    }
+}
+
+/// The body that an error is about.
+fn body_of(error: &DemError) -> Option<BodyId> {
+    match error {
+        DemError::InWall { body, .. }
+        | DemError::Period { body, .. }
+        | DemError::PassedThrough { body, .. }
+        | DemError::Diverged { body, .. }
+        | DemError::TooFast { body, .. } => Some(*body),
+        DemError::OverlappingStart { a, b, .. } => Some(*a.max(b)),
+        _ => None,
+    }
+}
+
+impl Setup {
+    /// The key that says how fast the flow goes on.
+    fn pace(&self) -> String {
+        match self.flow.algorithm {
+            Algorithm::Simple => "flow",
+            _ if self.dt.is_some() => "time.dt",
+            _ => "time.courant",
+        }
+        .into()
+    }
+    /// The key of what holds bodies that the fluid moves and that are lighter than it, or not much heavier by the paper's forcing, if there are such bodies.
+    fn light(&self) -> Option<String> {
+        let least = if self.bodies.forcing() == ForcingChoice::Hfdib { 3.0 } else { 1.0 };
+        let light = |b: &BodySetup| {
+            matches!(b.motion, Motion::Free(_)) && b.material.density < least * self.fluid().density
+        };
+        self.bodies.list.iter().any(light).then(|| "coupling.virtual_mass".into())
+    }
+}

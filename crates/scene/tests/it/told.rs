@@ -1,0 +1,125 @@
+//! What goes wrong while a scene runs, and what looks doubtful before: told with the key.
+use crate::{folder, problems, quiet};
+use scene::Scene;
+use std::sync::atomic::AtomicBool;
+
+const STREAM: &str = r#"
+[grid]
+cells = [16, 16]
+size = [1.0, 1.0]
+[sides]
+x_min = { type = "inlet", velocity = [1.0, 0.0] }
+x_max = "outlet"
+y = "wall"
+[fluid]
+density = 1.0
+nu = 0.01
+[time]
+end = 1.0
+[output]
+images = false
+fields = false
+snapshots = 1
+"#;
+const FALL: &str = r#"
+gravity = [0.0, -9.81]
+grid = { cells = [48, 48], size = [0.01, 0.01] }
+sides = { x = "periodic", y = "wall" }
+fluid = { density = 1000.0, nu = 1e-6 }
+bodies = [{ shape = { type = "disc", radius = 1e-3 }, density = 1e8, position = [0.005, 0.005] }]
+time = { end = 0.2 }
+output = { images = false, fields = false, snapshots = 1 }
+"#;
+
+fn scene(text: &str, more: &[&str]) -> Scene {
+    let more: Vec<String> = more.iter().map(|s| (*s).into()).collect();
+    Scene::parse("scene.toml", text, &more).unwrap()
+}
+
+/// What a run of that scene ends with.
+fn ends_with(text: &str, more: &[&str]) -> String {
+    let out = folder("told");
+    let error = scene(text, more).run(&quiet(&out), &AtomicBool::new(false)).unwrap_err().to_string();
+    let _ = std::fs::remove_dir_all(&out);
+    error
+}
+
+/// Formulas without a value on the way: at an inlet, of a scalar, of a motion, of a force, before the run and in it.
+#[test]
+fn formulas_without_a_value_are_told_with_their_key_and_time() {
+    let moved = |shift: &str| {
+        format!(
+            "bodies=[{{ shape = {{ type = \"disc\", radius = 0.2 }}, position = [0.5, 0.5], motion = {{ type = \"prescribed\", shift = ['{shift}', 0.0] }} }}]"
+        )
+    };
+    let scalar =
+        r#"scalars.c={ diffusivity = 0.01, sides = { x_min = { type = "value", value = "sqrt(0.5-t)" } } }"#;
+    for (more, key, time) in [
+        (r#"sides.x_min.velocity=["1/(0.5-t)", 0.0]"#, "sides.x_min.velocity: ", "t = 0.5"),
+        (r#"sides.x_min.velocity=["sqrt(0.5-t)", 0.0]"#, "sides.x_min.velocity: ", "t = 0.5"),
+        (r#"force=["log(0.5-t)", 0.0]"#, "force: ", "t = 0.5"),
+        (scalar, "scalars.c.sides.x_min.value: ", "t = 0.5"),
+        (&moved("0.1*sqrt(0.5-t)"), "bodies.0.motion.shift: ", "t = 0.5"),
+    ] {
+        let told = ends_with(STREAM, &[more]);
+        assert!(told.contains(key) && told.contains(time) && told.contains("the formula"), "{more}: {told}");
+    }
+    // A pole between the instants that are looked at: the run ends there, at the inlet.
+    let pole = STREAM.replace("[1.0, 0.0]", "[\"1/(0.5003-t)\", 0.0]");
+    let told = ends_with(&pole, &[]);
+    assert!(told.contains("scene.toml:6:") && told.contains("m/s by then"), "{told}");
+    // A motion whose velocity has a value on one side of the start only is none of that.
+    let out = folder("told");
+    let shift = moved("0.1*t^1.5");
+    let run = scene(STREAM, &[&shift, "time.end=0.1"]).run(&quiet(&out), &AtomicBool::new(false));
+    std::fs::remove_dir_all(&out).unwrap();
+    let velocity = run.unwrap().result["bodies"][0]["velocity"][0].as_f64().unwrap();
+    assert!((velocity - 0.15 * 0.1_f64.sqrt()).abs() < 1e-6, "{velocity}");
+}
+
+/// Bodies far too heavy for what is to hold them, or too light for how they are coupled.
+#[test]
+fn bodies_that_cannot_be_held_are_told() {
+    let told = ends_with(FALL, &[]);
+    assert!(told.contains("bodies.0: ") && told.contains("Young's modulus"), "{told}");
+    let light = ["bodies.0.density=1.0", "coupling.virtual_mass=0.0", "gravity=[0.0, -1.0]"];
+    let told = ends_with(FALL, &light);
+    assert!(told.contains("coupling.virtual_mass: "), "{told}");
+    let warnings = |more: &[&str]| scene(FALL, more).plan().unwrap().warnings.join("\n");
+    let told = warnings(&["sides.y=\"periodic\""]);
+    assert!(told.contains("1e5 times denser") || told.contains("1.0e5 times denser"), "{told}");
+    assert!(told.contains("net weight"), "{told}");
+    assert_eq!(warnings(&["bodies.0.density=1100.0"]), "");
+}
+
+#[test]
+fn what_looks_doubtful_is_told() {
+    let warnings = |more: &[&str]| scene(STREAM, more).plan().unwrap().warnings.join("\n");
+    assert_eq!(warnings(&[]), "");
+    let disc = |radius: f64, x: f64| {
+        format!(
+            "bodies=[{{ shape = {{ type = \"disc\", radius = {radius} }}, position = [{x}, 0.5], motion = \"fixed\" }}]"
+        )
+    };
+    let fine = "grid.cells=[160, 160]";
+    for (more, part) in [
+        (&["time.end=1e30"][..], "years on one core"),
+        (&["time.dt=0.1"], "Courant number"),
+        (&["fluid.nu=1e-6"], "Reynolds number of a cell"),
+        (&[fine, &disc(0.2, 0.5)], "a body blocks 40 %"),
+        (&[fine, &disc(0.05, 0.1)], "the inlet at x_min is 0.5 sizes"),
+        (&[fine, &disc(0.05, 0.9)], "the outlet at x_max is 0.5 sizes"),
+        (&[&disc(0.1, 0.5)], "cells across"),
+        (&["turbulence=\"sst\"", "fluid.nu=1e-3", "flow.convection=\"limited\""], "at y+ of about 1.6"),
+        (
+            &["turbulence=\"sst\"", &disc(0.1, 0.5), "scalars.c={ diffusivity = 0.01, bodies = 1.0 }"],
+            "without a law of the wall",
+        ),
+    ] {
+        let told = warnings(more);
+        assert!(told.contains(part), "{more:?}: {told}");
+    }
+    let periodic = ["sides.y=\"periodic\"", fine, &disc(0.2, 0.5)];
+    assert!(warnings(&periodic).contains("along y the period is 2.5 times"), "{}", warnings(&periodic));
+    assert!(problems(STREAM, "sides.x_min.velocity=[1.0]").contains("sides.x_min.velocity"));
+}

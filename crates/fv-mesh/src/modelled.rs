@@ -307,7 +307,7 @@ impl<const D: usize, C: Closure> ClosureSlot<D> for Modelled<D, C> {
 impl<const D: usize, C> Modelled<D, C> {
     /// Takes cells in solids out of the equations.
     fn wall_off(&mut self, solid: Vec<usize>) {
-        self.transport.set_walls(solid.iter().map(|&cell| (cell, Vec::new())).collect());
+        self.transport.set_walls(solid.iter().map(|&cell| (cell, Vec::new())).collect(), true);
         self.solid = solid;
     }
 }

@@ -82,7 +82,7 @@ impl<const D: usize> Simple<D> {
             None => self.energy = None,
         }
         if !model.transport().has_walls() {
-            model.transport_mut().set_walls(walls.dry_cells(&self.state.grid));
+            model.transport_mut().set_walls(walls.dry_cells(&self.state.grid), false);
         }
     }
 }

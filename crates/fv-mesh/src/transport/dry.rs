@@ -8,8 +8,10 @@ use crate::{Convection, Velocity};
 pub(crate) type Dry = (usize, Vec<(usize, f64)>);
 
 impl<const D: usize> CellTransport<D> {
-    /// Takes these cells out of the equations: nothing passes between them and others.
-    pub(crate) fn set_walls(&mut self, dry: Vec<Dry>) {
+    /// Takes these cells out of the equations: nothing passes between them and others. `forced`: a forcing makes the velocity beside them, which
+    /// is not that of a layer on a wall.
+    pub(crate) fn set_walls(&mut self, dry: Vec<Dry>, forced: bool) {
+        self.forced = forced;
         let (grid, periodic) = (self.ops.grid(), self.ops.metrics().periodic);
         let (n, s, closed) = (grid.cells(), grid.stride(), &mut self.closed);
         closed.clear();

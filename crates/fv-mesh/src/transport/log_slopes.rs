@@ -121,7 +121,7 @@ mod tests {
             *y = height(centre(i)).max(0.0);
         }
         let dry = (0..n).filter(|&i| height(centre(i)) <= 0.0);
-        transport.set_walls(dry.map(|i| (i, Vec::new())).collect());
+        transport.set_walls(dry.map(|i| (i, Vec::new())).collect(), false);
         let mut strain = vec![0.0; n];
         let mut on = transport.on(&velocity).unwrap();
         on.strain_rate(&mut strain).unwrap();

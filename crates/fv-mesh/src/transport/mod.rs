@@ -105,6 +105,8 @@ pub struct CellTransport<const D: usize> {
     closed: Vec<(usize, usize)>,
     carrier: Option<Box<Velocity<D>>>,
     near: Option<NearSolids<D>>,
+    /// Does a forcing make the velocity beside cells without fluid?
+    forced: bool,
     bicgstab: BiCgStabScratch,
     gauss_seidel: GaussSeidelScratch,
     /// Γ or a, φ or b, and two terms.
@@ -148,6 +150,7 @@ impl<const D: usize> CellTransport<D> {
             closed: Vec::new(),
             carrier: None,
             near: None,
+            forced: false,
             bicgstab: BiCgStabScratch::new(n),
             gauss_seidel: GaussSeidelScratch::new(n),
             fields: std::array::from_fn(|_| Field::zeros(grid)),
@@ -477,8 +480,10 @@ impl<const D: usize> Transport for FlowTransport<'_, D> {
         Ok(())
     }
     fn log_slopes(&mut self) -> &[LogSlope] {
-        let CellTransport { near, ops, wall_distance, .. } = &mut *self.cells;
-        near.as_mut().map_or(&[], |near| near.log_slopes(ops.grid(), self.velocity, wall_distance))
+        let CellTransport { near, ops, wall_distance, forced, .. } = &mut *self.cells;
+        near.as_mut()
+            .filter(|_| !*forced)
+            .map_or(&[], |near| near.log_slopes(ops.grid(), self.velocity, wall_distance))
     }
     fn velocity_gradient(&mut self, out: &mut [[[f64; 3]; 3]]) -> Result<(), SolveError> {
         check_length("the velocity gradient", self.n_cells(), out.len())?;

@@ -438,7 +438,7 @@ fn nothing_passes_faces_of_cells_without_fluid() {
     let mut cells = CellTransport::new(&grid, &sides, TransportParams::steady()).unwrap();
     let n = grid.n_cells();
     let solid = |i: usize| grid.cell(i)[1] >= 4;
-    cells.set_walls((0..n).filter(|&i| solid(i)).map(|i| (i, Vec::new())).collect());
+    cells.set_walls((0..n).filter(|&i| solid(i)).map(|i| (i, Vec::new())).collect(), false);
     let mut flow = cells.on(&velocity).unwrap();
     let (gamma, none) = (vec![1e-3; n], vec![0.0; n]);
     let e = Equation { inlet: 1.0, ..Equation::new(&gamma, &none, &none) };
@@ -476,7 +476,7 @@ fn a_flow_along_a_wall_leaves_what_changes_across_it() {
             *y = distance(i).max(0.0);
         }
         let dry = (0..n * n).filter(|&i| distance(i) <= 0.0);
-        cells.set_walls(dry.map(|i| (i, Vec::new())).collect());
+        cells.set_walls(dry.map(|i| (i, Vec::new())).collect(), false);
         let mut left = |phi: &dyn Fn(f64) -> f64, inverse: bool, [from, to]: [f64; 2]| {
             let phi: Vec<f64> = (0..n * n).map(|i| phi(distance(i))).collect();
             let e = Equation { inverse, ..Equation::new(&none, &none, &none) };
@@ -512,7 +512,7 @@ fn without_distances_scalars_are_numbers() {
     for distance in [f64::INFINITY, 0.0] {
         let mut cells = CellTransport::new(&grid, &sides, TransportParams::steady()).unwrap();
         cells.wall_distance_mut().fill(distance);
-        cells.set_walls((0..n).filter(|&i| grid.cell(i)[1] < 2).map(|i| (i, Vec::new())).collect());
+        cells.set_walls((0..n).filter(|&i| grid.cell(i)[1] < 2).map(|i| (i, Vec::new())).collect(), false);
         let (gamma, none) = (vec![1e-3; n], vec![0.0; n]);
         let e = Equation { inlet: 1.0, inverse: true, ..Equation::new(&gamma, &none, &none) };
         let mut phi = vec![1.0; n];

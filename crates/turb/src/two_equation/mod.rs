@@ -266,7 +266,11 @@ impl<L: Law> TwoEquation<L> {
         for slope in flow.log_slopes() {
             let y_star = functions.y_star(slope.distance, self.k[slope.cell], nu);
             let share = functions.turbulent_share(y_star / LOGARITHMIC);
-            self.work.strain[slope.cell] *= 1.0 + share * (slope.part - 1.0);
+            let part = 1.0 + share * (slope.part - 1.0);
+            self.work.strain[slope.cell] *= part;
+            if L::GRADIENT {
+                self.work.gradient[slope.cell].iter_mut().flatten().for_each(|g| *g *= part);
+            }
         }
         if L::CROSS_DIFFUSION {
             flow.dot_gradients(&self.k, &self.scale, &mut self.work.cross)?;

@@ -157,7 +157,8 @@ mod tests {
         ];
         for (normal, t) in oblique {
             let [part, all] = deviations::<3>(20, normal, t);
-            assert!(part < 1e-10 && all > 0.005, "{normal:?}, {t:?}: {part:e}, {all}");
+            // The direction of the flow is that of means over faces.
+            assert!(part < 1e-5 && all > 0.005, "{normal:?}, {t:?}: {part:e}, {all}");
         }
     }
 }

@@ -80,6 +80,27 @@ fn uniform_flow_along_plane_walls_is_exact() {
     }
 }
 
+/// Walls that cut the cells of a convective outlet: what leaves there is what comes along them.
+#[test]
+fn uniform_flow_leaves_through_the_open_part_of_an_outlet() {
+    for shift in [0.001, 0.007, 0.02, 0.04] {
+        let inlet = Side::Inlet(Profile::Uniform([1.0, 0.0, 0.0]));
+        let grid = CartesianGrid::new([24, 24], [1.0, 1.0]).unwrap();
+        let fluid = Fluid { density: 1.0, viscosity: 0.0 };
+        let sides = [[inlet, Side::ConvectiveOutlet], Side::FreeSlip.both()];
+        let mut flow = Simple::new(grid, sides, fluid).unwrap().with_convection(Convection::LinearUpwind);
+        let duct = Outside { half: 0.2, angle: 0.0, at: [0.0, 0.5 + shift] };
+        let cuts = cut_cells(flow.velocity(), &StaticBodies::new().with(duct, Pose::at([0.0; 3]))).unwrap();
+        flow.set_walls(Some((&cuts, WallStress::Slip))).unwrap();
+        flow.set_velocity(|_| [1.0, 0.0]);
+        for _ in 0..30 {
+            flow.iterate().unwrap();
+        }
+        let error = worst(&flow, &cuts, |_| [1.0, 0.0]);
+        assert!(error < 1e-12, "{shift}: {error:e}");
+    }
+}
+
 /// Errors of the velocity and of the pressure gradient between plane walls `n` cells apart, turned by `angle`.
 fn poiseuille(n: usize, angle: f64, shift: f64) -> [f64; 2] {
     let (half, nu, at) = (0.2, 0.05, [0.5 + shift, 0.5]);

@@ -103,7 +103,8 @@ impl<const D: usize> Boundaries<D> {
     }
 
     /// Closes what immersed walls close of the sides: `open(a, index)` is the open share of the face of axis `a` with this
-    /// storage index. Through inlets the velocity given passes in the open part, outlets are open or not.
+    /// storage index. Through inlets and convective
+    /// outlets flow passes in the open part, faces of given pressure are open or not.
     ///
     /// # Errors
     /// [`FlowError::MassBalance`] if what enters cannot leave.
@@ -123,7 +124,7 @@ impl<const D: usize> Boundaries<D> {
                         state.kind[l] = FaceKind::Closed;
                         (state.normal[l], state.given[l]) = (0.0, 0.0);
                     }
-                    if state.kind[l] == FaceKind::Inlet {
+                    if matches!(state.kind[l], FaceKind::Inlet | FaceKind::Convective) {
                         state.open[l] = share;
                     }
                 }
@@ -132,12 +133,15 @@ impl<const D: usize> Boundaries<D> {
         self.balance(metrics)
     }
 
-    /// Axes and storage indices of the faces through which what flows is not given.
-    pub(crate) fn outlets(&self, grid: &CartesianGrid<D>) -> std::collections::HashSet<(usize, usize)> {
+    /// Axes and storage indices of the faces on which the pressure is given.
+    pub(crate) fn pressure_faces(
+        &self,
+        grid: &CartesianGrid<D>,
+    ) -> std::collections::HashSet<(usize, usize)> {
         let mut out = std::collections::HashSet::new();
         for (a, (lines, pair)) in self.lines.iter().zip(&self.states).enumerate() {
             for (upper, state) in pair.iter().flat_map(|p| p.iter()).enumerate() {
-                let free = lines.starts().enumerate().filter(|&(l, _)| !state.kind[l].is_fixed());
+                let free = lines.starts().enumerate().filter(|&(l, _)| state.kind[l] == FaceKind::Pressure);
                 out.extend(free.map(|(_, o)| (a, o + upper * lines.cells * grid.stride()[a])));
             }
         }

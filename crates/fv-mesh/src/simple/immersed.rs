@@ -28,7 +28,7 @@ impl<const D: usize> Simple<D> {
         let FlowState { grid, metrics, boundaries, velocity, pressure, .. } = &mut self.state;
         let made = match walls {
             Some((cuts, stress)) => {
-                Some(SimpleWalls::new(cuts, stress, grid, metrics, &boundaries.outlets(grid))?)
+                Some(SimpleWalls::new(cuts, stress, grid, metrics, &boundaries.pressure_faces(grid))?)
             }
             None => None,
         };

@@ -20,7 +20,8 @@ impl<const D: usize> Simple<D> {
     /// the control volumes, and `stress` acts on the walls in them. Before this set what the box's sides are; after this the
     /// first guess and eddy viscosity.
     ///
-    /// Faces of the box's sides that walls close let nothing pass; inlets pass the open part of what is given.
+    /// Faces of the box's sides that walls close let nothing pass; inlets pass the open part of what is given, convective outlets
+    /// what comes to their open part, and faces of given pressure are open or shut as a whole.
     ///
     /// # Errors
     /// [`FlowError::Parameter`] for walls on another grid, and those of the sides.

@@ -92,31 +92,28 @@ impl Probe<'_> {
         (0..2).all(|a| grid.axis(a).centre(0) < x[a] && x[a] < grid.axis(a).centre(grid.cells()[a] - 1))
     }
 
-    /// What the inner or the outer wall takes along the duct, over the density \[m²/s²\]: the mean over a tenth of the height.
+    /// What every piece of the inner or the outer wall takes along the duct: where it is \[m\], friction over the density \[m²/s²\], area.
+    fn frictions(&self, outer: bool) -> impl Iterator<Item = [f64; 3]> {
+        self.walls.iter().zip(self.flow.wall_tractions()).filter_map(move |(wall, traction)| {
+            let [s, r] = self.duct.place([wall.foot.x, wall.foot.y]);
+            let [t, n] = self.duct.along(s);
+            let friction = (traction.x * t + traction.y * n) / self.flow.fluid().density;
+            ((r > 1.5) == outer).then_some([s, friction, wall.area])
+        })
+    }
+
+    /// The mean over a tenth of the height.
     fn friction(&self, s: f64, outer: bool) -> f64 {
-        let (mut sum, mut areas) = (0.0, 0.0);
-        for (wall, traction) in self.walls.iter().zip(self.flow.wall_tractions()) {
-            let [at, r] = self.duct.place([wall.foot.x, wall.foot.y]);
-            if (at - s).abs() < 0.05 && (r > 1.5) == outer {
-                let [t, n] = self.duct.along(s);
-                sum += wall.area * (traction.x * t + traction.y * n);
-                areas += wall.area;
-            }
-        }
-        sum / areas / self.flow.fluid().density
+        let near = self.frictions(outer).filter(|[at, ..]| (at - s).abs() < 0.05);
+        let (sum, areas) =
+            near.fold((0.0, 0.0), |(sum, areas), [_, friction, area]| (sum + area * friction, areas + area));
+        sum / areas
     }
 
     /// Tables of the friction along the inner and the outer wall.
     fn write_friction(&self, out: &Path) -> Outcome<()> {
         for (outer, name) in [(false, "inner"), (true, "outer")] {
-            let mut rows = Vec::new();
-            for (wall, traction) in self.walls.iter().zip(self.flow.wall_tractions()) {
-                let [s, r] = self.duct.place([wall.foot.x, wall.foot.y]);
-                if (r > 1.5) == outer {
-                    let [t, n] = self.duct.along(s);
-                    rows.push([s, (traction.x * t + traction.y * n) / self.flow.fluid().density, wall.area]);
-                }
-            }
+            let mut rows: Vec<_> = self.frictions(outer).collect();
             rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
             let mut text = String::from("s [m],friction over density [m2/s2],area [m2]\n");
             for [s, friction, area] in rows {

@@ -26,6 +26,13 @@ impl LawOfTheWall {
     /// κ = 0.41, E = 9.8.
     pub const USUAL: Self = Self { kappa: 0.41, e: 9.8 };
 
+    /// u_τ \[m/s\] of a layer in equilibrium with k \[m²/s²\]: C_μ^¼ √k with C_μ = 0.09, 0 where k is not positive (Launder & Spalding 1974,
+    /// *Comput. Methods Appl. Mech. Eng.* 3, 269–289).
+    pub fn friction_velocity(k: f64) -> f64 {
+        // 0.09^¼.
+        0.547_722_557_505_166_1 * k.max(0.0).sqrt()
+    }
+
     /// u+ at y+.
     pub fn u_plus(&self, y_plus: f64) -> f64 {
         self.curve(y_plus).min(y_plus)

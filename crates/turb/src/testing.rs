@@ -1,16 +1,17 @@
 //! A flow for tests.
-use interfaces::{Equation, SolveError, SolveInfo, Transport};
+use interfaces::{Equation, LogSlope, SolveError, SolveInfo, Transport};
 
 /// Cells that do not know each other, all with one velocity gradient.
 pub(crate) struct Uniform {
     gradient: [[f64; 3]; 3],
     pub(crate) volume: f64,
     pub(crate) distance: Vec<f64>,
+    pub(crate) log_slopes: Vec<LogSlope>,
 }
 
 impl Uniform {
     pub(crate) fn new(gradient: [[f64; 3]; 3], cells: usize) -> Self {
-        Self { gradient, volume: 1.0, distance: vec![f64::INFINITY; cells] }
+        Self { gradient, volume: 1.0, distance: vec![f64::INFINITY; cells], log_slopes: Vec::new() }
     }
 }
 
@@ -27,6 +28,9 @@ impl Transport for Uniform {
     fn strain_rate(&mut self, out: &mut [f64]) -> Result<(), SolveError> {
         out.fill(crate::Invariants::of(&self.gradient).strain);
         Ok(())
+    }
+    fn log_slopes(&mut self) -> &[LogSlope] {
+        &self.log_slopes
     }
     fn velocity_gradient(&mut self, out: &mut [[[f64; 3]; 3]]) -> Result<(), SolveError> {
         out.fill(self.gradient);

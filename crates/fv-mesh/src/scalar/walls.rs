@@ -7,8 +7,6 @@ use crate::{CartesianGrid, FlowError, Velocity};
 use interfaces::{CutCells, LawOfTheWall, WallPiece};
 use std::collections::HashMap;
 
-/// C_μ^¼.
-const C_MU: f64 = 0.547_722_557_505_166_1;
 /// From where walls see φ, and the least distance of a centre from its wall, in extents of the cell along the normal.
 const DISTANCE: f64 = 0.5;
 const NEAREST: f64 = 0.1;
@@ -91,13 +89,8 @@ impl<const D: usize> Geometry<'_, D> {
         cell[axis] = match (cell[axis], upper) {
             (i, true) if i + 1 < n => i + 1,
             (i, false) if i > 0 => i - 1,
-            (_, upper) if self.periodic[axis] => {
-                if upper {
-                    0
-                } else {
-                    n - 1
-                }
-            }
+            (_, true) if self.periodic[axis] => 0,
+            (_, false) if self.periodic[axis] => n - 1,
             _ => return None,
         };
         Some(cell)
@@ -110,15 +103,15 @@ impl<const D: usize> Geometry<'_, D> {
         };
         self.open[axis].get(&place).copied().unwrap_or(1.0)
     }
+    /// A difference along an axis, of the nearest image where it is periodic \[m\].
+    fn nearest(&self, axis: usize, d: f64) -> f64 {
+        let length = self.grid.axis(axis).length();
+        if self.periodic[axis] { d - length * (d / length).round() } else { d }
+    }
     /// How far the centre is from the wall in the cell `at`, along that wall's normal \[m\]; periodic images count.
     fn height(&self, cell: [usize; D], wall: &WallPiece) -> f64 {
         let x = self.grid.centre(cell);
-        let along = |a: usize| {
-            let length = self.grid.axis(a).length();
-            let d = x[a] - wall.foot[a];
-            if self.periodic[a] { d - length * (d / length).round() } else { d }
-        };
-        (0..D).map(|a| along(a) * wall.normal[a]).sum()
+        (0..D).map(|a| self.nearest(a, x[a] - wall.foot[a]) * wall.normal[a]).sum()
     }
     /// Is the centre in the fluid?
     fn wet(&self, cell: [usize; D]) -> bool {
@@ -132,12 +125,9 @@ impl<const D: usize> Geometry<'_, D> {
         let centre = self.grid.centre(before);
         // The corners are `before` and its neighbours towards the place.
         let towards: [(bool, f64); D] = std::array::from_fn(|a| {
-            let length = self.grid.axis(a).length();
-            let d = x(a) - centre[a];
-            let d = if self.periodic[a] { d - length * (d / length).round() } else { d };
+            let d = self.nearest(a, x(a) - centre[a]);
             let next = self.beside(before, a, d > 0.0).map_or(centre[a], |c| self.grid.centre(c)[a]);
-            let gap = next - centre[a];
-            let gap = if self.periodic[a] { gap - length * (gap / length).round() } else { gap };
+            let gap = self.nearest(a, next - centre[a]);
             (d > 0.0, if gap == 0.0 { 0.0 } else { (d / gap).clamp(0.0, 1.0) })
         });
         let mut out = Vec::new();
@@ -199,7 +189,7 @@ impl<const D: usize> Scalar<D> {
             pieces: cuts.walls.iter().map(|wall| (wall.cell, wall)).collect(),
         };
         let mut made = Walls {
-            open: std::array::from_fn(|a| geometry.open[a].iter().map(|(&o, &open)| (o, open)).collect()),
+            open: std::array::from_fn(|a| cuts.faces[a].iter().map(|face| (face.index, face.open)).collect()),
             shut: Vec::new(),
             films: Vec::new(),
             beside: Vec::new(),
@@ -265,7 +255,7 @@ impl<const D: usize> Scalar<D> {
             let sum =
                 |of: &dyn Fn(&Seen) -> f64| film.seen.iter().map(|seen| seen.weight * of(seen)).sum::<f64>();
             let energy = sum(&|seen| k.get(seen.cell).copied().unwrap_or(0.0)) / sum(&|_| 1.0);
-            let speed = C_MU * energy.max(0.0).sqrt() / viscosity;
+            let speed = LawOfTheWall::friction_velocity(energy) / viscosity;
             // y over the conductivity that the law has up to there.
             let resistance = sum(&|seen| {
                 let plus = speed * seen.y;
@@ -311,13 +301,14 @@ impl<const D: usize> Scalar<D> {
         self.boundaries.fill_ghosts(&mut self.phi);
     }
 
-    /// Γ + D_t on a face of a cell.
-    fn conductivity(&self, &Shut { place, axis, upper, .. }: &Shut, q: usize) -> f64 {
-        let eddies = self
-            .mixing
-            .as_ref()
-            .map_or([0.0; 2], |m| m.on_faces(&self.metrics, axis, self.grid.stride()[axis], place, q));
-        self.diffusivity + eddies[usize::from(upper)]
+    /// (Γ + D_t) over the squared spacing at a face of a cell, times the share that is shut \[1/s\].
+    fn conductance(&self, &Shut { cell, place, axis, upper, share, .. }: &Shut) -> f64 {
+        let (nodes, q) = (&self.metrics.axes[axis].centres, GHOSTS + self.grid.cell(cell)[axis]);
+        let stride = self.grid.stride()[axis];
+        let eddies =
+            self.mixing.as_ref().map_or([0.0; 2], |m| m.on_faces(&self.metrics, axis, stride, place, q));
+        let metric = if upper { nodes.up[q] } else { nodes.down[q] };
+        share * metric * (self.diffusivity + eddies[usize::from(upper)])
     }
 
     /// Takes what does not pass out of the balance of the cells beside walls, and puts in what walls give off.
@@ -325,13 +316,9 @@ impl<const D: usize> Scalar<D> {
         let Some(walls) = self.walls.as_deref() else { return };
         let (phi, s) = (self.phi.data(), self.grid.stride());
         for shut in &walls.shut {
-            let a = shut.axis;
-            let (nodes, q) = (&self.metrics.axes[a].centres, GHOSTS + self.grid.cell(shut.cell)[a]);
-            let [other, metric] = match shut.upper {
-                true => [phi[shut.place + s[a]], nodes.up[q]],
-                false => [phi[shut.place - s[a]], nodes.down[q]],
-            };
-            rest[shut.cell] -= shut.share * metric * self.conductivity(shut, q) * (other - phi[shut.place]);
+            let step = s[shut.axis];
+            let other = if shut.upper { shut.place + step } else { shut.place - step };
+            rest[shut.cell] -= self.conductance(shut) * (phi[other] - phi[shut.place]);
         }
         for &(cell, o) in &walls.beside {
             let at = self.grid.cell(cell);
@@ -353,11 +340,8 @@ impl<const D: usize> Scalar<D> {
         let (centre, lower, upper) = matrix.parts_mut();
         let sides = [lower, upper];
         for shut in walls.shut.iter().filter(|shut| !shut.side) {
-            let (a, k) = (shut.axis, usize::from(shut.upper));
-            let (nodes, q) = (&self.metrics.axes[a].centres, GHOSTS + self.grid.cell(shut.cell)[a]);
-            let metric = if shut.upper { nodes.up[q] } else { nodes.down[q] };
-            let kept = shut.share * metric * self.conductivity(shut, q);
-            sides[k][a][shut.cell] += kept;
+            let kept = self.conductance(shut);
+            sides[usize::from(shut.upper)][shut.axis][shut.cell] += kept;
             centre[shut.cell] -= kept;
         }
         for film in &walls.films {

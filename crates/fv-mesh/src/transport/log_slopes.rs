@@ -1,12 +1,11 @@
 //! How much too steep differences find a logarithmic layer.
+use super::near_solids::NEAREST;
 use crate::least_squares::norm2;
 use crate::{CartesianGrid, Velocity};
 use interfaces::LogSlope;
 
 /// Cells farther than so many of their extents from a wall are left alone: 2 % too steep there.
 const FARTHEST: f64 = 4.5;
-/// Gradients are smooth enough for a normal from there on, in extents.
-const NEAREST: f64 = 0.3;
 
 /// Cells beside an immersed wall in a layer u = (u_τ/κ) ln y + const. |S| by [`strain_rate`](interfaces::Transport::strain_rate) is
 /// u_τ/(κy) times the root of

@@ -16,7 +16,9 @@ pub use wilcox::Wilcox;
 use crate::error::positive;
 use crate::wall::WallLayer;
 use crate::{Inflow, TurbulenceError, WallFunctions, YPlus};
-use interfaces::{Checkpoint, Closure, Equation, RestartError, SolveError, SolveInfo, Transport, WallRow};
+use interfaces::{
+    Checkpoint, Closure, Equation, LawOfTheWall, RestartError, SolveError, SolveInfo, Transport, WallRow,
+};
 
 /// k–ω of Wilcox (1988).
 pub type KOmega = TwoEquation<Wilcox>;
@@ -90,8 +92,6 @@ const LOGARITHMIC: f64 = 3.0;
 const FLOOR: f64 = 1e-30;
 /// k in solids: so little that it is none, and enough not to be counted as set after a solve.
 const NOTHING: f64 = 2.0 * FLOOR;
-/// ν_t over √k and the mixing length: C_μ^¼.
-const MIXING: f64 = 0.547_722_557_505_166_1;
 
 impl<L: Law> TwoEquation<L> {
     /// The model `law` on `cells` cells, all as `inflow`, which is also what enters.
@@ -442,11 +442,11 @@ impl<L: Law> Closure for TwoEquation<L> {
         let distance = flow.wall_distance();
         let widest = distance.iter().copied().fold(0.0, f64::max);
         // Where k and ε are far from each other ν_t would run away before they are not.
-        let length = if dt.is_none() && widest > 0.0 { MIXING * widest } else { f64::INFINITY };
+        let length = if dt.is_none() && widest > 0.0 { widest } else { f64::INFINITY };
         self.limited = 0;
         for (i, &d) in distance.iter().enumerate() {
             let eddy = self.law.eddy_viscosity(&self.local(i, d, nu));
-            let most = length * self.k[i].sqrt();
+            let most = length * LawOfTheWall::friction_velocity(self.k[i]);
             self.limited += usize::from(eddy > most);
             self.eddy[i] = if eddy > most { most } else { eddy };
         }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::testing::Uniform;
-use interfaces::WallPoint;
+use interfaces::{LogSlope, WallPoint};
 use proptest::prelude::*;
 
 const INFLOW: Inflow = Inflow { k: 2.0, omega: 3.0 };
@@ -50,6 +50,34 @@ fn eddies_are_no_larger_than_the_flow() {
     let most = |model: &KEpsilon| 0.09_f64.powf(0.25) * 0.5 * model.k()[0].sqrt();
     assert!((steady.nu_t()[0] / most(&steady) - 1.0).abs() < 1e-12 && steady.limited() == 1);
     assert!(unsteady.nu_t()[0] > 1e3 * most(&unsteady) && unsteady.limited() == 0);
+}
+
+/// A layer that differences find too steep is to every model what it is; where it is not logarithmic nothing is taken off.
+#[test]
+fn logarithmic_layers_have_their_own_slope() {
+    fn same<L: Law>(law: L) {
+        let part = 0.6;
+        let k_after = |shear: f64, distance: f64, slopes: bool| {
+            let mut flow = Uniform::new([[0.0, shear, 0.0], [0.0; 3], [0.0; 3]], 1);
+            flow.distance = vec![distance];
+            flow.log_slopes = slopes.then_some(LogSlope { cell: 0, distance, part }).into_iter().collect();
+            let mut model = TwoEquation::new(law.clone(), 1, INFLOW).unwrap();
+            for _ in 0..3 {
+                model.correct(&mut flow, &[], 1e-6, Some(0.1)).unwrap();
+            }
+            [model.k()[0], model.scale()[0], model.nu_t()[0]]
+        };
+        let close = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a / b - 1.0).abs() < 1e-9);
+        // y* of 7.7e5, and of 0.008.
+        let [far, near] = [1.0, 1e-8];
+        assert!(close(k_after(7.0, far, true), k_after(part * 7.0, far, false)));
+        assert!(!close(k_after(7.0, far, true), k_after(7.0, far, false)));
+        assert!(close(k_after(7.0, near, true), k_after(7.0, near, false)));
+    }
+    same(Wilcox::default());
+    same(Sst::default());
+    same(StandardKEpsilon::default());
+    same(Realizable::default());
 }
 
 /// Homogeneous shear: k and the scale grow without bound, at the rate that P/ε = (C₂ − 1)/(C₁ − 1) says.

@@ -44,9 +44,6 @@ impl WallStress {
     }
 }
 
-/// C_μ^¼.
-const C_MU: f64 = 0.547_722_557_505_166_1;
-
 /// u_τ² over the velocity `u` at distance `y` from a wall \[m/s\], with u_τ if that is known.
 fn friction(law: LawOfTheWall, [y, u]: [f64; 2], u_tau: Option<f64>, nu: f64) -> f64 {
     let plus = u_tau.map_or_else(|| law.y_plus(u * y / nu), |u_tau| u_tau * y / nu);
@@ -176,7 +173,7 @@ impl<const D: usize> Stresses<D> {
             let k = k.map(|k| {
                 self.cells[probe.cells.0..probe.cells.1].iter().map(|&(o, w)| w * k.data()[o]).sum()
             });
-            self.speeds[p] = k.map(|k: f64| C_MU * k.max(0.0).sqrt());
+            self.speeds[p] = k.map(LawOfTheWall::friction_velocity);
             let scale = self.speed(p) / nu;
             // In fluid at rest the law is that of the viscous sublayer.
             let law_at = |y: f64| if scale > 0.0 { law.u_plus(scale * y) } else { y };

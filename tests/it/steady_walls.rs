@@ -1,9 +1,13 @@
 //! Immersed walls in the steady flow: what does not depend on how the walls lie.
 use example_support::turned_ducts::TurnedDucts;
-use siltflow::flow::{CartesianGrid, Convection, Fluid, Profile, Side, Simple, WallStress};
+use siltflow::flow::{
+    CartesianGrid, Convection, Fluid, Modelled, Profile, Side, Simple, SimpleParams, TransportParams,
+    WallStress,
+};
 use siltflow::ibm::{StaticBodies, cut_cells};
 use siltflow::interfaces::{Aabb, CutCells, Point, Pose, Solid, Vector, VelocityField};
 use std::collections::HashMap;
+use turb::{Inflow, KOmegaSst, Sst};
 
 /// All that is more than `half` away from a line.
 struct Outside {
@@ -172,6 +176,39 @@ fn walls_take_what_drives_the_fluid_through_periodic_ends() {
         let mean = ducts.mean_velocity(&flow, &cuts) / (force * height * height / (12.0 * nu));
         assert!((taken - 1.0).abs() < 1e-6, "{angle}: {taken}");
         assert!((mean - 1.0).abs() < 0.02, "{angle}: {mean}");
+    }
+}
+
+/// A duct whose walls are a little behind lines of the grid settles as that on the lines does, to the same flow.
+#[test]
+fn turbulent_flow_between_walls_beside_lines_of_the_grid_settles() {
+    let mut middle: Option<f64> = None;
+    for behind in [0.0, 1e-4, 2e-3, 9e-3] {
+        let (n, re) = (16, 1e5);
+        let h = 1.0 / n as f64;
+        let grid = CartesianGrid::new([60, n + 6], [6.0, (n + 6) as f64 * h]).unwrap();
+        let inlet = Side::Inlet(Profile::Uniform([1.0, 0.0, 0.0]));
+        let sides = [[inlet, Side::ConvectiveOutlet], Side::FreeSlip.both()];
+        let mut flow = Simple::new(grid, sides, Fluid { density: 1.0, viscosity: 1.0 / re })
+            .unwrap()
+            .with_convection(Convection::Quick)
+            .with_params(SimpleParams::turbulent())
+            .unwrap();
+        let at = 0.5 * (n + 6) as f64 * h;
+        let duct = Outside { half: 0.5 + behind * h, angle: 0.0, at: [0.0, at] };
+        let cuts = cut_cells(flow.velocity(), &StaticBodies::new().with(duct, Pose::at([0.0; 3]))).unwrap();
+        flow.set_walls(Some((&cuts, WallStress::LAW_OF_THE_WALL))).unwrap();
+        flow.set_velocity(|_| [1.0, 0.0]);
+        let inflow = Inflow::from_length(1.0, 0.05, 0.07).unwrap();
+        let model = KOmegaSst::new(Sst::default(), flow.grid().n_cells(), inflow).unwrap();
+        let mut model = Modelled::new(model, flow.grid(), flow.sides(), TransportParams::steady()).unwrap();
+        let distances = (0..n + 6).map(|j| (0.5 - ((j as f64 + 0.5) * h - at).abs()).max(0.0));
+        let distances: Vec<f64> = distances.flat_map(|d| [d; 60]).collect();
+        model.transport_mut().wall_distance_mut().copy_from_slice(&distances);
+        flow.solve_with(&mut model, 200, 1e-5).unwrap();
+        let u = flow.velocity().field(0).row(n / 2 + 3)[40];
+        let on_the_lines = *middle.get_or_insert(u);
+        assert!((u / on_the_lines - 1.0).abs() < 1e-3, "{behind}: {u} {on_the_lines}");
     }
 }
 

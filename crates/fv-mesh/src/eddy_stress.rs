@@ -1,6 +1,7 @@
 //! What an eddy viscosity does to the momentum.
 use crate::flow_state::FlowState;
 use crate::linear::StencilMatrix;
+use crate::spans::Spans;
 use crate::{Field, kernels};
 
 /// The stress of an eddy viscosity ν_t: ∇·[ν_t(∇u + ∇uᵀ)], and the friction of walls where a model gives it.
@@ -53,7 +54,7 @@ impl<const D: usize> EddyStress<D> {
     pub(crate) fn add(&self, c: usize, state: &FlowState<D>, source: &mut Field<D>) {
         let FlowState { grid, metrics, velocity, .. } = state;
         let (u, eddy) = (&velocity.components, &self.eddy);
-        kernels::add_eddy_stress(grid, metrics, c, u, eddy, source);
+        kernels::add_eddy_stress((grid, metrics, &Spans::default()), c, u, eddy, source);
         let (u, source) = (u[c].data(), source.data_mut());
         for f in &self.friction[c] {
             source[f.place] -= f.rate * (u[f.place] - f.wall);

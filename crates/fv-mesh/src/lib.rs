@@ -54,6 +54,7 @@ mod sample;
 mod scalar;
 mod side_power;
 mod simple;
+mod spans;
 mod statistics;
 #[cfg(test)]
 mod tests;

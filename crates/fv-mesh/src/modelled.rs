@@ -154,10 +154,24 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
     /// [`FlowError::Closure`] for an eddy viscosity of another length than the grid.
     pub fn eddy_stress(&mut self, viscosity: f64, time: f64) -> Result<Option<&EddyStress<D>>, FlowError> {
         let given = self.refresh(viscosity, time)?;
+        let on_walls = self.closure.wall_viscosity();
+        let on_walls = &on_walls[..self.walls.rows().len().min(on_walls.len())];
+        let rate = rate(&self.stiffness, self.seen_eddies(), on_walls);
+        self.stress.iter_mut().for_each(|stress| stress.rate = rate);
         Ok(self.stress.as_ref().filter(|_| given))
     }
 
-    /// Makes the stress of what the model says now. Is there any?
+    /// Is there a film, and the model's ν_t on the walls under it?
+    fn has_film(&self) -> bool {
+        !self.film.is_empty() && self.closure.wall_viscosity().len() == self.rows.len()
+    }
+
+    /// ν_t of every cell as the momentum had it last.
+    fn seen_eddies(&self) -> &[f64] {
+        if self.has_film() { &self.filmed } else { self.closure.eddy_viscosity().unwrap_or_default() }
+    }
+
+    /// Makes the stress of what the model says now, all but its rate. Is there any?
     pub(crate) fn refresh(&mut self, viscosity: f64, time: f64) -> Result<bool, FlowError> {
         let Some(mut eddy) = self.closure.eddy_viscosity() else { return Ok(false) };
         let (grid, on_walls) = (self.transport.grid(), self.closure.wall_viscosity());
@@ -168,7 +182,7 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
             return failed("the eddy viscosity", grid.n_cells(), eddy.len());
         }
         let rows = self.walls.rows().len();
-        if !self.film.is_empty() && on_walls.len() == self.rows.len() {
+        if self.has_film() {
             self.filmed.clear();
             self.filmed.extend_from_slice(eddy);
             for &(cell, row, share) in &self.film {
@@ -184,7 +198,6 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
             return failed("the eddy viscosity on walls", rows, on_walls.len());
         }
         let stress = self.stress.get_or_insert_with(|| EddyStress::of(Field::zeros(grid)));
-        stress.rate = rate(&self.stiffness, eddy, on_walls);
         self.transport.spread(eddy, &mut stress.eddy);
         if on_walls.is_empty() {
             stress.friction.iter_mut().for_each(Vec::clear);

@@ -1,6 +1,7 @@
 //! What a closure (a turbulence model) may ask of a flow solver, and what the solver gets from it.
 use crate::WallRow;
 use std::fmt;
+use std::ops::Range;
 
 /// One convection–diffusion–reaction equation for values φ at the cells, dense, x fastest:
 ///
@@ -84,6 +85,10 @@ pub trait Transport {
     /// # Panics
     /// If there is no such cell.
     fn cell_volume(&self, c: usize) -> f64;
+    /// Runs of cells in which something happens, in ascending order: what is computed in others, deep in solids, nobody looks at. `None`: all.
+    fn runs(&self) -> Option<&[Range<usize>]> {
+        None
+    }
     /// Distance of every cell's centre from the nearest wall \[m\]; infinite without walls.
     fn wall_distance(&self) -> &[f64];
     /// |S| = √(2 S:S) \[1/s\], S = ½(∇u + ∇uᵀ), at the cells' centres.

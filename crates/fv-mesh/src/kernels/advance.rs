@@ -3,6 +3,7 @@ use super::{for_layers, row_place};
 use crate::field::row_start;
 use crate::grid::GHOSTS;
 use crate::metrics::{InterfaceWeights, Metrics, NodeMetrics};
+use crate::spans::Spans;
 use crate::{CartesianGrid, Convection, Field};
 use pulp::{Arch, Simd, WithSimd};
 
@@ -31,6 +32,7 @@ pub(crate) struct Momentum<const D: usize> {
     kind: Kind,
     /// Interface weights of component c along axis b; empty for the central scheme.
     weights: [[InterfaceWeights; D]; D],
+    pub(crate) spans: Spans,
 }
 
 /// The forms of an interface value.
@@ -61,7 +63,7 @@ impl<const D: usize> Momentum<D> {
                 _ => metrics.weights(scheme, b, Metrics::<D>::family(Some(c), b)),
             })
         });
-        Self { grid: grid.clone(), metrics: metrics.clone(), kind, weights }
+        Self { grid: grid.clone(), metrics: metrics.clone(), kind, weights, spans: Spans::default() }
     }
 
     /// One component of
@@ -129,9 +131,11 @@ impl<const D: usize, const C: usize, const KIND: u8> WithSimd for Typed<'_, D, C
         let Rows { momentum, rows, start, k, u, p, next, tendency } = self.0;
         let n = momentum.grid.cells()[0];
         for r in rows {
-            let o = row_start(&momentum.grid, r);
-            let at = row_place(&momentum.grid, r);
-            let local = o - start..o - start + n;
+            let span = momentum.spans.of(r, n);
+            let o = row_start(&momentum.grid, r) + span.start;
+            let mut at = row_place(&momentum.grid, r);
+            at[0] = span.start;
+            let local = o - start..o - start + span.len();
             let out = [&mut next[local.clone()], &mut tendency[local]];
             advance_row::<D, C, KIND>(momentum, (o, at), k, (u, p), out);
         }
@@ -145,8 +149,8 @@ macro_rules! along {
     };
 }
 
-/// One row of the new velocity and of the tendency; `o` is the storage index of its first cell, `at` its place along the
-/// other axes, `u` and `p` are velocity and pressure.
+/// One row of the new velocity and of the tendency; `o` is the storage index of its first cell, `at` its place, `u` and `p` are velocity
+/// and pressure.
 #[inline(always)]
 fn advance_row<const D: usize, const C: usize, const KIND: u8>(
     momentum: &Momentum<D>,
@@ -173,13 +177,13 @@ fn advance_row<const D: usize, const C: usize, const KIND: u8>(
     // Distances: lists along x, one number along the other axes.
     let nodes: [&NodeMetrics; D] = std::array::from_fn(|b| momentum.metrics.of(Some(C), b));
     let first: [usize; D] = std::array::from_fn(|b| GHOSTS + at[b]);
-    let inv = &nodes[0].inv_volume[GHOSTS..][..n];
-    let (up, down) = (&nodes[0].up[GHOSTS..][..n], &nodes[0].down[GHOSTS..][..n]);
+    let inv = &nodes[0].inv_volume[first[0]..][..n];
+    let (up, down) = (&nodes[0].up[first[0]..][..n], &nodes[0].down[first[0]..][..n]);
     let inv_b: [f64; D] = std::array::from_fn(|b| nodes[b].inv_volume[first[b]]);
     let up_b: [f64; D] = std::array::from_fn(|b| nodes[b].up[first[b]]);
     let down_b: [f64; D] = std::array::from_fn(|b| nodes[b].down[first[b]]);
-    let gap = &nodes[0].inv_volume[GHOSTS..][..n];
-    let share = [&axes[0].share[0][GHOSTS..][..n], &axes[0].share[1][GHOSTS..][..n]];
+    let gap = &nodes[0].inv_volume[first[0]..][..n];
+    let share = [&axes[0].share[0][first[0]..][..n], &axes[0].share[1][first[0]..][..n]];
     let share_c = [axes[C].share[0][first[C]], axes[C].share[1][first[C]]];
     let weights = &momentum.weights[C];
 
@@ -205,7 +209,7 @@ fn advance_row<const D: usize, const C: usize, const KIND: u8>(
             let (value_up, value_down) = if KIND == MEAN {
                 (centre + high, low + centre)
             } else {
-                let j = if b == 0 { GHOSTS + i } else { first[b] };
+                let j = if b == 0 { first[0] + i } else { first[b] };
                 let value = |j: usize, carry: f64, line: [f64; 4]| {
                     2.0 * interface::<KIND>(&weights[b], j, carry, line)
                 };

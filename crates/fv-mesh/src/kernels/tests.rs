@@ -9,6 +9,7 @@ use crate::boundary::Boundaries;
 use crate::implicit::ImplicitDiffusion;
 use crate::metrics::Metrics;
 use crate::operators::tests::{Family, Norms, assert_order, exact};
+use crate::spans::Spans;
 use crate::{Convection, Side, Sides};
 use std::f64::consts::PI;
 
@@ -149,7 +150,7 @@ impl<const D: usize> Setting<D> {
         tell("gradient of the correction".into(), 2.0, &found, &wanted);
 
         let (nu_t, mut found) = (self.field(None, eddy), Field::zeros(&self.grid));
-        add_eddy_stress(&self.grid, &self.metrics, c, &u, &nu_t, &mut found);
+        add_eddy_stress((&self.grid, &self.metrics, &Spans::default()), c, &u, &nu_t, &mut found);
         tell("eddy stress".into(), 2.0, &found, &self.field(Some(c), |x| flow.eddy_stress(c, x)));
         list
     }

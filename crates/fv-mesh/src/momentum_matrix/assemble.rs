@@ -4,6 +4,7 @@ use crate::grid::GHOSTS;
 use crate::kernels::row_place;
 use crate::linear::StencilMatrix;
 use crate::metrics::{Metrics, NodeMetrics};
+use crate::spans::Spans;
 use crate::{CartesianGrid, Field};
 use pulp::{Arch, Simd, WithSimd};
 
@@ -63,8 +64,7 @@ pub(crate) struct Terms<'a, const D: usize> {
 /// Σ A_PP |u| V. Nodes on bounded sides get δ = 0; coefficients that reach beyond them are left for
 /// [`fold_ends`](super::fold_ends).
 pub(crate) fn assemble<const D: usize>(
-    grid: &CartesianGrid<D>,
-    metrics: &Metrics<D>,
+    (grid, metrics, spans): (&CartesianGrid<D>, &Metrics<D>, &Spans),
     c: usize,
     terms: Terms<D>,
     matrix: &mut StencilMatrix<D>,
@@ -73,7 +73,7 @@ pub(crate) fn assemble<const D: usize>(
 ) {
     let (centre, lower, upper) = matrix.parts_mut();
     let part = Part { first: 0, centre, lower, upper, rhs, sums };
-    let job = Job { grid, metrics, terms };
+    let job = Job { grid, metrics, spans, terms };
     match (terms.implicit, terms.eddy.is_some()) {
         (Implicit::Upwind, false) => of_component::<D, UPWIND, false>(c, job, part),
         (Implicit::Upwind, true) => of_component::<D, UPWIND, true>(c, job, part),
@@ -96,6 +96,7 @@ fn of_component<const D: usize, const KIND: u8, const EDDY: bool>(c: usize, job:
 struct Job<'a, const D: usize> {
     grid: &'a CartesianGrid<D>,
     metrics: &'a Metrics<D>,
+    spans: &'a Spans,
     terms: Terms<'a, D>,
 }
 
@@ -164,14 +165,16 @@ impl<const D: usize, const C: usize, const KIND: u8, const EDDY: bool> WithSimd
         let Self { job, mut part } = self;
         let n = job.grid.cells()[0];
         for k in 0..part.sums.len() {
-            let here = k * n..(k + 1) * n;
+            let span = job.spans.of(part.first + k, n);
+            let here = k * n + span.start..k * n + span.end;
             let row = Row {
                 centre: &mut part.centre[here.clone()],
                 lower: part.lower.each_mut().map(|l| &mut l[here.clone()]),
                 upper: part.upper.each_mut().map(|u| &mut u[here.clone()]),
                 rhs: &mut part.rhs[here.clone()],
             };
-            part.sums[k] = assemble_row::<D, C, KIND, EDDY>(&job, part.first + k, row);
+            part.sums[k] =
+                assemble_row::<D, C, KIND, EDDY>(&job, part.first + k, [span.start, span.len()], row);
         }
     }
 }
@@ -204,12 +207,16 @@ macro_rules! along {
 fn assemble_row<const D: usize, const C: usize, const KIND: u8, const EDDY: bool>(
     job: &Job<D>,
     r: usize,
+    [from, n]: [usize; 2],
     row: Row<D>,
 ) -> [f64; 2] {
-    let Job { grid, metrics, terms } = job;
-    let n = grid.cells()[0];
+    let Job { grid, metrics, terms, .. } = job;
+    if n == 0 {
+        return [0.0; 2];
+    }
     let Row { centre, mut lower, mut upper, rhs } = row;
-    let (o, at, s) = (row_start(grid, r), row_place(grid, r), grid.stride());
+    let (o, mut at, s) = (row_start(grid, r) + from, row_place(grid, r), grid.stride());
+    at[0] = from;
     let (centre, rhs) = (&mut centre[..n], &mut rhs[..n]);
     let bounded = !metrics.periodic[C];
     if C > 0 && bounded && at[C] == 0 {
@@ -220,7 +227,13 @@ fn assemble_row<const D: usize, const C: usize, const KIND: u8, const EDDY: bool
     }
     let nodes: [&NodeMetrics; D] = std::array::from_fn(|b| metrics.of(Some(C), b));
     let first: [usize; D] = std::array::from_fn(|b| GHOSTS + at[b]);
-    let share = [&metrics.axes[C].share[0][GHOSTS..], &metrics.axes[C].share[1][GHOSTS..]];
+    // Along x from the first cell on.
+    let along_x = GHOSTS + from;
+    let share = if C == 0 {
+        [&metrics.axes[C].share[0][along_x..], &metrics.axes[C].share[1][along_x..]]
+    } else {
+        [&[][..]; 2]
+    };
     let share_c = [metrics.axes[C].share[0][first[C]], metrics.axes[C].share[1][first[C]]];
     let here = &terms.velocity[C].data()[o..][..n];
 
@@ -239,8 +252,9 @@ fn assemble_row<const D: usize, const C: usize, const KIND: u8, const EDDY: bool
         } else {
             [&u[o + s[b] - s[C]..][..n], &u[o + s[b]..][..n]]
         };
-        let inv = &nodes[b].inv_volume[GHOSTS..];
-        let (d_up, d_down) = (&nodes[b].up[GHOSTS..], &nodes[b].down[GHOSTS..]);
+        let x = if b == 0 { along_x } else { GHOSTS };
+        let inv = &nodes[b].inv_volume[x..];
+        let (d_up, d_down) = (&nodes[b].up[x..], &nodes[b].down[x..]);
         let (inv_b, up_b, down_b) =
             (nodes[b].inv_volume[first[b]], nodes[b].up[first[b]], nodes[b].down[first[b]]);
         let eddy: [&[f64]; 6] = match terms.eddy.filter(|_| EDDY).map(Field::data) {
@@ -296,9 +310,9 @@ fn assemble_row<const D: usize, const C: usize, const KIND: u8, const EDDY: bool
     let (p_up, p_down) = (&p[o..][..n], &p[o - s[C]..][..n]);
     let h = &terms.tendency.data()[o..][..n];
     let [u1, u2] = terms.history.map(|u| &u.data()[o..][..n]);
-    let gap = if C == 0 { &nodes[0].inv_volume[GHOSTS..][..n] } else { &[][..] };
+    let gap = if C == 0 { &nodes[0].inv_volume[along_x..][..n] } else { &[][..] };
     let gap_c = nodes[C].inv_volume[first[C]];
-    let volume = &nodes[0].volume[GHOSTS..][..n];
+    let volume = &nodes[0].volume[along_x..][..n];
     let ([w0, w1, w2], relaxation) = (terms.weights, terms.relaxation);
     let (force, size) = (terms.force, terms.force.abs());
     let mut sums = [[0.0; 4]; 2];
@@ -312,7 +326,7 @@ fn assemble_row<const D: usize, const C: usize, const KIND: u8, const EDDY: bool
         sums[0][i % 4] += volume[i] * (h[i].abs() + slope.abs() + size);
         sums[1][i % 4] += volume[i] * diagonal * here[i].abs();
     }
-    if C == 0 && bounded {
+    if C == 0 && bounded && from == 0 {
         (centre[0], rhs[0]) = (1.0, 0.0);
         lower.iter_mut().chain(upper.iter_mut()).for_each(|list| list[0] = 0.0);
     }

@@ -4,6 +4,7 @@ use crate::boundary::Boundaries;
 use crate::kernels::{Advance, Momentum, add_eddy_stress, flux};
 use crate::linear::StencilMatrix;
 use crate::metrics::Metrics;
+use crate::spans::Spans;
 use crate::{CartesianGrid, Convection, Field, Fluid, walls};
 use interfaces::Vector;
 
@@ -21,6 +22,7 @@ pub(crate) struct MomentumEquations<const D: usize> {
     tendency: Field<D>,
     scratch: Field<D>,
     sums: Vec<[f64; 2]>,
+    spans: Spans,
     /// Right-hand side of the equation made last.
     pub(crate) rhs: Vec<f64>,
     pub(crate) solver: MomentumSolver,
@@ -63,6 +65,7 @@ impl<const D: usize> MomentumEquations<D> {
             tendency: Field::zeros(grid),
             scratch: Field::zeros(grid),
             sums: vec![[0.0; 2]; rows],
+            spans: Spans::default(),
             rhs: vec![0.0; grid.n_cells()],
             grid: grid.clone(),
             metrics: metrics.clone(),
@@ -98,8 +101,17 @@ impl<const D: usize> MomentumEquations<D> {
 
     pub(crate) fn set_convection(&mut self, scheme: Convection) {
         self.convection = Momentum::new(&self.grid, &self.metrics, scheme);
+        self.convection.spans = self.spans.clone();
         self.scheme = scheme;
         self.implicit = if scheme == Convection::Central { self.central } else { Implicit::Upwind };
+    }
+
+    /// Outside of `spans` nothing is computed from now on.
+    pub(crate) fn set_spans(&mut self, spans: &Spans) {
+        self.spans = spans.clone();
+        self.convection.spans = spans.clone();
+        self.tendency.data_mut().fill(0.0);
+        self.rhs.fill(0.0);
     }
 
     /// Makes the equation of component `c`; gives Σ (|H| + |∂p/∂x_c|/ρ + |f|) V and Σ A_PP |u| V.
@@ -120,7 +132,8 @@ impl<const D: usize> MomentumEquations<D> {
         };
         self.convection.advance(c, k, e.velocity, e.pressure, &mut self.scratch, &mut self.tendency);
         if let Some(eddy) = e.eddy {
-            add_eddy_stress(&self.grid, &self.metrics, c, e.velocity, eddy, &mut self.tendency);
+            let place = (&self.grid, &self.metrics, &self.spans);
+            add_eddy_stress(place, c, e.velocity, eddy, &mut self.tendency);
         }
         if let Some(source) = e.source {
             let all = self.tendency.data_mut().iter_mut().zip(source.data());
@@ -140,7 +153,8 @@ impl<const D: usize> MomentumEquations<D> {
             eddy: e.eddy,
             implicit: self.implicit,
         };
-        assemble(&self.grid, &self.metrics, c, terms, matrix, &mut self.rhs, &mut self.sums);
+        let place = (&self.grid, &self.metrics, &self.spans);
+        assemble(place, c, terms, matrix, &mut self.rhs, &mut self.sums);
         fold_ends(&self.grid, boundaries, c, matrix);
         self.sums.iter().fold([0.0; 2], |sum, row| [sum[0] + row[0], sum[1] + row[1]])
     }

@@ -92,7 +92,7 @@ pub(crate) struct CarriedRow<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> CarriedRow<'a, D> {
-    /// The row of `n` cells from storage index `o`, at `at` along the other axes.
+    /// The row of `n` cells from storage index `o`, which is at `at`.
     #[inline(always)]
     pub(crate) fn new(
         carrier: &'a Carrier<D>,
@@ -114,9 +114,9 @@ impl<'a, const D: usize> CarriedRow<'a, D> {
             below2: std::array::from_fn(|b| &phi[o - 2 * s[b]..][..n]),
             lower: std::array::from_fn(|b| &velocity[b].data()[o..][..n]),
             upper: std::array::from_fn(|b| &velocity[b].data()[o + s[b]..][..n]),
-            inv: &axes[0].centres.inv_volume[GHOSTS..][..n],
+            inv: &axes[0].centres.inv_volume[GHOSTS + at[0]..][..n],
             inv_b: std::array::from_fn(|b| axes[b].centres.inv_volume[GHOSTS + at[b]]),
-            along: [Interfaces::new(&weights[0], GHOSTS, n), Interfaces::new(&weights[0], GHOSTS + 1, n)],
+            along: [0, 1].map(|k| Interfaces::new(&weights[0], GHOSTS + at[0] + k, n)),
             across: std::array::from_fn(|b| {
                 [0, 1].map(|k| Interfaces::new(&weights[b], GHOSTS + at[b] + k, 1).at(0))
             }),

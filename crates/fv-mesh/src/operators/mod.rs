@@ -51,6 +51,7 @@ pub(crate) use strain::StrainRate;
 
 use crate::grid::GHOSTS;
 use crate::metrics::Metrics;
+use crate::spans::Spans;
 use crate::{CartesianGrid, Convection, Field, FlowError, Velocity};
 use convection::Convect;
 use rows::fill_rows;
@@ -71,6 +72,8 @@ pub struct Operators<const D: usize> {
     half: Vec<f64>,
     /// Per scheme of [`Convection::ALL`].
     carriers: [Carrier<D>; 5],
+    /// Of the cells for which something is computed.
+    spans: Spans,
 }
 
 impl<const D: usize> Operators<D> {
@@ -89,6 +92,7 @@ impl<const D: usize> Operators<D> {
             cell_difference: std::array::from_fn(|a| opposite(&metrics.axes[a].centres.inv_volume)),
             half: vec![0.5; longest],
             carriers: Convection::ALL.map(|scheme| Carrier::new(&metrics, scheme)),
+            spans: Spans::default(),
             centred,
             metrics,
             grid: grid.clone(),
@@ -161,7 +165,7 @@ impl<const D: usize> Operators<D> {
         self.check(&[out])?;
         let faces = faces.each_ref().map(Field::data);
         let kernel = Divergence { grid: &self.grid, metrics: &self.metrics, faces };
-        fill_rows(&self.grid, self.grid.cells(), &kernel, out);
+        fill_rows(&self.grid, self.grid.cells(), &self.spans, &kernel, out);
         Ok(())
     }
 
@@ -172,7 +176,7 @@ impl<const D: usize> Operators<D> {
     pub fn laplacian(&self, gamma: f64, phi: &Field<D>, out: &mut Field<D>) -> Result<(), FlowError> {
         self.check(&[phi, out])?;
         let kernel = Laplacian { grid: &self.grid, metrics: &self.metrics, gamma, phi: phi.data() };
-        fill_rows(&self.grid, self.grid.cells(), &kernel, out);
+        fill_rows(&self.grid, self.grid.cells(), &self.spans, &kernel, out);
         Ok(())
     }
 
@@ -189,7 +193,7 @@ impl<const D: usize> Operators<D> {
     ) -> Result<(), FlowError> {
         self.check(&[gamma, phi, out])?;
         let kernel = VariableLaplacian { grid: &self.grid, metrics: &self.metrics, gamma, phi: phi.data() };
-        fill_rows(&self.grid, self.grid.cells(), &kernel, out);
+        fill_rows(&self.grid, self.grid.cells(), &self.spans, &kernel, out);
         Ok(())
     }
 
@@ -211,7 +215,7 @@ impl<const D: usize> Operators<D> {
         let (velocity, phi) = (&velocity.components, phi.data());
         with_kind!(carrier, KIND => {
             let kernel = Convect::<KIND, D> { carrier, grid, metrics, velocity, phi };
-            fill_rows(grid, grid.cells(), &kernel, out);
+            fill_rows(grid, grid.cells(), &self.spans, &kernel, out);
         });
         Ok(())
     }
@@ -249,13 +253,27 @@ impl<const D: usize> Operators<D> {
     pub fn strain_rate(&self, velocity: &Velocity<D>, out: &mut Field<D>) -> Result<(), FlowError> {
         self.check(&velocity.components.each_ref())?;
         self.check(&[out])?;
-        fill_rows(&self.grid, self.grid.cells(), &self.strain_kernel(&velocity.components), out);
+        let kernel = self.strain_kernel(&velocity.components);
+        fill_rows(&self.grid, self.grid.cells(), &self.spans, &kernel, out);
         Ok(())
     }
 
     /// The kernel of [`strain_rate`](Self::strain_rate).
     pub(crate) fn strain_kernel<'a>(&'a self, velocity: &'a [Field<D>; D]) -> StrainRate<'a, D> {
         StrainRate { grid: &self.grid, metrics: &self.metrics, centred: &self.centred, velocity }
+    }
+
+    /// Outside of `spans` the values of cells are left alone from now on.
+    pub(crate) fn set_spans(&mut self, spans: Spans) {
+        self.spans = spans;
+    }
+    pub(crate) fn spans(&self) -> &Spans {
+        &self.spans
+    }
+    /// The dense numbers of the cells for which something is computed, row by row.
+    pub(crate) fn cells(&self) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
+        let n = self.grid.cells()[0];
+        self.spans.rows(n, self.grid.n_cells() / n)
     }
 
     /// The distances.
@@ -286,7 +304,9 @@ impl<const D: usize> Operators<D> {
         out: &mut Field<D>,
     ) {
         let kernel = Weighted { phi: phi.data(), axis, distance, weight: weight.map(Vec::as_slice) };
-        fill_rows(&self.grid, extent, &kernel, out);
+        let everywhere = Spans::default();
+        let spans = if extent == self.grid.cells() { &self.spans } else { &everywhere };
+        fill_rows(&self.grid, extent, spans, &kernel, out);
     }
 
     /// Faces normal to axis `c` along each axis.

@@ -28,7 +28,7 @@ impl<const D: usize> RowKernel<D> for StrainRate<'_, D> {
                 out[i] += 2.0 * slope * slope;
             };
             if a == 0 {
-                let inv = &inv[GHOSTS..][..n];
+                let inv = &inv[GHOSTS + at[0]..][..n];
                 for i in 0..n {
                     add(i, inv[i]);
                 }
@@ -45,7 +45,7 @@ impl<const D: usize> RowKernel<D> for StrainRate<'_, D> {
                 // b < a, so only b can be x.
                 let wa = [0, 1, 2].map(|k| self.centred[a][k][GHOSTS + at[a]]);
                 if b == 0 {
-                    let wb = [0, 1, 2].map(|k| &self.centred[0][k][GHOSTS..][..n]);
+                    let wb = [0, 1, 2].map(|k| &self.centred[0][k][GHOSTS + at[0]..][..n]);
                     for i in 0..n {
                         let slope =
                             centred(&along_b, [wb[0][i], wb[1][i], wb[2][i]], i) + centred(&along_a, wa, i);

@@ -21,7 +21,7 @@ impl<const N: usize, const D: usize> RowKernel<D> for Weighted<'_, N> {
         let phi: [&[f64]; N] =
             std::array::from_fn(|k| &self.phi[o.wrapping_add_signed(self.distance[k])..][..n]);
         if self.axis == 0 {
-            let w: [&[f64]; N] = std::array::from_fn(|k| &self.weight[k][GHOSTS..][..n]);
+            let w: [&[f64]; N] = std::array::from_fn(|k| &self.weight[k][GHOSTS + at[0]..][..n]);
             for i in 0..n {
                 let mut sum = w[0][i] * phi[0][i];
                 for k in 1..N {
@@ -56,7 +56,7 @@ impl<const D: usize> RowKernel<D> for Divergence<'_, D> {
         let lower: [&[f64]; D] = std::array::from_fn(|b| &self.faces[b][o..][..n]);
         let upper: [&[f64]; D] = std::array::from_fn(|b| &self.faces[b][o + s[b]..][..n]);
         let axes = &self.metrics.axes;
-        let inv = &axes[0].centres.inv_volume[GHOSTS..][..n];
+        let inv = &axes[0].centres.inv_volume[GHOSTS + at[0]..][..n];
         let inv_b: [f64; D] = std::array::from_fn(|b| axes[b].centres.inv_volume[GHOSTS + at[b]]);
         for i in 0..n {
             let mut sum = inv[i] * (upper[0][i] - lower[0][i]);
@@ -84,7 +84,8 @@ impl<const D: usize> RowKernel<D> for Laplacian<'_, D> {
         let above: [&[f64]; D] = std::array::from_fn(|b| &self.phi[o + s[b]..][..n]);
         let below: [&[f64]; D] = std::array::from_fn(|b| &self.phi[o - s[b]..][..n]);
         let axes = &self.metrics.axes;
-        let (up, down) = (&axes[0].centres.up[GHOSTS..][..n], &axes[0].centres.down[GHOSTS..][..n]);
+        let x = GHOSTS + at[0];
+        let (up, down) = (&axes[0].centres.up[x..][..n], &axes[0].centres.down[x..][..n]);
         let up_b: [f64; D] = std::array::from_fn(|b| axes[b].centres.up[GHOSTS + at[b]]);
         let down_b: [f64; D] = std::array::from_fn(|b| axes[b].centres.down[GHOSTS + at[b]]);
         for i in 0..n {
@@ -124,9 +125,10 @@ impl<const D: usize> RowKernel<D> for VariableLaplacian<'_, D> {
                 out[i] += high * up * (above[i] - here[i]) - low * down * (here[i] - below[i]);
             };
             if b == 0 {
-                let (l0, l1) = (&below_share[GHOSTS..][..n], &above_share[GHOSTS..][..n]);
-                let (h0, h1) = (&below_share[GHOSTS + 1..][..n], &above_share[GHOSTS + 1..][..n]);
-                let (up, down) = (&up[GHOSTS..][..n], &down[GHOSTS..][..n]);
+                let x = GHOSTS + at[0];
+                let (l0, l1) = (&below_share[x..][..n], &above_share[x..][..n]);
+                let (h0, h1) = (&below_share[x + 1..][..n], &above_share[x + 1..][..n]);
+                let (up, down) = (&up[x..][..n], &down[x..][..n]);
                 for i in 0..n {
                     cell(i, [[l0[i], l1[i]], [h0[i], h1[i]]], up[i], down[i]);
                 }

@@ -3,6 +3,7 @@ use super::Simple;
 use super::walls::{SimpleWalls, WallStress};
 use crate::boundary::Boundaries;
 use crate::flow_state::FlowState;
+use crate::spans::Spans;
 use crate::{Field, FlowError, Modelled};
 use interfaces::{Closure, CutCells, Vector, Wrench};
 
@@ -46,6 +47,10 @@ impl<const D: usize> Simple<D> {
             walls.stop(grid, &mut velocity.components);
             pressure.data_mut().fill(0.0);
         }
+        let spans = made.as_ref().map_or_else(Spans::default, |walls| walls.spans.clone());
+        self.equations.set_spans(&spans);
+        self.matrix.set_spans(spans);
+        self.delta.iter_mut().for_each(|delta| delta.fill(0.0));
         self.walls = made.map(Box::new);
         self.state.fill_velocity();
         self.state.fill_pressure();

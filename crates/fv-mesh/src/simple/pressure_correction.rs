@@ -78,14 +78,17 @@ impl<const D: usize> PressureCorrection<D> {
         each_part(&mut self.beta[c], layer * per_task, &|task, out| {
             let first = task * per_task;
             for r in first * rows..(first + per_task).min(n[D - 1]) * rows {
-                let o = r * n[0];
-                let out = &mut out[face_row(grid, c, r) - first * layer..][..n[0]];
-                let centre = &matrix.centre()[o..][..n[0]];
+                let (span, out) = (matrix.span(r), &mut out[face_row(grid, c, r) - first * layer..][..n[0]]);
+                let (o, m) = (r * n[0] + span.start, span.len());
+                out[..span.start].fill(0.0);
+                out[span.end..].fill(0.0);
+                let out = &mut out[span];
+                let centre = &matrix.centre()[o..][..m];
                 out.copy_from_slice(centre);
                 if let Some(part) = consistent {
                     for b in 0..D {
-                        let (l, u) = (&matrix.lower(b)[o..][..n[0]], &matrix.upper(b)[o..][..n[0]]);
-                        for i in 0..n[0] {
+                        let (l, u) = (&matrix.lower(b)[o..][..m], &matrix.upper(b)[o..][..m]);
+                        for i in 0..m {
                             out[i] += l[i] + u[i];
                         }
                     }

@@ -2,6 +2,7 @@
 use super::CellTransport;
 use super::near_solids::NearSolids;
 use super::neighbours::{around, neighbour};
+use crate::spans::Spans;
 use crate::{Convection, Velocity};
 
 /// A cell without fluid at its centre, and the weights of the cells around from which its value is taken.
@@ -12,6 +13,8 @@ impl<const D: usize> CellTransport<D> {
     /// is not that of a layer on a wall.
     pub(crate) fn set_walls(&mut self, dry: Vec<Dry>, forced: bool) {
         self.forced = forced;
+        self.span(&dry);
+        let dry: Vec<Dry> = dry.into_iter().filter(|&(cell, _)| self.is_in_span(cell)).collect();
         let (grid, periodic) = (self.ops.grid(), self.ops.metrics().periodic);
         let (n, s, closed) = (grid.cells(), grid.stride(), &mut self.closed);
         closed.clear();
@@ -45,6 +48,26 @@ impl<const D: usize> CellTransport<D> {
             self.carrier = None;
         }
         self.dry = dry;
+    }
+
+    /// Leaves alone what is far from fluid from now on.
+    fn span(&mut self, dry: &[Dry]) {
+        let grid = self.ops.grid();
+        let mut solid = vec![false; grid.n_cells()];
+        dry.iter().for_each(|&(cell, _)| solid[cell] = true);
+        let spans = Spans::around(grid.cells(), self.ops.metrics().periodic, |cell| !solid[cell]);
+        self.matrix.set_spans(spans.clone());
+        for list in [&mut self.b, &mut self.x] {
+            list.fill(0.0);
+        }
+        self.units.fill(1.0);
+        let whole = spans == Spans::default();
+        self.ops.set_spans(spans);
+        self.runs = (!whole).then(|| self.ops.cells().filter(|run| !run.is_empty()).collect());
+    }
+
+    fn is_in_span(&self, cell: usize) -> bool {
+        self.ops.spans().contains(self.ops.grid().cells()[0], cell)
     }
 
     pub(crate) fn has_walls(&self) -> bool {

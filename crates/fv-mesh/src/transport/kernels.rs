@@ -32,7 +32,7 @@ impl<const UPPER: bool, const D: usize> RowKernel<D> for Neighbour<'_, UPPER, D>
             -area * ((share[1] * below + share[0] * above) * inv_gap + inflow)
         };
         if a == 0 {
-            let from = GHOSTS + first;
+            let from = GHOSTS + at[0] + first;
             let (s0, s1) = (&axis.share[0][from..][..n], &axis.share[1][from..][..n]);
             let inv_gap = &axis.centres.inv_gap[from..][..n];
             for i in 0..n {
@@ -41,7 +41,7 @@ impl<const UPPER: bool, const D: usize> RowKernel<D> for Neighbour<'_, UPPER, D>
         } else {
             let j = GHOSTS + at[a] + first;
             let share = [axis.share[0][j], axis.share[1][j]];
-            let along = &width(0)[GHOSTS..][..n];
+            let along = &width(0)[GHOSTS + at[0]..][..n];
             for i in 0..n {
                 let values = [below[i], above[i], u[i]];
                 out[i] = coefficient(across * along[i], share, axis.centres.inv_gap[j], values);
@@ -70,7 +70,7 @@ impl<const D: usize> RowKernel<D> for DotGradients<'_, D> {
             let slope =
                 |r: &[&[f64]; 3], w: [f64; 3], i: usize| w[0] * r[0][i] + w[1] * r[1][i] + w[2] * r[2][i];
             if c == 0 {
-                let w = [0, 1, 2].map(|k| &self.centred[0][k][GHOSTS..][..n]);
+                let w = [0, 1, 2].map(|k| &self.centred[0][k][GHOSTS + at[0]..][..n]);
                 for i in 0..n {
                     let w = [w[0][i], w[1][i], w[2][i]];
                     out[i] += slope(&a, w, i) * slope(&b, w, i);

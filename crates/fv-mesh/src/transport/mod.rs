@@ -25,6 +25,7 @@ use interfaces::{Equation, LogSlope, SolveError, SolveInfo, Transport};
 use kernels::{DotGradients, Neighbour};
 use near_solids::NearSolids;
 use sides::CellSides;
+use std::ops::Range;
 
 /// How [`CellTransport`] discretises and solves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,6 +102,8 @@ pub struct CellTransport<const D: usize> {
     pinned: Vec<bool>,
     /// Cells without fluid at their centre, and those from which their values are taken.
     dry: Vec<Dry>,
+    /// Runs of cells, if not all, in which something happens.
+    runs: Option<Vec<Range<usize>>>,
     /// Axis and storage index of the faces of those cells, and the velocity without what it is on them.
     closed: Vec<(usize, usize)>,
     carrier: Option<Box<Velocity<D>>>,
@@ -147,6 +150,7 @@ impl<const D: usize> CellTransport<D> {
             x: vec![0.0; n],
             pinned: vec![false; n],
             dry: Vec::new(),
+            runs: None,
             closed: Vec::new(),
             carrier: None,
             near: None,
@@ -198,7 +202,12 @@ impl<const D: usize> CellTransport<D> {
         for (k, (what, list)) in lists.into_iter().enumerate() {
             check_length(what, n, list.len())?;
             let signed = k % 2 == 1;
-            if let Some(cell) = list.iter().position(|v| !v.is_finite() || !signed && *v < 0.0) {
+            let wrong = |v: f64| !v.is_finite() || !signed && v < 0.0;
+            let found = self.ops.cells().find_map(|run| {
+                let first = run.start;
+                list[run].iter().position(|&v| wrong(v)).map(|i| first + i)
+            });
+            if let Some(cell) = found {
                 let range = if signed { "finite" } else { "finite and not negative" };
                 return Err(SolveError::Value { what, cell: Some(cell), value: list[cell], range });
             }
@@ -252,9 +261,9 @@ impl<const D: usize> CellTransport<D> {
         for axis in 0..D {
             let (gamma, velocity) = (&*gamma, &velocity.components[axis]);
             let kernel = Neighbour::<false, D> { grid, metrics, axis, gamma, velocity };
-            fill_dense(grid, &kernel, lower[axis]);
+            fill_dense(grid, ops.spans(), &kernel, lower[axis]);
             let kernel = Neighbour::<true, D> { grid, metrics, axis, gamma, velocity };
-            fill_dense(grid, &kernel, upper[axis]);
+            fill_dense(grid, ops.spans(), &kernel, upper[axis]);
         }
         self.shut();
         let second_order = self.params.scheme != Convection::Upwind;
@@ -266,20 +275,23 @@ impl<const D: usize> CellTransport<D> {
         let whole = velocity;
         // Else a difference could be taken from what the matrix does not bring.
         let velocity = carrier.as_deref().unwrap_or(velocity);
-        let (grid, metrics) = (ops.grid(), ops.metrics());
+        let grid = ops.grid();
         let [_, carried, high, low] = fields;
         let (centre, mut lower, mut upper) = matrix.parts_mut();
-        centre.fill(0.0);
-        b.copy_from_slice(e.source);
-        b.iter_mut().zip(&*volume).for_each(|(b, v)| *b *= v);
-        sides.close(grid, e, [&mut *centre, b], [&mut lower, &mut upper], metrics);
+        for run in ops.cells() {
+            centre[run.clone()].fill(0.0);
+            for ((b, source), v) in b[run.clone()].iter_mut().zip(&e.source[run.clone()]).zip(&volume[run]) {
+                *b = source * v;
+            }
+        }
+        sides.close(ops, e, [&mut *centre, b], [&mut lower, &mut upper]);
         let rate = e.dt.map_or(0.0, f64::recip);
-        for (i, centre) in centre.iter_mut().enumerate() {
-            let mut sum = *centre + volume[i] * (e.sink[i] + rate);
+        for i in ops.cells().flatten() {
+            let mut sum = centre[i] + volume[i] * (e.sink[i] + rate);
             for axis in 0..D {
                 sum -= lower[axis][i] + upper[axis][i];
             }
-            *centre = sum;
+            centre[i] = sum;
             b[i] += volume[i] * rate * phi[i];
         }
         if second_order {
@@ -287,14 +299,19 @@ impl<const D: usize> CellTransport<D> {
             sides.fill(carried, Some(e.inlet), e.wall);
             ops.convection(velocity, carried, params.scheme, high)?;
             ops.convection(velocity, carried, Convection::Upwind, low)?;
-            for (i, (high, low)) in high.values().zip(low.values()).enumerate() {
-                x[i] = volume[i] * (high - low);
+            for run in ops.cells() {
+                let (o, cells) = (grid.place(grid.cell(run.start)), run.len());
+                let values = high.data()[o..][..cells].iter().zip(&low.data()[o..][..cells]);
+                for ((x, v), (high, low)) in x[run.clone()].iter_mut().zip(&volume[run]).zip(values) {
+                    *x = v * (high - low);
+                }
             }
             if let Some(near) = near {
                 let distance = e.inverse.then_some(&wall_distance[..]);
                 near.add(whole, phi, distance, x);
             }
-            for (i, &rest) in x.iter().enumerate() {
+            for i in ops.cells().flatten() {
+                let rest = x[i];
                 if rest < 0.0 && phi[i] > 0.0 {
                     centre[i] -= rest / phi[i];
                 } else {
@@ -308,8 +325,8 @@ impl<const D: usize> CellTransport<D> {
     /// Norm over the cells that are not pinned of the larger of b and a_P φ.
     fn scale(&self, phi: &[f64]) -> f64 {
         let (mut given, mut carried) = (0.0, 0.0);
-        for (i, b) in self.b.iter().enumerate().filter(|&(i, _)| !self.pinned[i]) {
-            let term = self.matrix.diagonal(i) * phi[i];
+        for i in self.ops.cells().flatten().filter(|&i| !self.pinned[i]) {
+            let (b, term) = (self.b[i], self.matrix.diagonal(i) * phi[i]);
             given += b * b;
             carried += term * term;
         }
@@ -375,7 +392,7 @@ impl<const D: usize> CellTransport<D> {
         x.copy_from_slice(work);
         self.sweep(phi);
         let mut initial = 0.0;
-        for i in 0..n {
+        for i in self.ops.cells().flatten() {
             if phi[i] <= 0.0 {
                 phi[i] = 1.0;
             }
@@ -394,7 +411,9 @@ impl<const D: usize> CellTransport<D> {
             x.iter_mut().for_each(|x| *x = x.max(0.0));
             self.sweep(&mut x);
         }
-        phi.iter_mut().zip(&x).for_each(|(phi, x)| *phi *= x);
+        for run in self.ops.cells() {
+            phi[run.clone()].iter_mut().zip(&x[run]).for_each(|(phi, x)| *phi *= x);
+        }
         (self.units, self.x) = (units, x);
         relative(solved.map(|(iterations, _, after)| (iterations, initial, after)), scale, tolerance)
     }
@@ -470,13 +489,16 @@ impl<const D: usize> Transport for FlowTransport<'_, D> {
     fn cell_volume(&self, c: usize) -> f64 {
         self.cells.volume[c]
     }
+    fn runs(&self) -> Option<&[Range<usize>]> {
+        self.cells.runs.as_deref()
+    }
     fn wall_distance(&self) -> &[f64] {
         &self.cells.wall_distance
     }
     fn strain_rate(&mut self, out: &mut [f64]) -> Result<(), SolveError> {
         check_length("the strain rate", self.n_cells(), out.len())?;
         let ops = &self.cells.ops;
-        fill_dense(ops.grid(), &ops.strain_kernel(&self.velocity.components), out);
+        fill_dense(ops.grid(), ops.spans(), &ops.strain_kernel(&self.velocity.components), out);
         Ok(())
     }
     fn log_slopes(&mut self) -> &[LogSlope] {
@@ -507,7 +529,7 @@ impl<const D: usize> Transport for FlowTransport<'_, D> {
             sides.extrapolate(field);
         }
         let kernel = DotGradients { grid, centred: ops.centred(), a: first.data(), b: second.data() };
-        fill_dense(grid, &kernel, out);
+        fill_dense(grid, ops.spans(), &kernel, out);
         Ok(())
     }
     fn solve(&mut self, equation: &Equation<'_>, phi: &mut [f64]) -> Result<SolveInfo, SolveError> {

@@ -1,7 +1,7 @@
 //! The sides of a flow as a transported quantity sees them.
 use crate::boundary::Lines;
 use crate::grid::GHOSTS;
-use crate::metrics::Metrics;
+use crate::operators::Operators;
 use crate::{Axis, CartesianGrid, Field, FlowError, Patch, Side, Sides};
 use interfaces::Equation;
 
@@ -95,21 +95,24 @@ impl<const D: usize> CellSides<D> {
         }
     }
 
-    /// Turns the coefficients that reach through the sides into terms of centre and b, and sets them to zero.
+    /// Turns the coefficients that reach through the sides into terms of centre and b of cells in the spans, and sets them to zero.
     pub(super) fn close(
         &self,
-        grid: &CartesianGrid<D>,
+        ops: &Operators<D>,
         e: &Equation<'_>,
         [centre, b]: [&mut [f64]; 2],
         [lower, upper]: [&mut [&mut [f64]; D]; 2],
-        metrics: &Metrics<D>,
     ) {
+        let (grid, metrics, spans) = (ops.grid(), ops.metrics(), ops.spans());
         for (a, (lines, kinds)) in self.lines.iter().zip(&self.kinds).enumerate() {
             let Some(kinds) = kinds else { continue };
             for (end, kinds) in kinds.iter().enumerate() {
                 let i = if end == 1 { lines.cells - 1 } else { 0 };
                 for l in (0..lines.len()).filter(|&l| lines.inside(l)) {
                     let cell = lines.end_cell(grid, l, end == 1);
+                    if !spans.contains(grid.cells()[0], cell) {
+                        continue;
+                    }
                     let coefficient = if end == 1 { &mut upper[a][cell] } else { &mut lower[a][cell] };
                     if let Some(value) = kinds[l].value(Some(e.inlet), e.wall) {
                         // The side is half as far away as the ghost.

@@ -19,6 +19,7 @@ use crate::{Inflow, TurbulenceError, WallFunctions, YPlus};
 use interfaces::{
     Checkpoint, Closure, Equation, LawOfTheWall, RestartError, SolveError, SolveInfo, Transport, WallRow,
 };
+use std::ops::Range;
 
 /// k–ω of Wilcox (1988).
 pub type KOmega = TwoEquation<Wilcox>;
@@ -84,6 +85,8 @@ struct Work {
     auxiliary: Vec<f64>,
     gradient: Vec<[[f64; 3]; 3]>,
     terms: [Vec<f64>; 3],
+    /// Cells in which something happens.
+    runs: Vec<Range<usize>>,
 }
 
 /// The layer is logarithmic as far down as differences reach where y* is this many y+_lam.
@@ -117,6 +120,7 @@ impl<L: Law> TwoEquation<L> {
                 auxiliary: of(L::AUXILIARY),
                 gradient: if L::GRADIENT { vec![[[0.0; 3]; 3]; cells] } else { Vec::new() },
                 terms: std::array::from_fn(|_| of(true)),
+                runs: Vec::new(),
             },
             solves: [SolveInfo::default(); 2],
             floored: 0,
@@ -254,11 +258,20 @@ impl<L: Law> TwoEquation<L> {
     }
 
     /// Strain rate, cross diffusion, and what the law makes of them.
-    fn prepare(&mut self, flow: &mut dyn Transport, nu: f64, dt: Option<f64>) -> Result<(), SolveError> {
+    fn prepare(
+        &mut self,
+        flow: &mut dyn Transport,
+        runs: &[Range<usize>],
+        nu: f64,
+        dt: Option<f64>,
+    ) -> Result<(), SolveError> {
         if L::GRADIENT {
             flow.velocity_gradient(&mut self.work.gradient)?;
             let Work { strain, gradient, .. } = &mut self.work;
-            strain.iter_mut().zip(&*gradient).for_each(|(s, g)| *s = Invariants::of(g).strain);
+            for run in runs {
+                let strain = strain[run.clone()].iter_mut();
+                strain.zip(&gradient[run.clone()]).for_each(|(s, g)| *s = Invariants::of(g).strain);
+            }
         } else {
             flow.strain_rate(&mut self.work.strain)?;
         }
@@ -284,8 +297,8 @@ impl<L: Law> TwoEquation<L> {
         if L::AUXILIARY {
             // Steady iterations of SST may else go round in circles where F₁ changes abruptly.
             let distance = flow.wall_distance();
-            for (i, &d) in distance.iter().enumerate() {
-                let local = self.local(i, d, nu);
+            for i in runs.iter().cloned().flatten() {
+                let local = self.local(i, distance[i], nu);
                 let invariants = self.work.gradient.get(i).map(Invariants::of).unwrap_or_default();
                 let new = self.law.auxiliary(&local, invariants);
                 let old = &mut self.work.auxiliary[i];
@@ -307,12 +320,14 @@ impl<L: Law> TwoEquation<L> {
     fn solve_scale(
         &mut self,
         flow: &mut dyn Transport,
+        runs: &[Range<usize>],
         nu: f64,
         dt: Option<f64>,
     ) -> Result<SolveInfo, SolveError> {
         let mut terms = std::mem::take(&mut self.work.terms);
-        for (i, &d) in flow.wall_distance().iter().enumerate() {
-            self.law.scale_terms(&self.local(i, d, nu)).put(&mut terms, i);
+        let distance = flow.wall_distance();
+        for i in runs.iter().cloned().flatten() {
+            self.law.scale_terms(&self.local(i, distance[i], nu)).put(&mut terms, i);
         }
         let inlet = L::SCALE.of(&self.inflow);
         let relax = if dt.is_some() { 1.0 } else { self.controls.relax_scale };
@@ -331,13 +346,14 @@ impl<L: Law> TwoEquation<L> {
     fn solve_k(
         &mut self,
         flow: &mut dyn Transport,
+        runs: &[Range<usize>],
         nu: f64,
         dt: Option<f64>,
     ) -> Result<SolveInfo, SolveError> {
         let mut terms = std::mem::take(&mut self.work.terms);
         let distance = flow.wall_distance();
-        for (i, &d) in distance.iter().enumerate() {
-            let local = self.local(i, d, nu);
+        for i in runs.iter().cloned().flatten() {
+            let local = self.local(i, distance[i], nu);
             self.law.k_terms(&local, local.eddy * local.strain * local.strain).put(&mut terms, i);
         }
         for w in &self.layer.cells {
@@ -436,22 +452,44 @@ impl<L: Law> Closure for TwoEquation<L> {
         }
         self.floored = 0;
         self.layer.update(walls, &self.k, nu, L::SCALE)?;
-        self.prepare(flow, nu, dt)?;
-        self.solves[0] = self.solve_scale(flow, nu, dt)?;
-        self.solves[1] = self.solve_k(flow, nu, dt)?;
+        let mut runs = std::mem::take(&mut self.work.runs);
+        runs.clear();
+        match flow.runs() {
+            Some(some) => runs.extend_from_slice(some),
+            None => runs.push(0..expected),
+        }
+        let solved = self.solve_all(flow, &runs, nu, dt);
+        self.work.runs = runs;
+        solved?;
+        self.layer.refresh(walls, &self.k, nu);
+        self.y_plus = self.layer.y_plus(walls, nu);
+        Ok(())
+    }
+}
+
+impl<L: Law> TwoEquation<L> {
+    /// Solves both equations, and makes ν_t of what comes out.
+    fn solve_all(
+        &mut self,
+        flow: &mut dyn Transport,
+        runs: &[Range<usize>],
+        nu: f64,
+        dt: Option<f64>,
+    ) -> Result<(), SolveError> {
+        self.prepare(flow, runs, nu, dt)?;
+        self.solves[0] = self.solve_scale(flow, runs, nu, dt)?;
+        self.solves[1] = self.solve_k(flow, runs, nu, dt)?;
         let distance = flow.wall_distance();
         let widest = distance.iter().copied().fold(0.0, f64::max);
         // Where k and ε are far from each other ν_t would run away before they are not.
         let length = if dt.is_none() && widest > 0.0 { widest } else { f64::INFINITY };
         self.limited = 0;
-        for (i, &d) in distance.iter().enumerate() {
-            let eddy = self.law.eddy_viscosity(&self.local(i, d, nu));
+        for i in runs.iter().cloned().flatten() {
+            let eddy = self.law.eddy_viscosity(&self.local(i, distance[i], nu));
             let most = length * LawOfTheWall::friction_velocity(self.k[i]);
             self.limited += usize::from(eddy > most);
             self.eddy[i] = if eddy > most { most } else { eddy };
         }
-        self.layer.refresh(walls, &self.k, nu);
-        self.y_plus = self.layer.y_plus(walls, nu);
         Ok(())
     }
 }

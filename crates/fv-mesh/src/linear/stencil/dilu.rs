@@ -87,7 +87,12 @@ impl<const D: usize> WithSimd for Factor<'_, D> {
         let Self { matrix, inverse } = self;
         let n = matrix.cells[0];
         for r in 0..matrix.rows() {
-            let start = r * n;
+            let span = matrix.span(r);
+            let (first, whole, n) = (span.start, n, span.len());
+            if n == 0 {
+                continue;
+            }
+            let start = r * whole + first;
             let (before, row) = inverse.split_at_mut(start);
             let row = &mut row[..n];
             row.copy_from_slice(&matrix.centre[start..][..n]);
@@ -103,15 +108,16 @@ impl<const D: usize> WithSimd for Factor<'_, D> {
                         continue;
                     };
                     let to = &matrix.coefficients(axis, end)[start..][..n];
-                    let back = &matrix.coefficients(axis, back)[other * n..][..n];
-                    let inverse = &before[other * n..][..n];
+                    let there = other * whole + first;
+                    let back = &matrix.coefficients(axis, back)[there..][..n];
+                    let inverse = &before[there..][..n];
                     for i in 0..n {
                         row[i] -= to[i] * back[i] * inverse[i];
                     }
                 }
             }
             let (lower, upper) = (&matrix.lower[0][start..][..n], &matrix.upper[0][start..][..n]);
-            if matrix.periodic[0] && n > 1 {
+            if matrix.periodic[0] && n == whole && n > 1 {
                 // Of the first cell, whose pivot is known before.
                 row[n - 1] -= upper[n - 1] * lower[0] / row[0];
             }
@@ -164,8 +170,13 @@ fn solve_row<const FORWARD: bool, const D: usize>(
     z: &mut [f64],
     terms: &mut Terms,
 ) {
-    let n = matrix.cells[0];
-    let start = row * n;
+    let (whole, span) = (matrix.cells[0], matrix.span(row));
+    let (first, n) = (span.start, span.len());
+    let start = row * whole + first;
+    if FORWARD {
+        z[row * whole..start].fill(0.0);
+        z[start + n..(row + 1) * whole].fill(0.0);
+    }
     let cross = matrix.cross(row, |other| if FORWARD { other < row } else { other > row });
     let (lower, upper) = (&matrix.lower[0][start..][..n], &matrix.upper[0][start..][..n]);
     let (ahead, behind) = if FORWARD { (upper, lower) } else { (lower, upper) };
@@ -176,8 +187,8 @@ fn solve_row<const FORWARD: bool, const D: usize>(
         let m = BLOCK.min(n - s);
         let (t, w) = (&mut terms.t[..m], &mut terms.w[..m]);
         let here = start + s;
-        let coefficients = cross.links.map(|l| l.map(|(c, _)| &c[s..][..m]));
-        let others = cross.links.map(|l| l.map(|(_, place)| &z[place + s..][..m]));
+        let coefficients = cross.links.map(|l| l.map(|(c, _)| &c[first + s..][..m]));
+        let others = cross.links.map(|l| l.map(|(_, place)| &z[place + first + s..][..m]));
         let (inverse, behind) = (&inverse[here..][..m], &behind[s..][..m]);
         let source = if FORWARD { &r[here..][..m] } else { &z[here..][..m] };
         for i in 0..m {
@@ -192,7 +203,7 @@ fn solve_row<const FORWARD: bool, const D: usize>(
         let out = &mut z[here..here + m];
         last = if FORWARD { terms.ascend(last, out) } else { terms.descend(last, out) };
     }
-    if matrix.periodic[0] && n > 1 {
+    if matrix.periodic[0] && n == whole && n > 1 {
         let (first, end) = if FORWARD { (0, n - 1) } else { (n - 1, 0) };
         z[start + end] -= inverse[start + end] * ahead[end] * z[start + first];
     }

@@ -2,6 +2,8 @@
 use super::super::error::check_length;
 use super::super::matrix::{check_blend, check_fraction, smallest};
 use super::super::{LinearError, LinearOperator, Matrix};
+use crate::spans::Spans;
+use std::ops::Range;
 
 /// One coefficient per cell and neighbour on a box of `D` = 1, 2 or 3 axes: the row of cell P reads
 /// a_P x_P + Σ_a (a_lower,a x_{P−e_a} + a_upper,a x_{P+e_a}) = b_P. Arrays are dense with x fastest.
@@ -19,6 +21,8 @@ pub struct StencilMatrix<const D: usize> {
     pub(super) none: Vec<f64>,
     /// One and zero in turn, one longer than a row.
     pub(super) checker: Vec<f64>,
+    /// Products, factors and sweeps leave alone what is outside.
+    pub(super) spans: Spans,
 }
 
 /// Lower or upper neighbour.
@@ -48,6 +52,7 @@ impl<const D: usize> StencilMatrix<D> {
             upper: std::array::from_fn(|_| zeros()),
             none: vec![0.0; cells[0]],
             checker: (0..=cells[0]).map(|i| if i % 2 == 0 { 1.0 } else { 0.0 }).collect(),
+            spans: Spans::default(),
         })
     }
 
@@ -90,6 +95,18 @@ impl<const D: usize> StencilMatrix<D> {
         let (centre, lower, upper) = self.parts_mut();
         centre.fill(0.0);
         lower.into_iter().chain(upper).for_each(|c| c.fill(0.0));
+    }
+
+    /// Outside of `spans` nothing is computed from now on: the rows there are those of the unit matrix, b and x are zero in them.
+    pub(crate) fn set_spans(&mut self, spans: Spans) {
+        self.clear();
+        self.centre.fill(1.0);
+        self.spans = spans;
+    }
+    /// The part of row `r` in which something is computed.
+    #[inline(always)]
+    pub(crate) fn span(&self, r: usize) -> Range<usize> {
+        self.spans.of(r, self.cells[0])
     }
 
     /// Number of rows along x.
@@ -166,17 +183,21 @@ impl<const D: usize> StencilMatrix<D> {
         check_length("x", self.n(), x.len())?;
         check_length("b", self.n(), b.len())?;
         let gain = (1.0 - alpha) / alpha;
+        let spans = self.spans.clone();
         if self.own_axes().next().is_some() {
-            for cell in 0..x.len() {
+            for cell in spans.rows(self.cells[0], self.rows()).flatten() {
                 let diagonal = self.diagonal(cell);
                 b[cell] += gain * diagonal * x[cell];
                 self.centre[cell] += gain * diagonal;
             }
             return Ok(());
         }
-        for ((centre, x), b) in self.centre.iter_mut().zip(x).zip(b) {
-            *b += gain * *centre * x;
-            *centre /= alpha;
+        for run in spans.rows(self.cells[0], self.rows()) {
+            let b = b[run.clone()].iter_mut();
+            for ((centre, x), b) in self.centre[run.clone()].iter_mut().zip(&x[run]).zip(b) {
+                *b += gain * *centre * x;
+                *centre /= alpha;
+            }
         }
         Ok(())
     }

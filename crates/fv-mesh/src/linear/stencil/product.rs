@@ -101,12 +101,21 @@ fn row<C: Combine, const D: usize>(
     x: &[f64],
     out: &mut [f64],
 ) {
-    let n = out.len();
-    let range = r * n..(r + 1) * n;
+    let whole = out.len();
+    let span = matrix.span(r);
+    let (first, n) = (span.start, span.len());
+    let (before, out) = out.split_at_mut(first);
+    let (out, behind) = out.split_at_mut(n);
+    before.fill(0.0);
+    behind.fill(0.0);
+    if n == 0 {
+        return;
+    }
+    let range = r * whole + first..r * whole + first + n;
     let cross = matrix.cross(r, |other| C::DIAGONAL || other != r);
-    let coefficients = cross.links.map(|l| l.map(|(c, _)| &c[..n]));
-    let others = cross.links.map(|l| l.map(|(_, start)| &x[start..][..n]));
-    let (centre, here, b) = (&matrix.centre[range.clone()][..n], &x[range.clone()][..n], &b[..n]);
+    let coefficients = cross.links.map(|l| l.map(|(c, _)| &c[first..][..n]));
+    let others = cross.links.map(|l| l.map(|(_, start)| &x[start + first..][..n]));
+    let (centre, here, b) = (&matrix.centre[range.clone()][..n], &x[range.clone()][..n], &b[first..][..n]);
     let (lower, upper) = (&matrix.lower[0][range.clone()][..n], &matrix.upper[0][range][..n]);
     let base = |i: usize| {
         let mut sum = if C::DIAGONAL { centre[i] * here[i] } else { 0.0 };
@@ -116,7 +125,7 @@ fn row<C: Combine, const D: usize>(
         }
         sum
     };
-    let wraps = matrix.periodic[0] && (n > 1 || C::DIAGONAL);
+    let wraps = n == whole && matrix.periodic[0] && (n > 1 || C::DIAGONAL);
     let ends = |i: usize| {
         let mut sum = base(i);
         if i > 0 {

@@ -11,8 +11,8 @@ impl<const D: usize> StencilMatrix<D> {
     pub fn scale(&mut self, rows: &[f64], columns: &[f64]) -> Result<(), LinearError> {
         check_length("the factors of rows", self.n(), rows.len())?;
         check_length("the factors of columns", self.n(), columns.len())?;
-        for ((a, row), column) in self.centre.iter_mut().zip(rows).zip(columns) {
-            *a *= row * column;
+        for run in self.spans.clone().rows(self.cells[0], self.rows()) {
+            multiply(&mut self.centre[run.clone()], &rows[run.clone()], &columns[run]);
         }
         let mut stride = 1;
         for axis in 0..D {

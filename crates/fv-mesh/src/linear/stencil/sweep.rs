@@ -56,13 +56,17 @@ fn sweep_row<const FORWARD: bool, const D: usize>(
     x: &mut [f64],
     terms: &mut Terms,
 ) {
-    let n = matrix.cells[0];
-    let start = r * n;
+    let (whole, span) = (matrix.cells[0], matrix.span(r));
+    let (offset, n) = (span.start, span.len());
+    if n == 0 {
+        return;
+    }
+    let start = r * whole + offset;
     let cross = matrix.cross(r, |other| other != r);
     let (lower, upper) = (&matrix.lower[0][start..][..n], &matrix.upper[0][start..][..n]);
     // Coefficients of the neighbour ahead and of the one solved before.
     let (ahead, behind) = if FORWARD { (upper, lower) } else { (lower, upper) };
-    let wraps = matrix.periodic[0] && n > 1;
+    let wraps = matrix.periodic[0] && n == whole && n > 1;
     let (first, end) = if FORWARD { (0, n - 1) } else { (n - 1, 0) };
     // What the first cell's neighbour behind it holds still.
     let mut last = if wraps { x[start + end] } else { 0.0 };
@@ -73,8 +77,8 @@ fn sweep_row<const FORWARD: bool, const D: usize>(
         let (t, w) = (&mut terms.t[..m], &mut terms.w[..m]);
         let here = start + s;
         let (b, centre) = (&b[here..][..m], &matrix.centre[here..][..m]);
-        let coefficients = cross.links.map(|l| l.map(|(c, _)| &c[s..][..m]));
-        let others = cross.links.map(|l| l.map(|(_, place)| &x[place + s..][..m]));
+        let coefficients = cross.links.map(|l| l.map(|(c, _)| &c[offset + s..][..m]));
+        let others = cross.links.map(|l| l.map(|(_, place)| &x[place + offset + s..][..m]));
         for i in 0..m {
             let mut sum = b[i];
             for axis in 1..D {

@@ -181,5 +181,6 @@ impl<const D: usize> Multigrid<D> {
             Precision::Single(h) => h.renew(stored, axes, self.singular),
             Precision::Double(h) => h.renew(stored, axes, self.singular),
         }
+        self.operator.find_spans();
     }
 }

@@ -64,6 +64,7 @@ impl<T: Real> Hierarchy<T> {
             let (fine, coarse) = self.levels.split_at_mut(l);
             coarsen(&mut fine[l - 1], &mut coarse[0], axes, &mut self.scratch);
         }
+        self.levels.iter_mut().for_each(|level| level.stencil.find_spans());
         self.factorise(singular);
     }
 

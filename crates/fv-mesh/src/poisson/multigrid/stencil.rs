@@ -56,6 +56,8 @@ pub(super) struct Stencil<T> {
     shift: T,
     /// β at the faces, if it is not 1: rows of faces along x, rows between rows, rows between layers.
     pub(super) beta: Option<[Vec<T>; 3]>,
+    /// First and number of the cells of every row beyond which β cuts off all, where φ is 0; empty if those are all cells of all rows.
+    spans: Vec<[usize; 2]>,
     /// ω, 0, ω, 0, … for one colour of a row, with the factor ω of over-relaxation.
     colours: Vec<T>,
     /// Stands for the layers behind the ends.
@@ -100,9 +102,41 @@ impl<T: Real> Stencil<T> {
             high,
             shift: T::of(shift * unit),
             beta,
+            spans: Vec::new(),
             colours: (0..=cells[0]).map(|i| T::of(if i % 2 == 0 { over } else { 0.0 })).collect(),
             zeros: vec![T::default(); stride * cells[1]],
         }
+    }
+
+    /// Looks where β cuts off the first and the last cells of rows from all others.
+    pub(super) fn find_spans(&mut self) {
+        self.spans.clear();
+        let (Some([x, m, l]), true) = (&self.beta, self.shift == T::default()) else { return };
+        let ([n, rows, layers], stride) = (self.cells, self.stride());
+        let is_open = |b: &T| *b > T::default();
+        let mut all = true;
+        for (k, j) in (0..layers).flat_map(|k| (0..rows).map(move |j| (k, j))) {
+            let (a, b) = ((k * (rows + 1) + j) * stride, (k * rows + j) * stride);
+            let across = [&m[a..][..n], &m[a + stride..][..n], &l[b..][..n], &l[b + self.layer()..][..n]];
+            let along = &x[b..][..n + 1];
+            let firsts = across.iter().filter_map(|beta| beta.iter().position(is_open));
+            let first = firsts.chain(along.iter().position(is_open).map(|face| face.saturating_sub(1))).min();
+            let ends = across.iter().filter_map(|beta| beta.iter().rposition(is_open).map(|cell| cell + 1));
+            let end = ends.chain(along.iter().rposition(is_open).map(|face| (face + 1).min(n))).max();
+            let from = first.unwrap_or(0);
+            let span = [from, end.unwrap_or(0) - from];
+            all &= span == [0, n];
+            self.spans.push(span);
+        }
+        if all {
+            self.spans.clear();
+        }
+    }
+
+    /// First and number of the cells of row `j` of layer `k` that β does not cut off.
+    #[inline(always)]
+    pub(super) fn span(&self, j: usize, k: usize) -> [usize; 2] {
+        if self.spans.is_empty() { [0, self.cells[0]] } else { self.spans[k * self.cells[1] + j] }
     }
 
     /// Values of a row with its ghosts.
@@ -148,6 +182,15 @@ impl<T: Real> Stencil<T> {
         }
     }
 
+    /// Sets to zero what is outside of a span of a row with ghosts, and gives what is inside.
+    #[inline(always)]
+    fn cut_off<'a>(&self, [from, n]: [usize; 2], row: &'a mut [T]) -> &'a mut [T] {
+        let cells = &mut row[1..=self.cells[0]];
+        cells[..from].fill(T::default());
+        cells[from + n..].fill(T::default());
+        &mut cells[from..][..n]
+    }
+
     /// What surrounds row `j` of layer `k`.
     #[inline(always)]
     fn around<'a>(&'a self, [below, here, above]: [&'a [T]; 3], j: usize, k: usize) -> Around<'a, T> {
@@ -185,17 +228,18 @@ impl<T: Real> Stencil<T> {
     /// A φ in row `j` of layer `k`, from the layers below, here and above.
     #[inline(always)]
     pub(super) fn apply(&self, layers: [&[T]; 3], j: usize, k: usize, out: &mut [T]) {
-        let (n, stride) = (self.cells[0], self.stride());
+        let ([from, n], stride) = (self.span(j, k), self.stride());
         let around = self.around(layers, j, k);
         let Around { rows: [a, b, c, d], coefficients: [ca, cb, cc, cd], betas, beta_x } = around;
-        let (a, b, c, d) = (&a[..n], &b[..n], &c[..n], &d[..n]);
-        let row = &layers[1][j * stride..][..n + 2];
+        let (a, b, c, d) = (&a[from..][..n], &b[from..][..n], &c[from..][..n], &d[from..][..n]);
+        let row = &layers[1][j * stride + from..][..n + 2];
         let (left, x, right) = (&row[..n], &row[1..n + 1], &row[2..n + 2]);
-        let (low, high, out) = (&self.low[0][..n], &self.high[0][..n], &mut out[..n]);
+        out[..from].fill(T::default());
+        out[from + n..].fill(T::default());
+        let (low, high, out) = (&self.low[0][from..][..n], &self.high[0][from..][..n], &mut out[from..][..n]);
         if self.beta.is_some() {
-            let [ba, bb, bc, bd] = betas;
-            let (ba, bb, bc, bd) = (&ba[..n], &bb[..n], &bc[..n], &bd[..n]);
-            let (bl, br) = (&beta_x[..n], &beta_x[1..n + 1]);
+            let [ba, bb, bc, bd] = betas.map(|beta| &beta[from..][..n]);
+            let (bl, br) = (&beta_x[from..][..n], &beta_x[from + 1..][..n]);
             for i in 0..n {
                 let mut sum = self.shift * x[i];
                 sum += low[i] * bl[i] * (x[i] - left[i]) + high[i] * br[i] * (x[i] - right[i]);
@@ -232,21 +276,20 @@ impl<T: Real> Stencil<T> {
         f: &[T],
         out: &mut [T],
     ) {
-        let (n, stride) = (self.cells[0], self.stride());
+        let ([from, n], stride) = (self.span(j, k), self.stride());
         let around = self.around(layers, j, k);
         let Around { rows: [a, b, c, d], coefficients: [ca, cb, cc, cd], betas, beta_x } = around;
-        let (a, b, c, d) = (&a[..n], &b[..n], &c[..n], &d[..n]);
-        let row = &layers[1][j * stride..][..n + 2];
+        let (a, b, c, d) = (&a[from..][..n], &b[from..][..n], &c[from..][..n], &d[from..][..n]);
+        let row = &layers[1][j * stride + from..][..n + 2];
         let (left, x, right) = (&row[..n], &row[1..n + 1], &row[2..n + 2]);
-        let (low, high) = (&self.low[0][..n], &self.high[0][..n]);
-        let mask = &self.colours[(j + k + colour) % 2..][..n];
-        let f = &f[1..n + 1];
+        let (low, high) = (&self.low[0][from..][..n], &self.high[0][from..][..n]);
+        let mask = &self.colours[(j + k + colour) % 2 + from..][..n];
+        let f = &f[1 + from..][..n];
         {
-            let out = &mut out[1..n + 1];
+            let out = self.cut_off([from, n], out);
             if self.beta.is_some() {
-                let [ba, bb, bc, bd] = betas;
-                let (ba, bb, bc, bd) = (&ba[..n], &bb[..n], &bc[..n], &bd[..n]);
-                let (bl, br) = (&beta_x[..n], &beta_x[1..n + 1]);
+                let [ba, bb, bc, bd] = betas.map(|beta| &beta[from..][..n]);
+                let (bl, br) = (&beta_x[from..][..n], &beta_x[from + 1..][..n]);
                 for i in 0..n {
                     let (wl, wr) = (low[i] * bl[i], high[i] * br[i]);
                     let (wa, wb, wc, wd) = (ca * ba[i], cb * bb[i], cc * bc[i], cd * bd[i]);
@@ -281,18 +324,17 @@ impl<T: Real> Stencil<T> {
     /// [`relax`](Self::relax) of φ = 0.
     #[inline(always)]
     pub(super) fn relax_zero(&self, (j, k): (usize, usize), colour: usize, f: &[T], out: &mut [T]) {
-        let n = self.cells[0];
-        let mask = &self.colours[(j + k + colour) % 2..][..n];
-        let (low, high, f) = (&self.low[0][..n], &self.high[0][..n], &f[1..n + 1]);
+        let [from, n] = self.span(j, k);
+        let mask = &self.colours[(j + k + colour) % 2 + from..][..n];
+        let (low, high, f) = (&self.low[0][from..][..n], &self.high[0][from..][..n], &f[1 + from..][..n]);
         {
-            let out = &mut out[1..n + 1];
+            let out = self.cut_off([from, n], out);
             let zeros = [self.zeros.as_slice(); 3];
             let around = self.around(zeros, j, k);
             let Around { coefficients: [ca, cb, cc, cd], betas, beta_x, .. } = around;
             if self.beta.is_some() {
-                let [ba, bb, bc, bd] = betas;
-                let (ba, bb, bc, bd) = (&ba[..n], &bb[..n], &bc[..n], &bd[..n]);
-                let (bl, br) = (&beta_x[..n], &beta_x[1..n + 1]);
+                let [ba, bb, bc, bd] = betas.map(|beta| &beta[from..][..n]);
+                let (bl, br) = (&beta_x[from..][..n], &beta_x[from + 1..][..n]);
                 for i in 0..n {
                     let diagonal = (low[i] * bl[i] + high[i] * br[i])
                         + (ca * ba[i] + cb * bb[i])

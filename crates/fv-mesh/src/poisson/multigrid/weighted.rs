@@ -23,23 +23,25 @@ impl<T: Real> WithSimd for WeightedProlong<'_, T> {
     fn with_simd<S: Simd>(self, _: S) {
         let Self { stencil: s, transfer: [x, middle, last], pulls, coarse: (coarse, from), start, phi } =
             self;
-        let (n, [count, rows, _]) = (s.cells[0], coarse.cells);
+        let [count, rows, _] = coarse.cells;
         let row = |j: usize, k: usize| &from[(k * rows + j) * coarse.stride() + 1..][..count];
-        let (own, beside) = (&x.parents[..n], &x.neighbours[..n]);
         for (r, phi) in phi.chunks_exact_mut(s.stride()).enumerate() {
             let (j, k) = (r % s.cells[1], start + r / s.cells[1]);
+            let [first, n] = s.span(j, k);
+            let (own, beside) = (&x.parents[first..][..n], &x.neighbours[first..][..n]);
             let ([g, _], (g_beside, open_middle)) = (middle.parents[j], middle.neighbours[j]);
             let ([h, _], (h_beside, open_last)) = (last.parents[k], last.neighbours[k]);
             let (here, b, c) = (row(g, h), row(g_beside, h), row(g, h_beside));
             let at = (k * s.cells[1] + j) * s.stride();
-            let [ta, tb, tc] = pulls.each_ref().map(|t| &t[at..][..n]);
+            let [ta, tb, tc] = pulls.each_ref().map(|t| &t[at + first..][..n]);
+            let inside = &mut phi[1 + first..][..n];
             let factor = |open: bool| T::of(if open { 1.0 } else { 0.0 });
             let (fb, fc) = (factor(open_middle), factor(open_last));
             let one = T::of(1.0);
             for i in 0..n {
                 let (p, (q, open)) = (own[i][0], beside[i]);
                 let a = if open { here[q] } else { T::default() };
-                phi[i + 1] += (one - ta[i] - tb[i] - tc[i]) * here[p]
+                inside[i] += (one - ta[i] - tb[i] - tc[i]) * here[p]
                     + ta[i] * a
                     + tb[i] * fb * b[p]
                     + tc[i] * fc * c[p];
@@ -69,7 +71,6 @@ impl<T: Real> WeightedRestrict<'_, T> {
     #[inline(always)]
     fn add(&mut self, k: usize, h: usize, base: usize) {
         let (s, [x, middle, last]) = (self.stencil, self.transfer);
-        let n = s.cells[0];
         let stride = self.coarse_axes[0].cells() + 2;
         let around = [-1, 0, 1].map(|d| s.layer_of(self.phi, k as isize + d));
         let own = last.parents[k][0] == h;
@@ -78,22 +79,24 @@ impl<T: Real> WeightedRestrict<'_, T> {
         for j in 0..s.cells[1] {
             s.apply(around, j, k, self.row);
             let at = (k * s.cells[1] + j) * s.stride();
-            let f = &self.f[at + 1..][..n];
-            let [ta, tb, tc] = self.pulls.each_ref().map(|t| &t[at..][..n]);
+            let [first, n] = s.span(j, k);
+            let (f, applied) = (&self.f[at + 1 + first..][..n], &self.row[first..][..n]);
+            let [ta, tb, tc] = self.pulls.each_ref().map(|t| &t[at + first..][..n]);
+            let (own_groups, beside_groups) = (&x.parents[first..][..n], &x.neighbours[first..][..n]);
             let share = |a: usize, i: usize, g: usize| self.axes[a].widths[i] / self.coarse_axes[a].widths[g];
             let (g, (g_beside, open)) = (middle.parents[j][0], middle.neighbours[j]);
             let here = T::of(share(1, j, g) * share(2, k, h));
             let there = T::of(if open { share(1, j, g_beside) * share(2, k, h) } else { 0.0 });
             let (here_at, there_at) = (base + g * stride + 1, base + g_beside * stride + 1);
             for i in 0..n {
-                let (p, (q, open)) = (x.parents[i][0], x.neighbours[i]);
-                let r = f[i] - self.row[i];
-                let part = r * T::of(share(0, i, p));
+                let (p, (q, open)) = (own_groups[i][0], beside_groups[i]);
+                let r = f[i] - applied[i];
+                let part = r * T::of(share(0, first + i, p));
                 if own {
                     self.out[here_at + p] += here * part * (one - ta[i] - tb[i] - tc[i]);
                     self.out[there_at + p] += there * part * tb[i];
                     if open {
-                        self.out[here_at + q] += here * r * T::of(share(0, i, q)) * ta[i];
+                        self.out[here_at + q] += here * r * T::of(share(0, first + i, q)) * ta[i];
                     }
                 }
                 if beside {

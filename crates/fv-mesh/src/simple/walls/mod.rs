@@ -8,10 +8,12 @@ mod stress;
 
 pub use stress::WallStress;
 
+use crate::field::row_start;
 use crate::linear::StencilMatrix;
 use crate::metrics::Metrics;
 use crate::momentum_matrix::MomentumEquations;
 use crate::simple::PressureCorrection;
+use crate::spans::Spans;
 use crate::transport::Dry;
 use crate::{CartesianGrid, Convection, Field, FlowError};
 use beside::{Beside, Ghost};
@@ -27,7 +29,7 @@ pub(crate) struct SimpleWalls<const D: usize> {
     rows: [Vec<Row<D>>; D],
     gradients: [Gradients<D>; D],
     stresses: Stresses<D>,
-    /// Dense numbers of the nodes that no fluid passes.
+    /// Dense numbers of the nodes in `spans` that no fluid passes.
     pub(super) shut: [Vec<usize>; D],
     /// Faces with a part that is open: storage index, dense number of the cell above and share.
     partly: [Vec<(usize, usize, f64)>; D],
@@ -42,6 +44,8 @@ pub(crate) struct SimpleWalls<const D: usize> {
     sums: Vec<f64>,
     rates: Vec<f64>,
     n_bodies: usize,
+    /// Of cells with fluid and their neighbours.
+    pub(super) spans: Spans,
 }
 
 /// What changes from iteration to iteration.
@@ -72,6 +76,7 @@ impl<const D: usize> SimpleWalls<D> {
         outlets: &HashSet<(usize, usize)>,
     ) -> Result<Self, FlowError> {
         let openings = Openings::new(cuts, grid, metrics, outlets, matches!(law, WallStress::Law { .. }))?;
+        let spans = openings.spans();
         let mut gradients = std::array::from_fn(|_| Gradients::default());
         let (mut shut, mut partly) =
             (std::array::from_fn(|_| Vec::new()), std::array::from_fn(|_| Vec::new()));
@@ -86,7 +91,7 @@ impl<const D: usize> SimpleWalls<D> {
                 let open = openings.open[c].data()[face.index];
                 sides[c].push((face.index, open));
             }
-            for cell in 0..grid.n_cells() {
+            for cell in spans.rows(grid.cells()[0], grid.n_cells() / grid.cells()[0]).flatten() {
                 let index = grid.place(grid.cell(cell));
                 if !metrics.periodic[c] && grid.cell(cell)[c] == 0 {
                     continue;
@@ -124,6 +129,7 @@ impl<const D: usize> SimpleWalls<D> {
             partly,
             sides,
             n_bodies,
+            spans,
         })
     }
 
@@ -244,8 +250,15 @@ impl<const D: usize> SimpleWalls<D> {
 
     /// Stops what is in the solid.
     pub(super) fn stop(&self, grid: &CartesianGrid<D>, velocity: &mut [Field<D>; D]) {
+        let n = grid.cells()[0];
         for (list, u) in self.shut.iter().zip(velocity) {
-            list.iter().for_each(|&cell| u.data_mut()[grid.place(grid.cell(cell))] = 0.0);
+            let u = u.data_mut();
+            list.iter().for_each(|&cell| u[grid.place(grid.cell(cell))] = 0.0);
+            for r in 0..grid.n_cells() / n {
+                let (o, span) = (row_start(grid, r), self.spans.of(r, n));
+                u[o..o + span.start].fill(0.0);
+                u[o + span.end..o + n].fill(0.0);
+            }
         }
     }
 

@@ -1,6 +1,7 @@
 //! The open parts of all faces, on the grid.
 use crate::grid::GHOSTS;
 use crate::metrics::Metrics;
+use crate::spans::Spans;
 use crate::{CartesianGrid, Field, FlowError};
 use interfaces::{CutCells, WallPiece};
 use std::collections::{HashMap, HashSet};
@@ -84,6 +85,15 @@ impl<'a, const D: usize> Openings<'a, D> {
             this.mark_near();
         }
         Ok(this)
+    }
+
+    /// Of the cells that something passes.
+    pub(super) fn spans(&self) -> Spans {
+        let s = self.grid.stride();
+        Spans::around(self.grid.cells(), self.metrics.periodic, |cell| {
+            let o = self.grid.place(self.grid.cell(cell));
+            (0..D).any(|a| self.alive(a, o) || self.alive(a, o + s[a]))
+        })
     }
 
     /// The storage index inside the box that one among the ghosts stands for, along periodic axes.

@@ -6,9 +6,7 @@ use example_support::turbulent_flows::{
 use siltflow::flow::{
     Axis, CartesianGrid, Fluid, Modelled, Scalar, ScalarSide, Settling, Side, Simple, TransportParams,
 };
-use turb::{
-    Controls, Inflow, Law, Realizable, Sst, StandardKEpsilon, TwoEquation, WallFunctions, Wilcox, YPlus,
-};
+use turb::{Inflow, Law, Realizable, Sst, StandardKEpsilon, TwoEquation, WallFunctions, Wilcox, YPlus};
 
 /// y, y+, u+, k+, ω+ and ν_t/ν of OpenFOAM's simpleFoam.
 fn reference(text: &str) -> Vec<[f64; 6]> {
@@ -129,19 +127,20 @@ fn wall_functions_give_the_logarithmic_layer_of_dns() {
     run(Realizable::default());
 }
 
-/// First cells in the buffer layer and far outside of it: with k and the scale relaxed by 0.9 a few cells go to and fro between two states for ever.
+/// First cells in the buffer layer and far outside of it: undamped some cells go to and fro between two states for ever (after 3000 iterations k–ε has a
+/// residual of 1, SST of 0.1).
 #[test]
 fn cells_at_bad_distances_come_to_rest() {
     fn run<L: Law>(law: L, first: f64, cells: usize) {
         let inflow = Inflow::from_length(1.0, 0.05, 0.07).unwrap();
         let (mut flow, mut model) = duct(law, [60, cells], first, inflow).unwrap();
-        let slow = Controls { relax_k: 0.75, relax_scale: 0.75 };
-        model.closure = model.closure.clone().with_controls(slow).unwrap();
         flow.set_velocity(|_| [1.0, 0.0]);
         let (info, done) = iterate(&mut flow, &mut model, 600, 1e-5).unwrap();
         assert!(done, "{info:?} {}", model.closure.y_plus());
     }
     run(Sst::default(), 2.8e-4, 80);
+    run(StandardKEpsilon::default(), 2.8e-4, 80);
+    run(Realizable::default(), 2.8e-4, 80);
     run(Realizable::default(), 5.6e-2, 16);
 }
 

@@ -109,7 +109,7 @@ mod tests {
     fn a_row_that_reaches_a_periodic_seam_is_whole() {
         let spans = Spans::around([40, 1], [true, false], |cell| cell == 2);
         assert_eq!(spans, Spans::default());
-        assert_eq!(spans.rows(40, 1).collect::<Vec<_>>(), [0..40]);
+        assert!(spans.rows(40, 1).eq(std::iter::once(0..40)));
         let spans = Spans::around([40, 1], [false, false], |cell| cell == 2);
         assert_eq!(spans.of(0, 40), 0..6);
     }

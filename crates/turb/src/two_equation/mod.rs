@@ -1,4 +1,5 @@
 //! Models of two transport equations: one for k, one for ω or ε.
+mod damping;
 mod k_epsilon;
 mod law;
 mod realizable;
@@ -16,6 +17,7 @@ pub use wilcox::Wilcox;
 use crate::error::positive;
 use crate::wall::WallLayer;
 use crate::{Inflow, TurbulenceError, WallFunctions, YPlus};
+use damping::Damping;
 use interfaces::{
     Checkpoint, Closure, Equation, LawOfTheWall, RestartError, SolveError, SolveInfo, Transport, WallRow,
 };
@@ -68,6 +70,8 @@ pub struct TwoEquation<L> {
     scale: Vec<f64>,
     eddy: Vec<f64>,
     work: Work,
+    /// Of k and s.
+    damping: [Damping; 2],
     /// What the last solves of s and k did.
     solves: [SolveInfo; 2],
     floored: usize,
@@ -122,6 +126,7 @@ impl<L: Law> TwoEquation<L> {
                 terms: std::array::from_fn(|_| of(true)),
                 runs: Vec::new(),
             },
+            damping: Default::default(),
             solves: [SolveInfo::default(); 2],
             floored: 0,
             limited: 0,
@@ -337,7 +342,16 @@ impl<L: Law> TwoEquation<L> {
         let blend = &self.layer.blends;
         let equation =
             Equation { pinned: &self.pins, blend, inverse: true, ..equation(&terms, inlet, relax, dt) };
+        // ε follows k at once, beside walls and in ν_t.
+        let damped = dt.is_none() && L::SCALE == Scale::Omega;
+        if damped {
+            self.damping[1].remember(&self.scale);
+        }
         let solved = tolerant(flow.solve(&equation, &mut self.scale), dt);
+        if damped {
+            self.damping[1].damp(&mut self.scale, runs);
+            self.pins.iter().for_each(|&(cell, value)| self.scale[cell] = value);
+        }
         self.work.terms = terms;
         self.floored += floor(&mut self.scale);
         solved
@@ -366,7 +380,14 @@ impl<L: Law> TwoEquation<L> {
         }
         let relax = if dt.is_some() { 1.0 } else { self.controls.relax_k };
         let equation = Equation { pinned: &self.given[0], ..equation(&terms, self.inflow.k, relax, dt) };
+        if dt.is_none() {
+            self.damping[0].remember(&self.k);
+        }
         let solved = tolerant(flow.solve(&equation, &mut self.k), dt);
+        if dt.is_none() {
+            self.damping[0].damp(&mut self.k, runs);
+            self.given[0].iter().for_each(|&(cell, value)| self.k[cell] = value);
+        }
         self.work.terms = terms;
         self.floored += floor(&mut self.k);
         solved

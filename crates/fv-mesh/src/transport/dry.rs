@@ -56,6 +56,9 @@ impl<const D: usize> CellTransport<D> {
         let mut solid = vec![false; grid.n_cells()];
         dry.iter().for_each(|&(cell, _)| solid[cell] = true);
         let spans = Spans::around(grid.cells(), self.ops.metrics().periodic, |cell| !solid[cell]);
+        if spans == *self.ops.spans() {
+            return;
+        }
         self.matrix.set_spans(spans.clone());
         for list in [&mut self.b, &mut self.x] {
             list.fill(0.0);

@@ -1,9 +1,11 @@
 //! Implicit transport of cell-centred quantities for turbulence models.
 mod dry;
+mod flow_transport;
 mod kernels;
 mod log_slopes;
 mod near_solids;
 mod neighbours;
+mod params;
 mod sides;
 #[cfg(test)]
 mod tests;
@@ -11,7 +13,9 @@ mod wall_faces;
 mod walls;
 
 pub(crate) use dry::Dry;
+pub use flow_transport::FlowTransport;
 pub(crate) use near_solids::NEAREST;
+pub use params::{TransportMethod, TransportParams};
 pub(crate) use wall_faces::WallFaces;
 
 use crate::kernels::copy_dense;
@@ -21,59 +25,11 @@ use crate::linear::{
 };
 use crate::operators::{Operators, fill_dense};
 use crate::{CartesianGrid, Convection, Field, FlowError, Sides, Velocity};
-use interfaces::{Equation, LogSlope, SolveError, SolveInfo, Transport};
-use kernels::{DotGradients, Neighbour};
+use interfaces::{Equation, SolveError, SolveInfo};
+use kernels::Neighbour;
 use near_solids::NearSolids;
 use sides::CellSides;
 use std::ops::Range;
-
-/// How [`CellTransport`] discretises and solves.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TransportParams {
-    /// Convection scheme. Anything but [`Convection::Upwind`] enters by deferred correction (Khosla & Rubin 1974): the
-    /// matrix is upwind's, the difference is taken from the φ given, so that repeated solves converge to the scheme. Where
-    /// the difference d is negative and φ is not, it enters as the sink −d/φ (Patankar 1980), so that what is positive stays so.
-    pub scheme: Convection,
-    /// Method of the linear solver.
-    pub method: TransportMethod,
-    /// Largest relative residual: where nothing is negative, the root mean square of (b_P − Σ a φ)/(a_P φ_P) over the cells; else
-    /// ‖b − Aφ‖ over the larger of ‖b‖ and ‖a_P φ‖, taken over the cells that are not pinned.
-    pub tolerance: f64,
-    /// The solver may stop where the residual is this part of the residual of the φ given, too; 0 for never. A steady iteration
-    /// needs no more than 0.1.
-    pub reduction: f64,
-    /// Iterations allowed.
-    pub max_iterations: usize,
-}
-
-impl TransportParams {
-    /// For steady iterations: convection of second order ([`Convection::Limited`]), residuals brought down to a tenth.
-    pub fn steady() -> Self {
-        Self { scheme: Convection::Limited, reduction: 0.1, ..Self::default() }
-    }
-}
-
-impl Default for TransportParams {
-    fn default() -> Self {
-        Self {
-            scheme: Convection::Upwind,
-            method: TransportMethod::BiCgStab,
-            tolerance: 1e-9,
-            reduction: 0.0,
-            max_iterations: 1000,
-        }
-    }
-}
-
-/// Linear solver of [`CellTransport`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum TransportMethod {
-    /// [`bicgstab`] with [`Dilu`].
-    #[default]
-    BiCgStab,
-    /// [`gauss_seidel`], forward and backward in turn: for short time steps and strong sinks.
-    GaussSeidel,
-}
 
 /// What it takes to solve transport equations at the cells of a grid: matrix, scratch, wall distance. It is made
 /// once; [`on`](Self::on) joins it with a velocity to an [`interfaces::Transport`].
@@ -114,13 +70,6 @@ pub struct CellTransport<const D: usize> {
     gauss_seidel: GaussSeidelScratch,
     /// Γ or a, φ or b, and two terms.
     fields: [Field<D>; 4],
-}
-
-/// A [`CellTransport`] on a velocity: what a closure sees.
-#[derive(Debug)]
-pub struct FlowTransport<'a, const D: usize> {
-    cells: &'a mut CellTransport<D>,
-    velocity: &'a Velocity<D>,
 }
 
 impl<const D: usize> CellTransport<D> {
@@ -480,59 +429,4 @@ fn relative(
 
 fn check_length(what: &'static str, expected: usize, found: usize) -> Result<(), SolveError> {
     if expected == found { Ok(()) } else { Err(SolveError::Length { what, expected, found }) }
-}
-
-impl<const D: usize> Transport for FlowTransport<'_, D> {
-    fn n_cells(&self) -> usize {
-        self.cells.volume.len()
-    }
-    fn cell_volume(&self, c: usize) -> f64 {
-        self.cells.volume[c]
-    }
-    fn runs(&self) -> Option<&[Range<usize>]> {
-        self.cells.runs.as_deref()
-    }
-    fn wall_distance(&self) -> &[f64] {
-        &self.cells.wall_distance
-    }
-    fn strain_rate(&mut self, out: &mut [f64]) -> Result<(), SolveError> {
-        check_length("the strain rate", self.n_cells(), out.len())?;
-        let ops = &self.cells.ops;
-        fill_dense(ops.grid(), ops.spans(), &ops.strain_kernel(&self.velocity.components), out);
-        Ok(())
-    }
-    fn log_slopes(&mut self) -> &[LogSlope] {
-        let CellTransport { near, ops, wall_distance, forced, .. } = &mut *self.cells;
-        near.as_mut()
-            .filter(|_| !*forced)
-            .map_or(&[], |near| near.log_slopes(ops.grid(), self.velocity, wall_distance))
-    }
-    fn velocity_gradient(&mut self, out: &mut [[[f64; 3]; 3]]) -> Result<(), SolveError> {
-        check_length("the velocity gradient", self.n_cells(), out.len())?;
-        out.fill([[0.0; 3]; 3]);
-        let CellTransport { ops, fields: [field, ..], .. } = &mut *self.cells;
-        for (a, b) in (0..D).flat_map(|a| (0..D).map(move |b| (a, b))) {
-            let made = ops.velocity_gradient(self.velocity, [a, b], field);
-            made.map_err(|e| SolveError::Solver(e.to_string()))?;
-            out.iter_mut().zip(field.values()).for_each(|(out, slope)| out[a][b] = slope);
-        }
-        Ok(())
-    }
-    fn dot_gradients(&mut self, a: &[f64], b: &[f64], out: &mut [f64]) -> Result<(), SolveError> {
-        for (what, list) in [("a", a), ("b", b), ("∇a·∇b", &*out)] {
-            check_length(what, self.n_cells(), list.len())?;
-        }
-        let CellTransport { ops, sides, fields: [first, second, ..], .. } = &mut *self.cells;
-        let grid = ops.grid();
-        for (dense, field) in [(a, &mut *first), (b, &mut *second)] {
-            copy_dense(grid, dense, field);
-            sides.extrapolate(field);
-        }
-        let kernel = DotGradients { grid, centred: ops.centred(), a: first.data(), b: second.data() };
-        fill_dense(grid, ops.spans(), &kernel, out);
-        Ok(())
-    }
-    fn solve(&mut self, equation: &Equation<'_>, phi: &mut [f64]) -> Result<SolveInfo, SolveError> {
-        self.cells.solve(self.velocity, equation, phi)
-    }
 }

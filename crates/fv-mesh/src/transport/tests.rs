@@ -3,7 +3,7 @@ use super::*;
 use crate::metrics::Metrics;
 use crate::operators::tests::{Family, assert_order, exact, exact_velocity, families, norms};
 use crate::{Patch, Profile, Side};
-use interfaces::Closure;
+use interfaces::{Closure, Transport};
 
 /// φ = 3 + sin(1.1x + 0.2) cos(0.8y − 0.9) (1 + 0.2z) and ∇φ, ∇²φ.
 fn wave(x: [f64; 3]) -> (f64, [f64; 3], f64) {

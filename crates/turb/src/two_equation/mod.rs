@@ -3,6 +3,7 @@ mod damping;
 mod k_epsilon;
 mod law;
 mod realizable;
+mod solve;
 mod sst;
 #[cfg(test)]
 mod tests;
@@ -18,9 +19,7 @@ use crate::error::positive;
 use crate::wall::WallLayer;
 use crate::{Inflow, TurbulenceError, WallFunctions, YPlus};
 use damping::Damping;
-use interfaces::{
-    Checkpoint, Closure, Equation, LawOfTheWall, RestartError, SolveError, SolveInfo, Transport, WallRow,
-};
+use interfaces::{Checkpoint, Closure, RestartError, SolveError, SolveInfo, Transport, WallRow};
 use std::ops::Range;
 
 /// k–ω of Wilcox (1988).
@@ -93,8 +92,6 @@ struct Work {
     runs: Vec<Range<usize>>,
 }
 
-/// The layer is logarithmic as far down as differences reach where y* is this many y+_lam.
-const LOGARITHMIC: f64 = 3.0;
 /// The least value of k \[m²/s²\] and of ω or ε.
 const FLOOR: f64 = 1e-30;
 /// k in solids: so little that it is none, and enough not to be counted as set after a solve.
@@ -244,186 +241,6 @@ impl<L: Law> TwoEquation<L> {
     pub fn solves(&self) -> [SolveInfo; 2] {
         self.solves
     }
-
-    /// What the law sees of cell `i`.
-    #[inline(always)]
-    fn local(&self, i: usize, distance: f64, nu: f64) -> Local {
-        let Work { strain, cross, auxiliary, .. } = &self.work;
-        Local {
-            k: self.k[i],
-            scale: self.scale[i],
-            eddy: self.eddy[i],
-            strain: strain[i],
-            cross: if L::CROSS_DIFFUSION { cross[i] } else { 0.0 },
-            // Of cells in solids.
-            distance: distance.max(1e-100),
-            nu,
-            auxiliary: if L::AUXILIARY { auxiliary[i] } else { 0.0 },
-        }
-    }
-
-    /// Strain rate, cross diffusion, and what the law makes of them.
-    fn prepare(
-        &mut self,
-        flow: &mut dyn Transport,
-        runs: &[Range<usize>],
-        nu: f64,
-        dt: Option<f64>,
-    ) -> Result<(), SolveError> {
-        if L::GRADIENT {
-            flow.velocity_gradient(&mut self.work.gradient)?;
-            let Work { strain, gradient, .. } = &mut self.work;
-            for run in runs {
-                let strain = strain[run.clone()].iter_mut();
-                strain.zip(&gradient[run.clone()]).for_each(|(s, g)| *s = Invariants::of(g).strain);
-            }
-        } else {
-            flow.strain_rate(&mut self.work.strain)?;
-        }
-        let functions = &self.layer.functions;
-        for slope in flow.log_slopes() {
-            let y_star = functions.y_star(slope.distance, self.k[slope.cell], nu);
-            let share = functions.turbulent_share(y_star / LOGARITHMIC);
-            let part = 1.0 + share * (slope.part - 1.0);
-            self.work.strain[slope.cell] *= part;
-            if L::GRADIENT {
-                self.work.gradient[slope.cell].iter_mut().flatten().for_each(|g| *g *= part);
-            }
-        }
-        if L::CROSS_DIFFUSION {
-            flow.dot_gradients(&self.k, &self.scale, &mut self.work.cross)?;
-        }
-        for w in &self.layer.cells {
-            if let Some(shear) = w.shear {
-                let strain = &mut self.work.strain[w.cell];
-                *strain = mix(w.free, shear, *strain);
-            }
-        }
-        if L::AUXILIARY {
-            // Steady iterations of SST may else go round in circles where F₁ changes abruptly.
-            let distance = flow.wall_distance();
-            for i in runs.iter().cloned().flatten() {
-                let local = self.local(i, distance[i], nu);
-                let invariants = self.work.gradient.get(i).map(Invariants::of).unwrap_or_default();
-                let new = self.law.auxiliary(&local, invariants);
-                let old = &mut self.work.auxiliary[i];
-                // In time there is no memory of it, to the last bit.
-                *old = if dt.is_some() { new } else { 0.5 * (*old + new) };
-            }
-            for w in self.layer.cells.iter().filter(|_| L::GRADIENT) {
-                if let Some(shear) = w.shear {
-                    let local = self.local(w.cell, distance[w.cell], nu);
-                    let beside = self.law.auxiliary(&local, Invariants::shear(shear));
-                    let auxiliary = &mut self.work.auxiliary[w.cell];
-                    *auxiliary = mix(w.free, beside, *auxiliary);
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn solve_scale(
-        &mut self,
-        flow: &mut dyn Transport,
-        runs: &[Range<usize>],
-        nu: f64,
-        dt: Option<f64>,
-    ) -> Result<SolveInfo, SolveError> {
-        let mut terms = std::mem::take(&mut self.work.terms);
-        let distance = flow.wall_distance();
-        for i in runs.iter().cloned().flatten() {
-            self.law.scale_terms(&self.local(i, distance[i], nu)).put(&mut terms, i);
-        }
-        let inlet = L::SCALE.of(&self.inflow);
-        let relax = if dt.is_some() { 1.0 } else { self.controls.relax_scale };
-        self.pins.clear();
-        self.pins.extend_from_slice(&self.layer.pins);
-        self.pins.extend_from_slice(&self.given[1]);
-        let blend = &self.layer.blends;
-        let equation =
-            Equation { pinned: &self.pins, blend, inverse: true, ..equation(&terms, inlet, relax, dt) };
-        // ε follows k at once, beside walls and in ν_t.
-        let damped = dt.is_none() && L::SCALE == Scale::Omega;
-        if damped {
-            self.damping[1].remember(&self.scale);
-        }
-        let solved = tolerant(flow.solve(&equation, &mut self.scale), dt);
-        if damped {
-            self.damping[1].damp(&mut self.scale, runs);
-            self.pins.iter().for_each(|&(cell, value)| self.scale[cell] = value);
-        }
-        self.work.terms = terms;
-        self.floored += floor(&mut self.scale);
-        solved
-    }
-
-    fn solve_k(
-        &mut self,
-        flow: &mut dyn Transport,
-        runs: &[Range<usize>],
-        nu: f64,
-        dt: Option<f64>,
-    ) -> Result<SolveInfo, SolveError> {
-        let mut terms = std::mem::take(&mut self.work.terms);
-        let distance = flow.wall_distance();
-        for i in runs.iter().cloned().flatten() {
-            let local = self.local(i, distance[i], nu);
-            self.law.k_terms(&local, local.eddy * local.strain * local.strain).put(&mut terms, i);
-        }
-        for w in &self.layer.cells {
-            let local = self.local(w.cell, distance[w.cell], nu);
-            let resolved = local.eddy * local.strain * local.strain;
-            let produced = w.production + (1.0 - w.share) * resolved;
-            let mut of_cell = self.law.k_terms(&local, mix(w.free, produced, resolved));
-            of_cell.sink += w.conductance / flow.cell_volume(w.cell);
-            of_cell.put(&mut terms, w.cell);
-        }
-        let relax = if dt.is_some() { 1.0 } else { self.controls.relax_k };
-        let equation = Equation { pinned: &self.given[0], ..equation(&terms, self.inflow.k, relax, dt) };
-        if dt.is_none() {
-            self.damping[0].remember(&self.k);
-        }
-        let solved = tolerant(flow.solve(&equation, &mut self.k), dt);
-        if dt.is_none() {
-            self.damping[0].damp(&mut self.k, runs);
-            self.given[0].iter().for_each(|&(cell, value)| self.k[cell] = value);
-        }
-        self.work.terms = terms;
-        self.floored += floor(&mut self.k);
-        solved
-    }
-}
-
-fn equation(terms: &[Vec<f64>; 3], inlet: f64, relax: f64, dt: Option<f64>) -> Equation<'_> {
-    let [diffusivity, source, sink] = terms;
-    Equation { inlet, dt, relax, ..Equation::new(diffusivity, source, sink) }
-}
-
-/// `beside` a wall, `own` of the model: (1 − free) of the first and the rest of the second.
-fn mix(free: f64, beside: f64, own: f64) -> f64 {
-    if free > 0.0 { beside + free.min(1.0) * (own - beside) } else { beside }
-}
-
-/// A steady iteration need not be exact.
-fn tolerant(solved: Result<SolveInfo, SolveError>, dt: Option<f64>) -> Result<SolveInfo, SolveError> {
-    match solved {
-        Err(SolveError::NotConverged { iterations, residual, .. })
-            if dt.is_none() && residual.is_finite() =>
-        {
-            Ok(SolveInfo { iterations, residual, initial_residual: residual })
-        }
-        other => other,
-    }
-}
-
-/// Sets what is below the least value to it, and counts.
-fn floor(list: &mut [f64]) -> usize {
-    let mut count = 0;
-    for v in list.iter_mut().filter(|v| **v < FLOOR) {
-        *v = FLOOR;
-        count += 1;
-    }
-    count
 }
 
 impl<L: Law> Closure for TwoEquation<L> {
@@ -484,33 +301,6 @@ impl<L: Law> Closure for TwoEquation<L> {
         solved?;
         self.layer.refresh(walls, &self.k, nu);
         self.y_plus = self.layer.y_plus(walls, nu);
-        Ok(())
-    }
-}
-
-impl<L: Law> TwoEquation<L> {
-    /// Solves both equations, and makes ν_t of what comes out.
-    fn solve_all(
-        &mut self,
-        flow: &mut dyn Transport,
-        runs: &[Range<usize>],
-        nu: f64,
-        dt: Option<f64>,
-    ) -> Result<(), SolveError> {
-        self.prepare(flow, runs, nu, dt)?;
-        self.solves[0] = self.solve_scale(flow, runs, nu, dt)?;
-        self.solves[1] = self.solve_k(flow, runs, nu, dt)?;
-        let distance = flow.wall_distance();
-        let widest = distance.iter().copied().fold(0.0, f64::max);
-        // Where k and ε are far from each other ν_t would run away before they are not.
-        let length = if dt.is_none() && widest > 0.0 { widest } else { f64::INFINITY };
-        self.limited = 0;
-        for i in runs.iter().cloned().flatten() {
-            let eddy = self.law.eddy_viscosity(&self.local(i, distance[i], nu));
-            let most = length * LawOfTheWall::friction_velocity(self.k[i]);
-            self.limited += usize::from(eddy > most);
-            self.eddy[i] = if eddy > most { most } else { eddy };
-        }
         Ok(())
     }
 }

@@ -5,6 +5,7 @@ mod channel;
 mod couette;
 mod eddies_in_channel;
 mod large_eddies;
+mod places;
 mod plate;
 mod robust;
 mod shaken;
@@ -21,6 +22,7 @@ fn main() -> Outcome<()> {
         ("step", step::backward_facing_step),
         ("cost", robust::cost),
         ("robust", robust::bad_starts),
+        ("places", places::places),
         ("tgv", large_eddies::taylor_green),
         ("les", eddies_in_channel::channel),
         ("turned", turned::turned_ducts),

@@ -16,6 +16,7 @@ pub mod granular;
 pub mod moved_body;
 pub mod periodic_cube;
 pub mod picture;
+pub mod plane_duct;
 pub mod prescribed_bodies;
 pub mod progress;
 pub mod reference_curve;

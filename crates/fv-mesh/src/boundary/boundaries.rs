@@ -103,8 +103,7 @@ impl<const D: usize> Boundaries<D> {
     }
 
     /// Closes what immersed walls close of the sides: `open(a, index)` is the open share of the face of axis `a` with this
-    /// storage index. Through inlets and convective
-    /// outlets flow passes in the open part, faces of given pressure are open or not.
+    /// storage index. Inlets and convective outlets let flow pass in the open part, faces of given pressure are open or not.
     ///
     /// # Errors
     /// [`FlowError::MassBalance`] if what enters cannot leave.

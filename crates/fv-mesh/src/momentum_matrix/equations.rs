@@ -22,7 +22,6 @@ pub(crate) struct MomentumEquations<const D: usize> {
     tendency: Field<D>,
     scratch: Field<D>,
     sums: Vec<[f64; 2]>,
-    spans: Spans,
     /// Right-hand side of the equation made last.
     pub(crate) rhs: Vec<f64>,
     pub(crate) solver: MomentumSolver,
@@ -65,7 +64,6 @@ impl<const D: usize> MomentumEquations<D> {
             tendency: Field::zeros(grid),
             scratch: Field::zeros(grid),
             sums: vec![[0.0; 2]; rows],
-            spans: Spans::default(),
             rhs: vec![0.0; grid.n_cells()],
             grid: grid.clone(),
             metrics: metrics.clone(),
@@ -100,15 +98,15 @@ impl<const D: usize> MomentumEquations<D> {
     }
 
     pub(crate) fn set_convection(&mut self, scheme: Convection) {
+        let spans = std::mem::take(&mut self.convection.spans);
         self.convection = Momentum::new(&self.grid, &self.metrics, scheme);
-        self.convection.spans = self.spans.clone();
+        self.convection.spans = spans;
         self.scheme = scheme;
         self.implicit = if scheme == Convection::Central { self.central } else { Implicit::Upwind };
     }
 
     /// Outside of `spans` nothing is computed from now on.
     pub(crate) fn set_spans(&mut self, spans: &Spans) {
-        self.spans = spans.clone();
         self.convection.spans = spans.clone();
         self.tendency.data_mut().fill(0.0);
         self.rhs.fill(0.0);
@@ -132,7 +130,7 @@ impl<const D: usize> MomentumEquations<D> {
         };
         self.convection.advance(c, k, e.velocity, e.pressure, &mut self.scratch, &mut self.tendency);
         if let Some(eddy) = e.eddy {
-            let place = (&self.grid, &self.metrics, &self.spans);
+            let place = (&self.grid, &self.metrics, &self.convection.spans);
             add_eddy_stress(place, c, e.velocity, eddy, &mut self.tendency);
         }
         if let Some(source) = e.source {
@@ -153,7 +151,7 @@ impl<const D: usize> MomentumEquations<D> {
             eddy: e.eddy,
             implicit: self.implicit,
         };
-        let place = (&self.grid, &self.metrics, &self.spans);
+        let place = (&self.grid, &self.metrics, &self.convection.spans);
         assemble(place, c, terms, matrix, &mut self.rhs, &mut self.sums);
         fold_ends(&self.grid, boundaries, c, matrix);
         self.sums.iter().fold([0.0; 2], |sum, row| [sum[0] + row[0], sum[1] + row[1]])

@@ -332,7 +332,7 @@ impl<const D: usize> Simple<D> {
                 walls.reach_in(&mut self.state.velocity.components);
                 self.state.fill_velocity();
                 let updated = model.update(&self.state.velocity, walls.wall_rows(), viscosity, 0.0, None);
-                walls.stop(&self.state.grid, &mut self.state.velocity.components);
+                walls.draw_back(&mut self.state.velocity.components);
                 updated?;
             }
             None => model.update(&self.state.velocity, &[], viscosity, 0.0, None)?,

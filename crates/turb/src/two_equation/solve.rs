@@ -1,4 +1,5 @@
 //! One correction: both equations, and ν_t of what comes out.
+use super::damping::Damping;
 use super::law::Local;
 use super::{FLOOR, Law, Scale, TwoEquation, Work};
 use crate::Invariants;
@@ -132,15 +133,8 @@ impl<L: Law> TwoEquation<L> {
         let equation =
             Equation { pinned: &self.pins, blend, inverse: true, ..equation(&terms, inlet, relax, dt) };
         // ε follows k at once, beside walls and in ν_t.
-        let damped = dt.is_none() && L::SCALE == Scale::Omega;
-        if damped {
-            self.damping[1].remember(&self.scale);
-        }
-        let solved = tolerant(flow.solve(&equation, &mut self.scale), dt);
-        if damped {
-            self.damping[1].damp(&mut self.scale, runs);
-            self.pins.iter().for_each(|&(cell, value)| self.scale[cell] = value);
-        }
+        let damping = (L::SCALE == Scale::Omega).then_some(&mut self.damping[1]);
+        let solved = solve(flow, &equation, &mut self.scale, damping, runs);
         self.work.terms = terms;
         self.floored += floor(&mut self.scale);
         solved
@@ -169,14 +163,7 @@ impl<L: Law> TwoEquation<L> {
         }
         let relax = if dt.is_some() { 1.0 } else { self.controls.relax_k };
         let equation = Equation { pinned: &self.given[0], ..equation(&terms, self.inflow.k, relax, dt) };
-        if dt.is_none() {
-            self.damping[0].remember(&self.k);
-        }
-        let solved = tolerant(flow.solve(&equation, &mut self.k), dt);
-        if dt.is_none() {
-            self.damping[0].damp(&mut self.k, runs);
-            self.given[0].iter().for_each(|&(cell, value)| self.k[cell] = value);
-        }
+        let solved = solve(flow, &equation, &mut self.k, Some(&mut self.damping[0]), runs);
         self.work.terms = terms;
         self.floored += floor(&mut self.k);
         solved
@@ -193,7 +180,25 @@ fn mix(free: f64, beside: f64, own: f64) -> f64 {
     if free > 0.0 { beside + free.min(1.0) * (own - beside) } else { beside }
 }
 
-/// A steady iteration need not be exact.
+/// Solves `equation` for `list`. A steady iteration need not be exact, and is damped.
+fn solve(
+    flow: &mut dyn Transport,
+    equation: &Equation<'_>,
+    list: &mut [f64],
+    damping: Option<&mut Damping>,
+    runs: &[Range<usize>],
+) -> Result<SolveInfo, SolveError> {
+    let Some(damping) = damping.filter(|_| equation.dt.is_none()) else {
+        return tolerant(flow.solve(equation, list), equation.dt);
+    };
+    damping.remember(list);
+    let solved = tolerant(flow.solve(equation, list), None);
+    damping.damp(list, runs);
+    equation.pinned.iter().for_each(|&(cell, value)| list[cell] = value);
+    solved
+}
+
+/// A steady iteration may end before the solver has what was asked.
 fn tolerant(solved: Result<SolveInfo, SolveError>, dt: Option<f64>) -> Result<SolveInfo, SolveError> {
     match solved {
         Err(SolveError::NotConverged { iterations, residual, .. })

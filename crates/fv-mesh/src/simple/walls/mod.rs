@@ -248,6 +248,13 @@ impl<const D: usize> SimpleWalls<D> {
         }
     }
 
+    /// Takes back what [`reach_in`](Self::reach_in) did.
+    pub(super) fn draw_back(&self, velocity: &mut [Field<D>; D]) {
+        for (ghosts, u) in self.ghosts.iter().zip(velocity) {
+            ghosts.iter().for_each(|ghost| u.data_mut()[ghost.node] = 0.0);
+        }
+    }
+
     /// Stops what is in the solid.
     pub(super) fn stop(&self, grid: &CartesianGrid<D>, velocity: &mut [Field<D>; D]) {
         let n = grid.cells()[0];

@@ -10,16 +10,22 @@ mod duct;
 use clap::{Parser, ValueEnum};
 use duct::Duct;
 use example_support::Outcome;
+use example_support::axes::{even, widening};
+use example_support::steadily::steadily;
 use siltflow::flow::{
-    Axis, CartesianGrid, CellWriter, Convection, FlowError, Fluid, Modelled, Patch, Profile, Side, Simple,
-    SimpleParams, TransportParams, WallStress,
+    Axis, CartesianGrid, CellWriter, Convection, Fluid, Modelled, Patch, Profile, Side, Simple, SimpleParams,
+    TransportParams, WallStress,
 };
 use siltflow::ibm::{StaticBodies, cut_cells};
-use siltflow::interfaces::{Closure, Pose};
+use siltflow::interfaces::{Closure, CutCells, Pose};
 use std::path::PathBuf;
 use turb::{
-    Inflow, KEpsilon, KOmega, KOmegaSst, Realizable, RealizableKEpsilon, Sst, StandardKEpsilon, Wilcox,
+    Inflow, KEpsilon, KOmega, KOmegaSst, Realizable, RealizableKEpsilon, Sst, StandardKEpsilon,
+    TurbulenceError, Wilcox,
 };
+
+/// Residual to which coarser grids are solved.
+const COARSE: f64 = 1e-3;
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Model {
@@ -49,6 +55,12 @@ struct Cli {
     /// Relaxation factor of the velocity; what is steady does not depend on it
     #[arg(long, default_value_t = 0.85)]
     relaxation: f64,
+    /// How much wider every cell is than the one before it along straight parts, up to a tenth of the height
+    #[arg(long, default_value_t = 1.05)]
+    growth: f64,
+    /// So many coarser grids come first, each of half as many cells along each axis, and say where the next one starts
+    #[arg(long, default_value_t = 0)]
+    nested: u32,
     /// Where pictures and the flow go
     #[arg(long, default_value = "target/bent_channel")]
     out: PathBuf,
@@ -63,47 +75,28 @@ fn main() -> Outcome<()> {
         );
     }
     let duct = Duct { bend: cli.bend.to_radians(), turn: cli.turn.to_radians() };
-    let grid = grid(&cli, duct)?;
-    let n = grid.n_cells();
     let inflow = Inflow::from_length(1.0, 0.05, 0.07)?;
     match cli.model {
-        Model::Sst => run(&cli, duct, grid, KOmegaSst::new(Sst::default(), n, inflow)?, "kOmegaSST"),
+        Model::Sst => run(&cli, duct, "kOmegaSST", |n| KOmegaSst::new(Sst::default(), n, inflow)),
         Model::KOmega => {
             // The constants of the reference runs: Wilcox 1998 without its corrections.
             let law = Wilcox { beta: 0.072, gamma: 0.52, ..Wilcox::default() };
-            run(&cli, duct, grid, KOmega::new(law, n, inflow)?, "kOmega")
+            run(&cli, duct, "kOmega", |n| KOmega::new(law, n, inflow))
         }
         Model::KEpsilon => {
-            run(&cli, duct, grid, KEpsilon::new(StandardKEpsilon::default(), n, inflow)?, "kEpsilon")
+            run(&cli, duct, "kEpsilon", |n| KEpsilon::new(StandardKEpsilon::default(), n, inflow))
         }
         Model::Realizable => {
-            run(&cli, duct, grid, RealizableKEpsilon::new(Realizable::default(), n, inflow)?, "realizableKE")
+            run(&cli, duct, "realizableKE", |n| RealizableKEpsilon::new(Realizable::default(), n, inflow))
         }
     }
-}
-
-/// Faces from `from` to `to`, all as far apart as `h`.
-fn even(from: f64, to: f64, h: f64) -> Vec<f64> {
-    let n = ((to - from) / h).round();
-    (0..=n as usize).map(|i| from + (to - from) * i as f64 / n).collect()
-}
-
-/// Distances beyond the even faces up to `length`, each a twentieth larger than the one before, at most a tenth of the duct.
-fn widening(length: f64, h: f64) -> Vec<f64> {
-    let mut ends = Vec::new();
-    let (mut end, mut width) = (0.0, h);
-    while end < length {
-        width = (1.05_f64 * width).min(0.1);
-        end += width;
-        ends.push(end);
-    }
-    ends.iter().map(|e| e * length / end).collect()
 }
 
 /// Even where walls are not along the axes, wider along straight parts.
-fn grid(cli: &Cli, duct: Duct) -> Outcome<CartesianGrid<2>> {
-    let h = 1.0 / cli.cells as f64;
+fn grid(cli: &Cli, duct: Duct, cells: usize) -> Outcome<CartesianGrid<2>> {
+    let h = 1.0 / cells as f64;
     let margin = 2.0 * h;
+    let widening = |length, h| widening(length, h, cli.growth, 0.1);
     let before: Vec<f64> = widening(5.0, h).iter().rev().map(|e| -e).collect();
     let axes = match cli.bend as usize {
         90 => {
@@ -143,7 +136,14 @@ fn sides(cli: &Cli, duct: Duct) -> [[Side; 2]; 2] {
     }
 }
 
-fn run<C: Closure>(cli: &Cli, duct: Duct, grid: CartesianGrid<2>, closure: C, name: &str) -> Outcome<()> {
+/// The flow and its model at first.
+fn scene<C: Closure>(
+    cli: &Cli,
+    duct: Duct,
+    cells: usize,
+    closure: impl Fn(usize) -> Result<C, TurbulenceError>,
+) -> Outcome<(Simple<2>, Modelled<2, C>, CutCells)> {
+    let grid = grid(cli, duct, cells)?;
     let fluid = Fluid { density: 1.0, viscosity: 1.0 / cli.re };
     let mut flow = Simple::new(grid.clone(), sides(cli, duct), fluid)?
         .with_convection(Convection::Quick)
@@ -152,24 +152,50 @@ fn run<C: Closure>(cli: &Cli, duct: Duct, grid: CartesianGrid<2>, closure: C, na
     let cuts = cut_cells(flow.velocity(), &walls)?;
     flow.set_walls(Some((&cuts, WallStress::LAW_OF_THE_WALL)))?;
     flow.set_velocity(|x| duct.along_at(x));
-    let mut model = Modelled::new(closure, flow.grid(), flow.sides(), TransportParams::steady())?;
+    let closure = closure(grid.n_cells())?;
+    let mut model = Modelled::new(closure, &grid, flow.sides(), TransportParams::steady())?;
     let centres = (0..grid.n_cells()).map(|i| grid.centre(grid.cell(i)));
     for (distance, x) in model.transport_mut().wall_distance_mut().iter_mut().zip(centres) {
         *distance = duct.distance(x).max(0.0);
     }
+    Ok((flow, model, cuts))
+}
+
+fn run<C: Closure>(
+    cli: &Cli,
+    duct: Duct,
+    name: &str,
+    closure: impl Fn(usize) -> Result<C, TurbulenceError>,
+) -> Outcome<()> {
+    let start = std::time::Instant::now();
+    let mut coarser: Option<(Simple<2>, Modelled<2, C>, CutCells)> = None;
+    for level in (1..=cli.nested).rev() {
+        let (mut flow, mut model, cuts) = scene(cli, duct, (cli.cells >> level).max(8), &closure)?;
+        if let Some((found, known, _)) = &coarser {
+            flow.start_with(&mut model, found, known)?;
+        }
+        println!("{} cells", flow.grid().n_cells());
+        steadily(&mut flow, &mut model, (cli.iterations, COARSE), &[], |_| Vec::new())?;
+        coarser = Some((flow, model, cuts));
+    }
+    let (mut flow, mut model, cuts) = scene(cli, duct, cli.cells, closure)?;
+    if let Some((found, known, _)) = coarser.take() {
+        flow.start_with(&mut model, &found, &known)?;
+    }
+    let grid = flow.grid().clone();
     let fluid_cells = (0..grid.n_cells()).filter(|&i| duct.distance(grid.centre(grid.cell(i))) > 0.0).count();
     println!("{} cells, {fluid_cells} in the fluid, {} with wall", grid.n_cells(), cuts.walls.len());
-    let start = std::time::Instant::now();
-    let solved = flow.solve_with(&mut model, cli.iterations, 1e-5);
-    let seconds = start.elapsed().as_secs_f64();
+    let before = start.elapsed().as_secs_f64();
+    let told = steadily(&mut flow, &mut model, (cli.iterations, 1e-5), &[], |_| Vec::new())?;
+    let seconds = start.elapsed().as_secs_f64() - before;
     let iterations = flow.iterations();
-    match solved {
-        Ok(info) => println!("{} iterations, {info:?}", info.iterations),
-        Err(error @ FlowError::NotSteady { .. }) => println!("{error}"),
-        Err(error) => return Err(error.into()),
+    if told.largest() > 1e-5 {
+        println!("not steady to 1e-5: more iterations are needed, or a smaller relaxation factor");
     }
     let cost = seconds / iterations.max(1) as f64 / fluid_cells as f64 * 1e6;
-    println!("{seconds:.1} s, {cost:.2} µs per cell in the fluid and iteration");
+    println!(
+        "{iterations} iterations, {before:.1} s before, {seconds:.1} s, {cost:.2} µs per cell in the fluid and iteration"
+    );
     let eddy = model.closure.eddy_viscosity().unwrap_or_default();
     std::fs::create_dir_all(&cli.out)?;
     compare::report(&flow, eddy, &cuts.walls, duct, name, &cli.out)?;

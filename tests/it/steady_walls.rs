@@ -228,6 +228,35 @@ fn turbulent_flow_between_walls_beside_lines_of_the_grid_settles() {
     }
 }
 
+/// What a duct and its model have found is where they go on from on another grid: at rest at once on the same, and without a value from solids
+/// on a finer one.
+#[test]
+fn a_turbulent_duct_starts_from_another() {
+    let duct =
+        |cells: usize| turbulent_duct(Sst::default(), cells, 1e5, 0.3, Side::ConvectiveOutlet).unwrap();
+    let (mut found, mut known) = duct(16);
+    found.solve_with(&mut known, 300, 1e-6).unwrap();
+    let (mut flow, mut model) = duct(16);
+    flow.start_with(&mut model, &found, &known).unwrap();
+    let info = flow.solve_with(&mut model, 10, 1e-5).unwrap();
+    assert!(info.iterations <= 6, "{info:?}");
+    let (mut flow, mut model) = duct(32);
+    flow.start_with(&mut model, &found, &known).unwrap();
+    let grid = flow.grid().clone();
+    let k = model.closure.k();
+    let [least, most] = known
+        .closure
+        .k()
+        .iter()
+        .filter(|k| **k > 1e-20)
+        .fold([f64::MAX, 0.0], |[a, b], &k| [f64::min(a, k), f64::max(b, k)]);
+    for cell in (0..grid.n_cells()).filter(|&cell| model.transport().wall_distance()[cell] > 0.0) {
+        assert!((least..=most).contains(&k[cell]), "{:?}: {} {least} {most}", grid.cell(cell), k[cell]);
+    }
+    let speeds: Vec<f64> = flow.velocity().field(0).row(4).to_vec();
+    assert!(speeds.iter().all(|u| *u > 0.3), "{speeds:?}");
+}
+
 /// Schäfer & Turek (1996), 2D-1: Cd = 5.5795.
 #[test]
 fn the_drag_of_a_cylinder() {

@@ -147,6 +147,19 @@ pub trait Closure: Send {
         let _ = (walls, nu);
         Ok(())
     }
+    /// What it remembers of every cell, one list after the other, for the same model on another grid to start from; nothing unless told
+    /// otherwise.
+    fn cell_state(&self) -> Vec<&[f64]> {
+        Vec::new()
+    }
+    /// Starts from these lists, in the order of [`cell_state`](Self::cell_state).
+    ///
+    /// # Errors
+    /// [`SolveError`] for lists of another length, or with values that make no sense.
+    fn set_cell_state(&mut self, state: &[Vec<f64>]) -> Result<(), SolveError> {
+        let _ = state;
+        Ok(())
+    }
     /// How far the model's own equations were from being met by what the last call found: their largest relative residual.
     fn residual(&self) -> f64 {
         0.0
@@ -200,6 +213,12 @@ impl<C: Closure + ?Sized> Closure for Box<C> {
     }
     fn see_walls(&mut self, walls: &[WallRow], nu: f64) -> Result<(), SolveError> {
         (**self).see_walls(walls, nu)
+    }
+    fn cell_state(&self) -> Vec<&[f64]> {
+        (**self).cell_state()
+    }
+    fn set_cell_state(&mut self, state: &[Vec<f64>]) -> Result<(), SolveError> {
+        (**self).set_cell_state(state)
     }
     fn residual(&self) -> f64 {
         (**self).residual()

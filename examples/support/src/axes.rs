@@ -39,6 +39,25 @@ pub fn gathered(length: f64, h: f64, patch: [f64; 2], ratio: f64, shift: f64) ->
     Axis::from_faces(faces)
 }
 
+/// Distances beyond even cells of size `h` at which cells end that are each `ratio` larger than the one before, but at most `most`; the last
+/// is `length`.
+pub fn widening(length: f64, h: f64, ratio: f64, most: f64) -> Vec<f64> {
+    let mut ends = Vec::new();
+    let (mut end, mut width) = (0.0, h);
+    while end < length {
+        width = (ratio * width).min(most);
+        end += width;
+        ends.push(end);
+    }
+    ends.iter().map(|e| e * length / end).collect()
+}
+
+/// Faces from `from` to `to`, all about as far apart as `h`.
+pub fn even(from: f64, to: f64, h: f64) -> Vec<f64> {
+    let n = ((to - from) / h).round();
+    (0..=n as usize).map(|i| from + (to - from) * i as f64 / n).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -28,6 +28,7 @@ pub mod sinking_discs;
 pub mod sliding_plate;
 pub mod sphere_stream;
 pub mod startup_theory;
+pub mod steadily;
 pub mod suspension;
 pub mod table;
 pub mod turbulent_flows;

@@ -64,7 +64,10 @@ struct Pair {
 impl<const D: usize> Sampler<D> {
     /// Samples fields on `grid` in a box with these sides.
     pub fn new(grid: &CartesianGrid<D>, sides: &Sides<D>) -> Self {
-        let periodic = std::array::from_fn(|a| sides.periodic(a));
+        Self::on(grid, std::array::from_fn(|a| sides.periodic(a)))
+    }
+
+    pub(crate) fn on(grid: &CartesianGrid<D>, periodic: [bool; D]) -> Self {
         Self { grid: grid.clone(), metrics: Metrics::new(grid, periodic), ghosts: false }
     }
 
@@ -140,9 +143,48 @@ impl<const D: usize> Sampler<D> {
 
     /// The value at a point in the box of a field on the nodes of component `face`.
     fn value(&self, field: &Field<D>, face: Option<usize>, x: [f64; D]) -> f64 {
+        let mut sum = 0.0;
+        self.each_corner(face, x, |o, weight| {
+            // What is not a number does not enter with weight 0.
+            if weight != 0.0 {
+                sum += weight * field.data()[o];
+            }
+        });
+        sum
+    }
+
+    /// The value at the place in the box that is nearest to `x`, from those nodes around it that are `known`, by storage index;
+    /// `None` without any.
+    pub(crate) fn known_value(
+        &self,
+        field: &Field<D>,
+        face: Option<usize>,
+        x: [f64; D],
+        known: impl Fn(usize) -> bool,
+    ) -> Option<f64> {
+        let inside = |a: usize| {
+            let axis = self.grid.axis(a);
+            self.inside_axis(a, x[a]).unwrap_or_else(|_| x[a].clamp(axis.lower(), axis.upper()))
+        };
+        let x = std::array::from_fn(inside);
+        // Where the weights of those known are next to nothing, all known ones count alike.
+        let [mut by_weight, mut alike] = [[0.0; 2]; 2];
+        self.each_corner(face, x, |o, weight| {
+            if known(o) {
+                let value = field.data()[o];
+                for (sum, weight) in [(&mut by_weight, weight.max(0.0)), (&mut alike, 1.0)] {
+                    *sum = [sum[0] + weight * value, sum[1] + weight];
+                }
+            }
+        });
+        let [sum, weight] = if by_weight[1] > 1e-3 { by_weight } else { alike };
+        (weight > 0.0).then(|| sum / weight)
+    }
+
+    /// Calls `f` with the nodes of component `face` around a point in the box, by storage index, and their weights.
+    fn each_corner(&self, face: Option<usize>, x: [f64; D], mut f: impl FnMut(usize, f64)) {
         let stride = self.grid.stride();
         let pairs: [Pair; D] = std::array::from_fn(|a| self.pair(a, face, x[a]));
-        let mut sum = 0.0;
         for corner in 0..1 << D {
             let (mut weight, mut o) = (1.0, self.grid.base());
             for a in 0..D {
@@ -150,12 +192,8 @@ impl<const D: usize> Sampler<D> {
                 weight *= [1.0 - pairs[a].share, pairs[a].share][upper];
                 o = o.wrapping_add_signed(pairs[a].nodes[upper] * stride[a] as isize);
             }
-            // What is not a number does not enter with weight 0.
-            if weight != 0.0 {
-                sum += weight * field.data()[o];
-            }
+            f(o, weight);
         }
-        sum
     }
 
     /// The nodes of component `face` around `x`, which lies in the box.

@@ -2,8 +2,9 @@
 use super::CellTransport;
 use super::near_solids::NearSolids;
 use super::neighbours::{around, neighbour};
+use crate::kernels::copy_dense;
 use crate::spans::Spans;
-use crate::{Convection, Velocity};
+use crate::{CartesianGrid, Convection, Field, Sampler, Velocity};
 
 /// A cell without fluid at its centre, and the weights of the cells around from which its value is taken.
 pub(crate) type Dry = (usize, Vec<(usize, f64)>);
@@ -71,6 +72,23 @@ impl<const D: usize> CellTransport<D> {
 
     fn is_in_span(&self, cell: usize) -> bool {
         self.ops.spans().contains(self.ops.grid().cells()[0], cell)
+    }
+
+    /// What `values` are, linear between the centres of cells with fluid, at the centres of the cells of another grid; in cells that
+    /// are not beside one the value of the cell there.
+    pub(crate) fn at_cells(&self, values: &[f64], to: &CartesianGrid<D>) -> Vec<f64> {
+        let (grid, periodic) = (self.ops.grid(), self.ops.metrics().periodic);
+        let mut field = Field::zeros(grid);
+        copy_dense(grid, values, &mut field);
+        let mut fluid: Vec<bool> = (0..grid.n_cells()).map(|cell| self.is_in_span(cell)).collect();
+        self.dry.iter().for_each(|&(cell, _)| fluid[cell] = false);
+        let known = |o: usize| grid.cell_at(o).is_some_and(|cell| fluid[grid.index(cell)]);
+        let sampler = Sampler::on(grid, periodic);
+        let value = |x: [f64; D]| {
+            let in_fluid = sampler.known_value(&field, None, x, known);
+            in_fluid.or_else(|| sampler.known_value(&field, None, x, |_| true)).unwrap_or_default()
+        };
+        (0..to.n_cells()).map(|cell| value(to.centre(to.cell(cell)))).collect()
     }
 
     pub(crate) fn has_walls(&self) -> bool {

@@ -84,7 +84,7 @@ struct Work {
     strain: Vec<f64>,
     /// ∇k·∇s.
     cross: Vec<f64>,
-    /// What the law wants to know again.
+    /// What the law wants to know again; not a number before the first time.
     auxiliary: Vec<f64>,
     gradient: Vec<[[f64; 3]; 3]>,
     terms: [Vec<f64>; 3],
@@ -105,7 +105,7 @@ impl<L: Law> TwoEquation<L> {
     pub fn new(law: L, cells: usize, inflow: Inflow) -> Result<Self, TurbulenceError> {
         law.check()?;
         inflow.check()?;
-        let of = |wanted: bool| if wanted { vec![0.0; cells] } else { Vec::new() };
+        let list = |wanted: bool, value: f64| vec![value; if wanted { cells } else { 0 }];
         let mut new = Self {
             controls: Controls::default(),
             inflow,
@@ -116,11 +116,11 @@ impl<L: Law> TwoEquation<L> {
             scale: vec![0.0; cells],
             eddy: vec![0.0; cells],
             work: Work {
-                strain: of(true),
-                cross: of(L::CROSS_DIFFUSION),
-                auxiliary: of(L::AUXILIARY),
+                strain: list(true, 0.0),
+                cross: list(L::CROSS_DIFFUSION, 0.0),
+                auxiliary: list(L::AUXILIARY, f64::NAN),
                 gradient: if L::GRADIENT { vec![[[0.0; 3]; 3]; cells] } else { Vec::new() },
-                terms: std::array::from_fn(|_| of(true)),
+                terms: std::array::from_fn(|_| list(true, 0.0)),
                 runs: Vec::new(),
             },
             damping: Default::default(),
@@ -272,6 +272,24 @@ impl<L: Law> Closure for TwoEquation<L> {
     }
     fn see_walls(&mut self, walls: &[WallRow], nu: f64) -> Result<(), SolveError> {
         self.layer.see(walls, &self.k, nu)
+    }
+    fn cell_state(&self) -> Vec<&[f64]> {
+        vec![&self.k, &self.scale, &self.eddy]
+    }
+    fn set_cell_state(&mut self, state: &[Vec<f64>]) -> Result<(), SolveError> {
+        let [k, scale, eddy] = state else {
+            let found = state.len();
+            return Err(SolveError::Solver(format!(
+                "{found} lists for a model of k, ω or ε, and ν_t: give three"
+            )));
+        };
+        self.set(k, scale).map_err(|error| SolveError::Solver(error.to_string()))?;
+        if eddy.len() != self.eddy.len() {
+            return Err(SolveError::Length { what: "ν_t", expected: self.eddy.len(), found: eddy.len() });
+        }
+        // That of the law, which may be less than k and the scale alone say.
+        self.eddy.copy_from_slice(eddy);
+        Ok(())
     }
     fn residual(&self) -> f64 {
         f64::max(self.solves[0].initial_residual, self.solves[1].initial_residual)

@@ -97,8 +97,8 @@ impl<L: Law> TwoEquation<L> {
                 let invariants = self.work.gradient.get(i).map(Invariants::of).unwrap_or_default();
                 let new = self.law.auxiliary(&local, invariants);
                 let old = &mut self.work.auxiliary[i];
-                // In time there is no memory of it, to the last bit.
-                *old = if dt.is_some() { new } else { 0.5 * (*old + new) };
+                // In time there is no memory of it, to the last bit; nor at first.
+                *old = if dt.is_some() || old.is_nan() { new } else { 0.5 * (*old + new) };
             }
             for w in self.layer.cells.iter().filter(|_| L::GRADIENT) {
                 if let Some(shear) = w.shear {

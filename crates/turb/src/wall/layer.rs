@@ -62,13 +62,13 @@ impl WallLayer {
         self.restored = true;
     }
 
-    /// Sorts the rows by cell, if they are not as they were.
-    fn sort(&mut self, rows: &[WallRow], n: usize) -> Result<(), SolveError> {
+    /// Sorts the rows by cell, if they are not as they were. Is there no ν_t on the walls yet?
+    fn sort(&mut self, rows: &[WallRow], n: usize) -> Result<bool, SolveError> {
         let Self { order, cells, viscosity, .. } = self;
         let known = order.len() == rows.len()
             && cells.iter().all(|w| order[w.first..][..w.rows].iter().all(|&r| rows[r].cell == w.cell));
         if known {
-            return Ok(());
+            return Ok(false);
         }
         if let Some(row) = rows.iter().find(|r| r.cell >= n || !(r.y.is_finite() && r.y > 0.0)) {
             let (what, range) = ("the distance of a row from its wall", "positive, in a cell of the flow");
@@ -84,11 +84,12 @@ impl WallLayer {
                 _ => cells.push(WallCell { cell: rows[r].cell, first: i, rows: 1, ..WallCell::default() }),
             }
         }
-        if !std::mem::take(&mut self.restored) || viscosity.len() != rows.len() {
+        let fresh = !std::mem::take(&mut self.restored) || viscosity.len() != rows.len();
+        if fresh {
             viscosity.clear();
             viscosity.resize(rows.len(), 0.0);
         }
-        Ok(())
+        Ok(fresh)
     }
 
     /// What the walls do, from the velocity in the rows, k of every cell and the ν_t on walls of before.
@@ -99,7 +100,9 @@ impl WallLayer {
         nu: f64,
         scale: Scale,
     ) -> Result<(), SolveError> {
-        self.sort(rows, k.len())?;
+        if self.sort(rows, k.len())? {
+            self.refresh(rows, k, nu);
+        }
         let Self { functions: f, laminar, order, cells, pins, blends, viscosity, .. } = self;
         pins.clear();
         blends.clear();

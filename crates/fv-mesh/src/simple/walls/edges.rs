@@ -232,16 +232,23 @@ impl<const D: usize> Link<D> {
     pub(super) fn value(&self, scheme: Convection, out: f64, u: [f64; 2], g: [&[f64; D]; 2]) -> f64 {
         let linear = |k: usize| u[k] + dot(g[k], if k == 0 { &self.to_edge } else { &self.from_other });
         let upwind = usize::from(out < 0.0);
-        let mean = || {
-            let side: [f64; D] = std::array::from_fn(|a| self.to_edge[a] - self.share * self.step[a]);
-            u[0] + self.share * (u[1] - u[0]) + 0.5 * (dot(g[0], &side) + dot(g[1], &side))
-        };
+        // From the line through the nodes to the middle of the edge.
+        let side: [f64; D] = std::array::from_fn(|a| self.to_edge[a] - self.share * self.step[a]);
+        let mean = || u[0] + self.share * (u[1] - u[0]) + 0.5 * (dot(g[0], &side) + dot(g[1], &side));
         match scheme {
             _ if self.sliver => u[upwind],
             Convection::Upwind => u[upwind],
             Convection::Central => mean(),
             // Not QUICK's parabola: beside a law's logarithm it keeps layers on walls that they should leave.
-            Convection::LinearUpwind | Convection::Quick | Convection::Limited => linear(upwind),
+            Convection::LinearUpwind | Convection::Quick => linear(upwind),
+            Convection::Limited => {
+                let (sign, share) = if upwind == 0 { (1.0, self.share) } else { (-1.0, 1.0 - self.share) };
+                let ahead = sign * (u[1] - u[0]);
+                let behind = 2.0 * sign * dot(g[upwind], &self.step) - ahead;
+                // ψ(r) (φ_D − φ_U) of van Leer.
+                let change = if ahead * behind > 0.0 { 2.0 * ahead * behind / (ahead + behind) } else { 0.0 };
+                u[upwind] + share * change + dot(g[upwind], &side)
+            }
         }
     }
 
@@ -268,4 +275,52 @@ impl<const D: usize> Link<D> {
 fn directed<const D: usize>(b: usize, u: [f64; 2], g: [&[f64; D]; 2], step: &[f64; D]) -> f64 {
     let aside: f64 = (0..D).filter(|&a| a != b).map(|a| 0.5 * (g[0][a] + g[1][a]) * step[a]).sum();
     (u[1] - u[0] - aside) / step[b]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Between nodes one apart, the edge half way and `aside` of their line.
+    fn link(aside: f64) -> Link<2> {
+        Link {
+            other: 0,
+            to_edge: [0.5, aside],
+            from_other: [-0.5, aside],
+            step: [1.0, 0.0],
+            share: 0.5,
+            sliver: false,
+            across: [None; 2],
+            between: [0.0; 2],
+        }
+    }
+
+    #[test]
+    fn every_scheme_of_second_order_carries_what_is_linear() {
+        let (gradient, aside) = ([0.7, -0.4], 0.2);
+        let schemes = Convection::ALL.into_iter().filter(|scheme| *scheme != Convection::Upwind);
+        for (scheme, out) in schemes.flat_map(|scheme| [(scheme, 1.0), (scheme, -1.0)]) {
+            let value = link(aside).value(scheme, out, [2.0, 2.7], [&gradient; 2]);
+            assert!((value - (2.0 + 0.35 - 0.08)).abs() < 1e-14, "{scheme:?} {out}: {value}");
+        }
+    }
+
+    /// φ before, at and behind the edge; central gradients.
+    #[test]
+    fn the_limited_scheme_makes_nothing_new() {
+        let value = |before: f64, here: f64, there: f64| {
+            let [own, far] = [[0.5 * (there - before), 0.0], [0.0; 2]];
+            link(0.0).value(Convection::Limited, 1.0, [here, there], [&own, &far])
+        };
+        // At the foot and at the head of a step, and at a maximum.
+        assert_eq!(value(0.0, 0.0, 1.0), 0.0);
+        assert_eq!(value(0.0, 1.0, 1.0), 1.0);
+        assert_eq!(value(0.0, 1.0, 0.5), 1.0);
+        // Slopes of 0.2 and 0.8: their harmonic mean.
+        assert!((value(0.0, 0.2, 1.0) - (0.2 + 0.5 * 0.32)).abs() < 1e-14);
+        for there in [0.3, 0.6, 5.0] {
+            let found = value(0.0, 0.2, there);
+            assert!((0.2..=there).contains(&found), "{found} {there}");
+        }
+    }
 }

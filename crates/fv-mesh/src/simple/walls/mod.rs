@@ -225,6 +225,14 @@ impl<const D: usize> SimpleWalls<D> {
         self.dry.iter().filter_map(|(cell, from)| Some((dense(*cell)?, list(from)))).collect()
     }
 
+    /// The nodes of component `c` that fluid passes, by dense numbers.
+    pub(super) fn open_nodes(&self, grid: &CartesianGrid<D>, c: usize) -> Vec<bool> {
+        let n = grid.cells()[0];
+        let mut open: Vec<bool> = (0..grid.n_cells()).map(|cell| self.spans.contains(n, cell)).collect();
+        self.shut[c].iter().for_each(|&cell| open[cell] = false);
+        open
+    }
+
     /// Fills the rows of wall functions.
     pub(super) fn fill_rows(&mut self, viscosity: f64) {
         self.beside.fill(&self.stresses, viscosity);

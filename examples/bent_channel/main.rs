@@ -59,7 +59,7 @@ struct Cli {
     #[arg(long, default_value_t = 1.05)]
     growth: f64,
     /// So many coarser grids come first, each of half as many cells along each axis, and say where the next one starts
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6))]
     nested: u32,
     /// Where pictures and the flow go
     #[arg(long, default_value = "target/bent_channel")]
@@ -69,10 +69,11 @@ struct Cli {
 fn main() -> Outcome<()> {
     let cli = Cli::parse();
     let known = [0.0, 90.0, 180.0].contains(&cli.bend) && (0.0..=45.0).contains(&cli.turn);
-    if !known || cli.turn > 0.0 && cli.bend > 0.0 || cli.cells < 8 {
-        return Err(
-            "give --bend 0, 90 or 180, --turn 0 to 45 for a straight duct, and at least 8 cells".into()
-        );
+    let grows = (1.0..=2.0).contains(&cli.growth);
+    if !known || cli.turn > 0.0 && cli.bend > 0.0 || cli.cells < 8 || !grows {
+        let asked =
+            "--bend 0, 90 or 180, --turn 0 to 45 for a straight duct, at least 8 cells and --growth 1 to 2";
+        return Err(format!("give {asked}").into());
     }
     let duct = Duct { bend: cli.bend.to_radians(), turn: cli.turn.to_radians() };
     let inflow = Inflow::from_length(1.0, 0.05, 0.07)?;

@@ -55,7 +55,7 @@ struct Cli {
     #[arg(long)]
     limited: bool,
     /// So many coarser grids come first, each of half as many cells along each axis, and say where the next one starts
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6))]
     nested: u32,
 }
 

@@ -270,3 +270,24 @@ proptest! {
         prop_assert!(all_positive(Sst::default(), g, inflow, &rows));
     }
 }
+
+#[test]
+fn a_model_starts_from_what_another_has() {
+    let inflow = |k: f64| Inflow::from_length(1.0, k, 0.07).unwrap();
+    let known = KOmegaSst::new(Sst::default(), 4, inflow(0.1)).unwrap();
+    let mut model = KOmegaSst::new(Sst::default(), 4, inflow(0.02)).unwrap();
+    let mut state: Vec<Vec<f64>> = known.cell_state().into_iter().map(<[f64]>::to_vec).collect();
+    // SST's ν_t may be less than k/ω.
+    state[2].iter_mut().for_each(|nu| *nu *= 0.5);
+    model.set_cell_state(&state).unwrap();
+    assert_eq!(model.k(), known.k());
+    assert_eq!(model.nu_t(), state[2]);
+    let refused = model.set_cell_state(&state[..2]).unwrap_err();
+    assert!(refused.to_string().contains("give three"), "{refused}");
+    state[0][1] = -1.0;
+    let refused = model.set_cell_state(&state).unwrap_err();
+    assert!(refused.to_string().contains("-1"), "{refused}");
+    state[0][1] = 1.0;
+    state[2].pop();
+    assert!(matches!(model.set_cell_state(&state), Err(SolveError::Length { expected: 4, found: 3, .. })));
+}

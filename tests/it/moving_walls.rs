@@ -36,7 +36,13 @@ fn start() -> Inflow {
 /// of the box is: friction within 12 % (measured −2 to 11 at y+ 26 and 217), velocity and ν_t of the middle within 3 and 5 %.
 #[test]
 fn a_plate_that_slides_is_a_wall() {
-    let couette = Couette { cells: 24, viscosity: 1e-5, start: Inflow { k: 3e-3, omega: 1.0 }, time: 80.0 };
+    let couette = Couette {
+        cells: 24,
+        viscosity: 1e-5,
+        start: Inflow { k: 3e-3, omega: 1.0 },
+        time: 80.0,
+        courant: 0.3,
+    };
     let side = couette.run(Sst::default(), Lower::Side, 0.0).unwrap();
     let plate = couette.run(Sst::default(), Lower::Plate(0.25), 0.0).unwrap();
     let drifts = couette.run(Sst::default(), Lower::Plate(0.25), -0.5).unwrap();

@@ -153,8 +153,8 @@ impl<const D: usize> Sampler<D> {
         sum
     }
 
-    /// The value at the place in the box that is nearest to `x`, from those nodes around it that are `known`, by storage index;
-    /// `None` without any.
+    /// The value at the place in the box that is nearest to `x`, from those nodes around it that are `known`, by storage index,
+    /// never extrapolated; `None` without any.
     pub(crate) fn known_value(
         &self,
         field: &Field<D>,

@@ -11,7 +11,7 @@ const MOST: usize = 20;
 
 impl<const D: usize> Simple<D> {
     /// Takes velocity and pressure of another flow, on another grid as a rule, for a first guess: linear between the nodes that
-    /// fluid passes there, and beyond its box as on the side that is nearest. A solution on half as many cells along each axis costs little;
+    /// fluid passes there, and beyond the outermost of them as at the nearest. A solution on half as many cells along each axis costs little;
     /// it pays where the flow is far from its first guess, as behind bluff bodies, and not where few iterations bring it near.
     ///
     /// Before this set sides and walls.

@@ -53,7 +53,7 @@ struct Cli {
     #[arg(long, default_value_t = 1000)]
     iterations: usize,
     /// Relaxation factor of the velocity; what is steady does not depend on it
-    #[arg(long, default_value_t = 0.85)]
+    #[arg(long, default_value_t = 0.9)]
     relaxation: f64,
     /// How much wider every cell is than the one before it along straight parts, up to a tenth of the height
     #[arg(long, default_value_t = 1.05)]

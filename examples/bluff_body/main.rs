@@ -114,7 +114,12 @@ fn scene<const D: usize, S: Solid + Copy + 'static>(cli: &Cli, body: S, cells: u
         _ => Side::FreeSlip.both(),
     });
     let fluid = Fluid { density: 1.0, viscosity: 1.0 / cli.re };
-    let params = SimpleParams { velocity_relaxation: cli.relaxation, ..SimpleParams::turbulent() };
+    // Wakes are wide in cells.
+    let params = SimpleParams {
+        velocity_relaxation: cli.relaxation,
+        viscous_share: 0.03,
+        ..SimpleParams::turbulent()
+    };
     let scheme = if cli.limited { Convection::Limited } else { Convection::Quick };
     let mut flow = Simple::new(grid, sides, fluid)?.with_convection(scheme).with_params(params)?;
     let bodies = StaticBodies::new().with(body, Pose::at([0.0; 3]));

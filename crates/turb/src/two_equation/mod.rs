@@ -34,15 +34,15 @@ pub type KOmegaSst = TwoEquation<Sst>;
 /// How a [`TwoEquation`] model is iterated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Controls {
-    /// Under-relaxation of k in steady iterations, in (0, 1]. Default 0.9; with first cells at y+ 5 to 10 a few may change to and fro for ever, with 0.75 they come to rest.
+    /// Under-relaxation of k in steady iterations, in (0, 1]: what the flow carries goes 1/(1 − α) cells in one. Default 0.95.
     pub relax_k: f64,
-    /// Under-relaxation of ω or ε in steady iterations, in (0, 1]. Default 0.9.
+    /// Under-relaxation of ω or ε in steady iterations, in (0, 1]. Default 0.95.
     pub relax_scale: f64,
 }
 
 impl Default for Controls {
     fn default() -> Self {
-        Self { relax_k: 0.9, relax_scale: 0.9 }
+        Self { relax_k: 0.95, relax_scale: 0.95 }
     }
 }
 

@@ -51,7 +51,7 @@ impl SimpleParams {
     /// For flows with a turbulence model: α_u = 0.85, s = 0.3, momentum equations solved to 0.1. The viscosities change by orders of
     /// magnitude across the flow and from iteration to iteration: a larger s takes more iterations where cells are fine (what is wide
     /// in cells settles in as many iterations as it has cells squared), a smaller one where they are coarse. α_u = 0.9 saves a third
-    /// in ducts whose layers are immersed and behind bluff bodies, there with s = 0.1.
+    /// in ducts with immersed walls and behind bluff bodies, there with s = 0.03.
     pub fn turbulent() -> Self {
         Self { velocity_relaxation: 0.85, viscous_share: 0.3, momentum_tolerance: 0.1, ..Self::default() }
     }

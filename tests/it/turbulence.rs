@@ -72,14 +72,14 @@ fn a_wall_resolved_channel_has_the_friction_of_dns() {
     assert!((ours.y_plus.mean - 0.3).abs() < 1e-3);
 }
 
-/// A duct converges in no more iterations than simpleFoam takes (116–160), and the flow in it is positive everywhere.
+/// A duct converges in fewer iterations than simpleFoam takes (116–160), and the flow in it is positive everywhere.
 #[test]
 fn a_duct_converges() {
     fn converges<L: Law>(law: L) {
         let inflow = Inflow::from_length(1.0, 0.05, 0.07).unwrap();
         let (mut flow, mut model) = duct(law, [100, 40], 3e-3, inflow).unwrap();
         flow.set_velocity(|_| [1.0, 0.0]);
-        let (info, done) = iterate(&mut flow, &mut model, 160, 1e-5).unwrap();
+        let (info, done) = iterate(&mut flow, &mut model, 110, 1e-5).unwrap();
         assert!(done && model.closure.floored() == 0, "{info:?}");
         assert!(model.closure.k().iter().chain(model.closure.scale()).all(|v| *v > 0.0));
         let YPlus { least, most, .. } = model.closure.y_plus();

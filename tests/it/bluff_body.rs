@@ -21,8 +21,7 @@ fn the_layer_of_a_cylinder_separates() {
     let grid = CartesianGrid::from_axes([x, Axis::from_faces(y).unwrap()]).unwrap();
     let inlet = Side::Inlet(Profile::Uniform([1.0, 0.0, 0.0]));
     let sides = [[inlet, Side::PressureOutlet(0.0)], Side::FreeSlip.both()];
-    let params =
-        SimpleParams { velocity_relaxation: 0.9, viscous_share: 0.03, ..SimpleParams::turbulent() };
+    let params = SimpleParams { velocity_relaxation: 0.9, viscous_share: 0.03, ..SimpleParams::turbulent() };
     let mut flow = Simple::new(grid.clone(), sides, Fluid { density: 1.0, viscosity: 1.0 / re })
         .unwrap()
         .with_convection(Convection::LinearUpwind)

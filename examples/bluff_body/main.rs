@@ -4,7 +4,7 @@
 //! stagnation point on, whatever the Reynolds number, so that it is to be held against computations with the same model and not
 //! against measurements with a laminar layer.
 //!
-//! Sample run: `cargo run --release --example bluff_body --features turb -- --re 1e4 --half`, a quarter of a minute.
+//! Sample run: `cargo run --release --example bluff_body --features turb -- --re 1e4 --half`, five seconds.
 use clap::{Parser, ValueEnum};
 use example_support::Outcome;
 use example_support::axes::{even, widening};

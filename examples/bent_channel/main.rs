@@ -3,7 +3,7 @@
 //! The duct is 1 m high, air enters at 1 m/s with 5 % turbulence. `--bend 90` is held against simpleFoam's solution in
 //! `tests/data/bends`; a straight duct that is turned (`--bend 0 --turn 15`) against the station one height before that bend.
 //!
-//! Sample run: `cargo run --release --example bent_channel --features turb -- --cells 160 --model sst`, two minutes.
+//! Sample run: `cargo run --release --example bent_channel --features turb -- --cells 160 --model sst`, half a minute.
 mod compare;
 mod duct;
 

@@ -38,7 +38,7 @@ fn the_layer_of_a_cylinder_separates() {
         let [x, y] = grid.centre(grid.cell(i));
         *distance = ((x - 10.0).hypot(y) - 0.5).max(0.0);
     }
-    // 1058 where relaxation counts all of the viscous terms.
+    // Not at rest by then where relaxation counts all of the viscous terms.
     flow.solve_with(&mut model, 600, 1e-5).unwrap();
     let drag = flow.wall_pressure_force()[0].force.x + flow.wall_friction()[0].force.x;
     // Of half a cylinder: Cd = F/(½ρU² D/2).

@@ -2,7 +2,8 @@
 //!
 //! Prints the bandwidth of a STREAM triad, then per grid the CPU time per cell and step on one thread, the bytes that the
 //! sweeps of a step move per cell, how many times longer the step takes than moving them, what two threads gain in
-//! wall time, and the peak memory in doubles per cell. `-- step 128 200` runs only steps (of a 128³ box), for instruction counts.
+//! wall time, and the peak memory in doubles per cell; then the wall time of steps of small grids that a thread outside the pool asks for.
+//! `-- small` prints only these; `-- step 128 200` runs only steps (of a 128³ box), for instruction counts.
 use cpu_time::ProcessTime;
 use fv_mesh::{Axis, CartesianGrid, Cluster, Diffusion, Fluid, Projection, Side};
 use std::f64::consts::TAU;
@@ -96,6 +97,30 @@ fn row<const D: usize>(what: &str, n: usize, sides: [[Side; 2]; D], stretched: b
     );
 }
 
+/// Wall time of steps by the thread that asks for them, medians: what threads of the pool have to gain is what it costs to wake them.
+fn small() {
+    println!("\n{:<34} {:>11}", "asked for from outside the pool", "per step");
+    for n in [16, 32, 64, 100, 128, 181, 256] {
+        let Some(mut flow) = flow(n, [Side::WALL.both(), [Side::WALL, Side::Wall([1.0, 0.0, 0.0])]], false)
+        else {
+            return;
+        };
+        let (dt, steps) = (0.2 / flow.courant(1.0).max(1e-3), (3_000_000 / (n * n)).clamp(20, 2000));
+        let mut samples: Vec<f64> = Vec::new();
+        for _ in 0..9 {
+            let start = Instant::now();
+            for _ in 0..steps {
+                if flow.advance(dt, [0.0; 2]).is_err() {
+                    return;
+                }
+            }
+            samples.push(start.elapsed().as_secs_f64() / steps as f64);
+        }
+        samples.sort_by(f64::total_cmp);
+        println!("{:<34} {:>8.1} µs", format!("{n}² cavity"), 1e6 * samples[samples.len() / 2]);
+    }
+}
+
 fn main() {
     let arguments: Vec<String> = std::env::args().collect();
     if let Some(at) = arguments.iter().position(|a| a == "step") {
@@ -105,6 +130,9 @@ fn main() {
             let _ = flow.advance(1e-3, [0.0; 3]);
         }
         return;
+    }
+    if arguments.iter().any(|a| a == "small") {
+        return small();
     }
     let bandwidth = triad(1);
     println!(
@@ -130,4 +158,5 @@ fn main() {
     }
     row("128³ walls", 128, Side::WALL.everywhere::<3>(), false, bandwidth);
     row("128³ walls, stretched everywhere", 128, Side::WALL.everywhere::<3>(), true, bandwidth);
+    small();
 }

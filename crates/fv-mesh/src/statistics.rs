@@ -1,7 +1,7 @@
 //! Sums over the flow field.
 use crate::grid::GHOSTS;
 use crate::metrics::{Metrics, Nodes};
-use crate::parts::each_part;
+use crate::parts::each_result;
 use crate::{CartesianGrid, Field, kernels};
 use interfaces::Vector;
 use pulp::{Arch, Simd, WithSimd};
@@ -152,11 +152,11 @@ impl<const D: usize> Measure<D> {
         let per_task = kernels::layers_per_task(layers);
         // At most 16 tasks.
         let mut parts = [Sums::default(); 16];
-        each_part(&mut parts[..layers.div_ceil(per_task)], 1, &|task, part| {
+        each_result(grid.n_cells(), &mut parts[..layers.div_ceil(per_task)], &|task, part| {
             let first = task * per_task;
             // The last has the nodes on the upper side, too.
             let end = if first + per_task < layers { first + per_task } else { layers + 1 };
-            part[0] =
+            *part =
                 Arch::new().dispatch(Layers { measure: self, grid, metrics, velocity, layers: first..end });
         });
         let mut out = FlowStatistics::default();

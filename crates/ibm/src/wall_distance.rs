@@ -8,6 +8,9 @@ use interfaces::{Aabb, Bodies, BodyId, Lattice, Pose, Vector};
 use rayon::prelude::*;
 use slab::{Image, Scene, Slab};
 
+/// Cells from which on threads gain more than it costs to wake them.
+const WORTH_THREADS: usize = 4096;
+
 /// The distance of every cell's centre from the nearest surface of any body and, if told, from sides of the box that are walls:
 /// what turbulence models ask for ([`interfaces::Transport::wall_distance`]).
 ///
@@ -95,10 +98,12 @@ impl WallDistance {
                 [side(0, low), side(1, high)]
             }),
         };
+        let least = if self.values.len() < WORTH_THREADS { usize::MAX } else { 1 };
         let parts = self.values.par_chunks_mut(size).zip(self.nearest.par_chunks_mut(size));
         self.updates += parts
             .zip(&mut self.slabs)
             .enumerate()
+            .with_min_len(least)
             .map(|(s, ((values, nearest), slab))| slab.update(&scene, s * layers, values, nearest))
             .sum::<u64>();
         Ok(())

@@ -91,16 +91,9 @@ impl<const D: usize> Field<D> {
             let start = (GHOSTS + first) * layer;
             Arch::new().dispatch(Evaluate { grid: &grid, expression, f: &f, layers: first..end, start, out });
         };
-        if grid.n_cells() < WORTH_THREADS {
-            self.layers_mut().chunks_mut(layer * per_task).enumerate().for_each(|(task, out)| run(task, out));
-        } else {
-            each_part(self.layers_mut(), layer * per_task, &run);
-        }
+        each_part(self.layers_mut(), layer * per_task, &run);
     }
 }
-
-/// Cells from which on threads gain more than it costs to wake them.
-const WORTH_THREADS: usize = 16_384;
 
 /// Evaluates a run of layers.
 struct Evaluate<'a, E, F, const D: usize> {

@@ -3,6 +3,7 @@ use super::recent::Recent;
 use super::regions::{CutCell, Orphan, Regions};
 use crate::boundary::Boundaries;
 use crate::metrics::Metrics;
+use crate::parts::least_parts;
 use crate::poisson::{PoissonError, Rows};
 use crate::pressure::Pressure;
 use crate::{CartesianGrid, Field, FlowError};
@@ -237,8 +238,10 @@ impl CutPressure {
     ) -> Result<(), PoissonError> {
         if let Some(inverse) = &self.inverse {
             let (m, residual) = (self.cells.len(), &self.residual);
+            // Four products take as long as what is done in a cell.
+            let least = least_parts(m * m / 4).max(64);
             let rows = inverse.par_chunks_exact(m);
-            self.change.par_iter_mut().zip(rows).with_min_len(64).for_each(|(change, row)| {
+            self.change.par_iter_mut().zip(rows).with_min_len(least).for_each(|(change, row)| {
                 *change = row.iter().zip(residual).map(|(a, b)| a * b).sum();
             });
             return Ok(());

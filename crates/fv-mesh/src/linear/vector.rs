@@ -1,5 +1,6 @@
 //! Sweeps over vectors that compute sums on the way. A sum is formed in eight lanes per chunk of fixed length, and
 //! the chunks are added up in a fixed tree: results do not depend on the number of threads.
+use crate::parts::join;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Entries that one task works on.
@@ -26,7 +27,8 @@ pub(super) fn sweep<const I: usize, const O: usize, const R: usize>(
     let mut parts = output.map(|v| v.split_at_mut(half));
     let low = parts.each_mut().map(|p| std::mem::take(&mut p.0));
     let high = parts.map(|p| p.1);
-    let (a, b) = rayon::join(
+    let (a, b) = join(
+        n,
         || sweep(kernel, half, input.map(|p| p.0), low),
         || sweep(kernel, n - half, input.map(|p| p.1), high),
     );

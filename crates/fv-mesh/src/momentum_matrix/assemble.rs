@@ -4,6 +4,7 @@ use crate::grid::GHOSTS;
 use crate::kernels::row_place;
 use crate::linear::StencilMatrix;
 use crate::metrics::{Metrics, NodeMetrics};
+use crate::parts::worth_threads;
 use crate::spans::Spans;
 use crate::{CartesianGrid, Field};
 use pulp::{Arch, Simd, WithSimd};
@@ -86,9 +87,9 @@ pub(crate) fn assemble<const D: usize>(
 
 fn of_component<const D: usize, const KIND: u8, const EDDY: bool>(c: usize, job: Job<D>, part: Part<D>) {
     match c {
-        0 => split(job, part, run::<D, 0, KIND, EDDY>),
-        1 => split(job, part, run::<D, 1, KIND, EDDY>),
-        _ => split(job, part, run::<D, 2, KIND, EDDY>),
+        0 => divide(job, part, run::<D, 0, KIND, EDDY>),
+        1 => divide(job, part, run::<D, 1, KIND, EDDY>),
+        _ => divide(job, part, run::<D, 2, KIND, EDDY>),
     }
 }
 
@@ -135,6 +136,11 @@ impl<'a, const D: usize> Part<'a, D> {
         let rest = Part { first: self.first + rows, centre: c, lower: l, upper: u, rhs: r, sums: s };
         (Part { first: self.first, centre, lower, upper, rhs, sums }, rest)
     }
+}
+
+/// Calls `run` for parts of at most [`ROWS`] rows, or for all where threads are not worth it.
+fn divide<const D: usize>(job: Job<D>, part: Part<D>, run: fn(Job<D>, Part<D>)) {
+    if worth_threads(part.rhs.len()) { split(job, part, run) } else { run(job, part) }
 }
 
 /// Calls `run` for parts of at most [`ROWS`] rows.

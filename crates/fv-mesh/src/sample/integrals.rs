@@ -1,7 +1,7 @@
 //! Integrals, norms and extremes over the cells.
 use crate::algebra::{Expression, GridMismatch, LANES, Operand, RowExpression, RowPlace};
 use crate::kernels::layers_per_task;
-use crate::parts::each_part;
+use crate::parts::each_result;
 use crate::{CartesianGrid, Field};
 use pulp::{Arch, Simd, WithSimd};
 
@@ -153,10 +153,10 @@ impl<const D: usize> Integrals<D> {
         let per_task = layers_per_task(layers);
         // At most 16 tasks.
         let mut parts = [Totals::default(); 16];
-        each_part(&mut parts[..layers.div_ceil(per_task)], 1, &|task, part| {
+        each_result(self.grid.n_cells(), &mut parts[..layers.div_ceil(per_task)], &|task, part| {
             let first = task * per_task;
             let layers = first..(first + per_task).min(layers);
-            part[0] = Arch::new().dispatch(Layers { integrals: self, expression: &expression, layers });
+            *part = Arch::new().dispatch(Layers { integrals: self, expression: &expression, layers });
         });
         Ok(parts.into_iter().fold(Totals::default(), Totals::plus))
     }

@@ -3,6 +3,7 @@ use super::super::{PoissonAxis, PoissonError};
 use super::gemm::{MR, Side};
 use super::sweep::{LANES, Sweep, SweepScratch};
 use super::transform::{Transform, TransformScratch};
+use crate::parts::least_parts;
 use pulp::Simd;
 
 /// Parts that layers and blocks are shared out in, whatever the number of threads.
@@ -37,6 +38,13 @@ pub(super) struct Layout {
     pub(super) mean_gain: f64,
     /// No φ exists unless f has zero mean.
     pub(super) singular: bool,
+}
+
+impl Layout {
+    /// The least number of parts that a thread takes.
+    pub(super) fn least_parts(&self) -> usize {
+        least_parts(self.cells.iter().product())
+    }
 }
 
 /// Work space of a part.

@@ -146,7 +146,8 @@ impl Passes {
     fn transform(&mut self, fill: Rows<'_>) {
         let layout = &self.layout;
         let parts = self.layers.par_chunks_mut(layout.layers * layout.stride);
-        parts.zip(&mut self.scratch).enumerate().for_each(|(p, (layers, scratch))| {
+        let parts = parts.zip(&mut self.scratch).enumerate().with_min_len(layout.least_parts());
+        parts.for_each(|(p, (layers, scratch))| {
             let first = p * layout.layers;
             pulp::Arch::new().dispatch(Forward { layout, first, fill, layers, scratch });
         });
@@ -157,7 +158,8 @@ impl Passes {
         let (layout, layers) = (&self.layout, &*self.layers);
         let part = layout.blocks_per_part;
         let parts = self.blocks.par_chunks_mut(part * layout.cells[2] * LANES);
-        parts.zip(&mut self.scratch).enumerate().for_each(|(p, (blocks, scratch))| {
+        let parts = parts.zip(&mut self.scratch).enumerate().with_min_len(layout.least_parts());
+        parts.for_each(|(p, (blocks, scratch))| {
             let first = p * part;
             pulp::Arch::new().dispatch(Columns { layout, along, first, layers, blocks, scratch });
         });
@@ -167,7 +169,8 @@ impl Passes {
     fn sweep_layers(&mut self) {
         let (layout, blocks) = (&self.layout, &*self.blocks);
         let parts = self.layers.par_chunks_mut(layout.layers * layout.stride);
-        parts.zip(&mut self.scratch).enumerate().for_each(|(p, (layers, scratch))| {
+        let parts = parts.zip(&mut self.scratch).enumerate().with_min_len(layout.least_parts());
+        parts.for_each(|(p, (layers, scratch))| {
             let first = p * layout.layers;
             pulp::Arch::new().dispatch(Layers { layout, first, blocks, layers, scratch });
         });
@@ -177,7 +180,8 @@ impl Passes {
     fn transform_back(&mut self, phi: &mut [f64]) {
         let (layout, blocks) = (&self.layout, &*self.blocks);
         let parts = phi.par_chunks_mut(layout.layers * layout.cells[0] * layout.cells[1]);
-        parts.zip(&mut self.scratch).enumerate().for_each(|(p, (phi, scratch))| {
+        let parts = parts.zip(&mut self.scratch).enumerate().with_min_len(layout.least_parts());
+        parts.for_each(|(p, (phi, scratch))| {
             let first = p * layout.layers;
             pulp::Arch::new().dispatch(Backward { layout, first, blocks, phi, scratch });
         });

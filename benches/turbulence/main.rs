@@ -4,6 +4,7 @@
 mod channel;
 mod couette;
 mod eddies_in_channel;
+mod first_cells;
 mod large_eddies;
 mod places;
 mod plate;
@@ -18,6 +19,7 @@ fn main() -> Outcome<()> {
     run_cases(&[
         ("channel", channel::against_simple_foam),
         ("dns", channel::against_dns),
+        ("first_cells", first_cells::first_cells),
         ("plate", plate::flat_plate),
         ("step", step::backward_facing_step),
         ("cost", robust::cost),

@@ -1,12 +1,14 @@
 //! Turbulence models in flows between walls, against body-fitted runs of others and direct numerical simulation.
 use example_support::reference_curve;
 use example_support::turbulent_flows::{
-    ChannelProfile, Drive, between_walls, developed_channel, duct, iterate, numbers,
+    ChannelProfile, Drive, between_walls, developed_channel, duct, iterate, numbers, steady_couette,
 };
 use siltflow::flow::{
     Axis, CartesianGrid, Fluid, Modelled, Scalar, ScalarSide, Settling, Side, Simple, TransportParams,
 };
-use turb::{Inflow, Law, Realizable, Sst, StandardKEpsilon, TwoEquation, WallFunctions, Wilcox, YPlus};
+use turb::{
+    Inflow, Law, Realizable, Sst, StandardKEpsilon, Sublayer, TwoEquation, WallFunctions, Wilcox, YPlus,
+};
 
 /// y, y+, u+, k+, ω+ and ν_t/ν of OpenFOAM's simpleFoam.
 fn reference(text: &str) -> Vec<[f64; 6]> {
@@ -48,16 +50,50 @@ fn a_channel_at_re_1e6_is_that_of_simple_foam() {
     compare(Realizable::default(), include_str!("../data/turbulence/channel_realizableKE_c.csv"));
 }
 
-/// Wall-resolved, against DNS at Re_τ 590: friction within 3 %, the logarithmic layer within 5 %.
+/// Wall-resolved friction is that of the model, not of the cells: beside the lower wall of a Couette flow at Re 10⁴ that of ever finer cells is 7.948e-4 by SST (with
+/// ω linear from cell to cell 9 % less at y+ 1).
+#[test]
+fn friction_of_resolved_layers_does_not_depend_on_their_cells() {
+    let friction = |cells: usize, first: f64, sublayer: Sublayer| {
+        let y = between_walls(cells, 1.0, first * 2e-4 / 0.0282).unwrap();
+        let functions = WallFunctions { sublayer, ..WallFunctions::default() };
+        let (friction, y_plus) = steady_couette(Sst::default(), functions, y, 1e-4).unwrap();
+        assert!((y_plus.mean / first - 1.0).abs() < 0.06, "{y_plus:?}");
+        friction / 7.948e-4 - 1.0
+    };
+    let fine = [friction(100, 1.0, Sublayer::InverseSquare), friction(100, 0.3, Sublayer::InverseSquare)];
+    assert!(fine[0].abs() < 0.01 && fine[1].abs() < 0.002, "{fine:?}");
+    let linear = friction(100, 1.0, Sublayer::Linear);
+    assert!(linear < -0.08, "{linear}");
+}
+
+/// From the viscous sublayer through the buffer layer to the logarithmic one first cells of any y+ have friction within 7 % of that of
+/// fine ones.
+#[test]
+fn first_cells_may_have_any_height() {
+    for (cells, nu, fine) in [
+        (40, 1e-4, 7.948e-4),
+        (20, 1e-4, 7.948e-4),
+        (14, 1e-4, 7.948e-4),
+        (56, 1e-5, 4.761e-4),
+        (20, 1e-5, 4.761e-4),
+    ] {
+        let y = Axis::uniform(cells, 0.0, 1.0).unwrap();
+        let (friction, y_plus) = steady_couette(Sst::default(), WallFunctions::default(), y, nu).unwrap();
+        assert!((friction / fine - 1.0).abs() < 0.07, "y+ {}: {}", y_plus.mean, friction / fine);
+    }
+}
+
+/// Wall-resolved, against DNS at Re_τ 590, with ω linear from cell to cell as in other codes: friction within 3 %, the logarithmic layer
+/// within 5 %. (With the ω of ever finer cells SST has 4 % more, and its buffer layer is 6 % too slow: docs/results.md.)
 #[test]
 fn a_wall_resolved_channel_has_the_friction_of_dns() {
     let re = 587.19;
     let dns = reference_curve::read(include_str!("../data/turbulence/dns_590.csv"));
     let y = between_walls(96, 2.0, 0.6 / re).unwrap();
     let start = Inflow { k: 1.0, omega: 10.0 };
-    let ours =
-        developed_channel(Sst::default(), WallFunctions::default(), y, 1.0 / re, Drive::Force(1.0), start)
-            .unwrap();
+    let functions = WallFunctions { sublayer: Sublayer::Linear, ..WallFunctions::default() };
+    let ours = developed_channel(Sst::default(), functions, y, 1.0 / re, Drive::Force(1.0), start).unwrap();
     let friction = (18.654 / ours.bulk).powi(2) - 1.0;
     assert!(friction.abs() < 0.03, "{friction}");
     let mut seen = 0;
@@ -152,8 +188,8 @@ fn an_axis_between_walls_is_symmetric() {
     assert!(Axis::largest_ratio(&y) < 1.2);
 }
 
-/// The temperature of a developed channel at Re_τ 1000, warmed evenly, by SST: from y+ 80 to 0.3 of the half width within 7 % of Kader's correlation of what was measured in air (1981,
-/// *Int. J. Heat Mass Transfer* 24, 1541–1544), whether the first cells resolve the layer or not.
+/// The temperature of a developed channel at Re_τ 1000, warmed evenly, by SST: from y+ 80 to 0.3 of the half width within 5 % of Kader's correlation of what was measured in air (1981,
+/// *Int. J. Heat Mass Transfer* 24, 1541–1544) with wall functions; cells that resolve the layer have the buffer layer of SST, which mixes too much: within 9 %.
 #[test]
 fn a_channel_warms_as_measured() {
     let (re, prandtl) = (1000.0, 0.71);
@@ -162,7 +198,9 @@ fn a_channel_warms_as_measured() {
         let outer = 1.0 - y / re;
         2.12 * ((1.0 + y) * 1.5 * (1.0 + outer) / (1.0 + 2.0 * outer * outer)).ln() + beta
     };
-    for y in [between_walls(96, 2.0, 0.6 / re).unwrap(), Axis::uniform(34, 0.0, 2.0).unwrap()] {
+    for (y, within) in
+        [(between_walls(96, 2.0, 0.6 / re).unwrap(), 0.09), (Axis::uniform(34, 0.0, 2.0).unwrap(), 0.05)]
+    {
         let n = y.cells();
         let grid = CartesianGrid::from_axes([Axis::uniform(2, 0.0, 0.2).unwrap(), y]).unwrap();
         let sides = [Side::Periodic.both(), Side::WALL.both()];
@@ -183,7 +221,7 @@ fn a_channel_warms_as_measured() {
             let (y_plus, found) = (grid.axis(1).centre(j) * re, warmth.field().row(j)[0]);
             if (80.0..=0.3 * re).contains(&y_plus) {
                 let off = found / kader(y_plus) - 1.0;
-                assert!(off.abs() < 0.07, "{n} cells: {off} at y+ {y_plus}");
+                assert!(off.abs() < within, "{n} cells: {off} at y+ {y_plus}");
                 seen += 1;
             }
         }

@@ -32,6 +32,9 @@ pub struct Equation<'a> {
     pub dt: Option<f64>,
     /// φ goes like 1/y near walls at distance y, as ω and ε do: what is smooth there is φy.
     pub inverse: bool,
+    /// Cells, and shares in 0 … 1, in which φ goes like 1/y², as ω does in a viscous sublayer: between their centres 1/√φ is linear instead of
+    /// φ, and what is consumed goes with φ² (the sink with φ).
+    pub steep: &'a [(usize, f64)],
     /// Under-relaxation α in (0, 1] towards the φ given (Patankar 1980); 1 is none.
     pub relax: f64,
 }
@@ -49,6 +52,7 @@ impl<'a> Equation<'a> {
             wall: None,
             dt: None,
             inverse: false,
+            steep: &[],
             relax: 1.0,
         }
     }

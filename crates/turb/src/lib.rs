@@ -31,4 +31,4 @@ pub use two_equation::{
     Controls, Invariants, KEpsilon, KOmega, KOmegaSst, Law, Local, Realizable, RealizableKEpsilon, Scale,
     Sst, StandardKEpsilon, Terms, TwoEquation, Wilcox,
 };
-pub use wall::{WallFunctions, WallShear, YPlus};
+pub use wall::{Sublayer, WallFunctions, WallShear, YPlus};

@@ -4,6 +4,7 @@ use fv_mesh::{
     Axis, CartesianGrid, FlowError, Fluid, Modelled, Profile, Side, Simple, SimpleInfo, SimpleParams,
     TransportParams,
 };
+use interfaces::Closure;
 use turb::{Inflow, Law, TwoEquation, WallFunctions, YPlus};
 
 /// `cells` + 1 faces from `from` to `to` whose widths grow by one ratio from `first`.
@@ -114,6 +115,40 @@ pub fn developed_channel<L: Law>(
         iterations,
         y_plus: model.y_plus(),
     })
+}
+
+/// Steady plane Couette flow in cells `y` between a wall at rest and one that moves at 1, which share a shear stress: that over the density
+/// \[m²/s²\], and the y+ of the cells beside the walls.
+///
+/// # Errors
+/// Those of the flow and the model, and if the flow does not come to rest.
+pub fn steady_couette<L: Law>(
+    law: L,
+    functions: WallFunctions,
+    y: Axis,
+    viscosity: f64,
+) -> Outcome<(f64, YPlus)> {
+    let height = y.length();
+    let grid = CartesianGrid::from_axes([Axis::uniform(2, 0.0, 0.1 * height)?, y])?;
+    let sides = [Side::Periodic.both(), [Side::WALL, Side::Wall([1.0, 0.0, 0.0])]];
+    let mut flow = Simple::new(grid.clone(), sides, Fluid { density: 1.0, viscosity })?;
+    flow.set_velocity(|[_, y]| [y / height, 0.0]);
+    let start = Inflow { k: 3e-3, omega: 1.0 };
+    let model = TwoEquation::new(law, grid.n_cells(), start)?.with_wall_functions(functions)?;
+    let mut model = Modelled::new(model, &grid, flow.sides(), TransportParams::steady())?;
+    let mut last = f64::INFINITY;
+    while last > 1e-7 {
+        let info = flow.iterate_with(&mut model)?;
+        last = info.largest();
+        if info.iterations == 30_000 {
+            return Err(format!("the flow is not at rest: {info:?}").into());
+        }
+    }
+    let rows = model.wall_rows().iter().zip(model.closure.wall_viscosity());
+    let (force, area) = rows.fold((0.0, 0.0), |(force, area), (row, nu_t)| {
+        (force + row.area * (viscosity + nu_t) * row.u_t / row.y, area + row.area)
+    });
+    Ok((force / area, model.closure.y_plus()))
 }
 
 /// A duct of height 1 and length 15 at Re 10⁶ that fluid enters at speed 1 with `inflow`.

@@ -7,6 +7,7 @@ mod near_solids;
 mod neighbours;
 mod params;
 mod sides;
+mod steep;
 #[cfg(test)]
 mod tests;
 mod wall_faces;
@@ -168,7 +169,7 @@ impl<const D: usize> CellTransport<D> {
             }
             self.check_row(cell, v)?;
         }
-        e.pinned.iter().try_for_each(|&(cell, v)| self.check_row(cell, v))?;
+        e.pinned.iter().chain(e.steep).try_for_each(|&(cell, v)| self.check_row(cell, v))?;
         if !e.inlet.is_finite() {
             return value("the value on inlets", None, e.inlet, "finite");
         }
@@ -206,7 +207,7 @@ impl<const D: usize> CellTransport<D> {
         let (grid, metrics) = (ops.grid(), ops.metrics());
         copy_dense(grid, e.diffusivity, gamma);
         sides.fill(gamma, None, None);
-        let (_, lower, upper) = matrix.parts_mut();
+        let (centre, lower, upper) = matrix.parts_mut();
         for axis in 0..D {
             let (gamma, velocity) = (&*gamma, &velocity.components[axis]);
             let kernel = Neighbour::<false, D> { grid, metrics, axis, gamma, velocity };
@@ -214,7 +215,11 @@ impl<const D: usize> CellTransport<D> {
             let kernel = Neighbour::<true, D> { grid, metrics, axis, gamma, velocity };
             fill_dense(grid, ops.spans(), &kernel, upper[axis]);
         }
+        for run in ops.cells() {
+            centre[run].fill(0.0);
+        }
         self.shut();
+        self.steepen(e, phi);
         let second_order = self.params.scheme != Convection::Upwind;
         if second_order {
             self.carry(velocity);
@@ -228,7 +233,6 @@ impl<const D: usize> CellTransport<D> {
         let [_, carried, high, low] = fields;
         let (centre, mut lower, mut upper) = matrix.parts_mut();
         for run in ops.cells() {
-            centre[run.clone()].fill(0.0);
             for ((b, source), v) in b[run.clone()].iter_mut().zip(&e.source[run.clone()]).zip(&volume[run]) {
                 *b = source * v;
             }

@@ -88,6 +88,8 @@ struct Work {
     auxiliary: Vec<f64>,
     gradient: Vec<[[f64; 3]; 3]>,
     terms: [Vec<f64>; 3],
+    /// Cells of viscous sublayers, and how much they are that.
+    sublayer: Vec<(usize, f64)>,
     /// Cells in which something happens.
     runs: Vec<Range<usize>>,
 }
@@ -121,6 +123,7 @@ impl<L: Law> TwoEquation<L> {
                 auxiliary: list(L::AUXILIARY, f64::NAN),
                 gradient: if L::GRADIENT { vec![[[0.0; 3]; 3]; cells] } else { Vec::new() },
                 terms: std::array::from_fn(|_| list(true, 0.0)),
+                sublayer: Vec::new(),
                 runs: Vec::new(),
             },
             damping: Default::default(),

@@ -2,7 +2,7 @@
 use super::damping::Damping;
 use super::law::Local;
 use super::{FLOOR, Law, Scale, TwoEquation, Work};
-use crate::Invariants;
+use crate::{Invariants, Sublayer};
 use interfaces::{Equation, LawOfTheWall, SolveError, SolveInfo, Transport};
 use std::ops::Range;
 
@@ -70,10 +70,10 @@ impl<L: Law> TwoEquation<L> {
         } else {
             flow.strain_rate(&mut self.work.strain)?;
         }
-        let functions = &self.layer.functions;
+        let layer = &self.layer;
         for slope in flow.log_slopes() {
-            let y_star = functions.y_star(slope.distance, self.k[slope.cell], nu);
-            let share = functions.turbulent_share(y_star / LOGARITHMIC);
+            let y_star = layer.functions.y_star(slope.distance, self.k[slope.cell], nu);
+            let share = layer.turbulent_share(y_star / LOGARITHMIC);
             let part = 1.0 + share * (slope.part - 1.0);
             self.work.strain[slope.cell] *= part;
             if L::GRADIENT {
@@ -124,20 +124,38 @@ impl<L: Law> TwoEquation<L> {
         for i in runs.iter().cloned().flatten() {
             self.law.scale_terms(&self.local(i, distance[i], nu)).put(&mut terms, i);
         }
+        self.find_sublayer(distance, runs, nu);
         let inlet = L::SCALE.of(&self.inflow);
         let relax = if dt.is_some() { 1.0 } else { self.controls.relax_scale };
         self.pins.clear();
         self.pins.extend_from_slice(&self.layer.pins);
         self.pins.extend_from_slice(&self.given[1]);
         let blend = &self.layer.blends;
-        let equation =
-            Equation { pinned: &self.pins, blend, inverse: true, ..equation(&terms, inlet, relax, dt) };
+        let given = Equation { pinned: &self.pins, blend, ..equation(&terms, inlet, relax, dt) };
+        let equation = Equation { inverse: true, steep: &self.work.sublayer, ..given };
         // ε follows k at once, beside walls and in ν_t.
         let damping = (L::SCALE == Scale::Omega).then_some(&mut self.damping[1]);
         let solved = solve(flow, &equation, &mut self.scale, damping, runs);
         self.work.terms = terms;
         self.floored += floor(&mut self.scale);
         solved
+    }
+
+    /// Finds the cells in which ω goes like 1/y².
+    fn find_sublayer(&mut self, distance: &[f64], runs: &[Range<usize>], nu: f64) {
+        let (layer, sublayer) = (&self.layer, &mut self.work.sublayer);
+        sublayer.clear();
+        if L::SCALE == Scale::Epsilon || layer.functions.sublayer == Sublayer::Linear {
+            return;
+        }
+        // Beyond this y* the share is below 1e-3.
+        let most = (1.62 * layer.laminar * nu / layer.functions.y_star(1.0, 1.0, 1.0)).powi(2);
+        for i in runs.iter().cloned().flatten().filter(|&i| distance[i] > 0.0) {
+            if self.k[i] * distance[i] * distance[i] < most {
+                let y_star = layer.functions.y_star(distance[i], self.k[i], nu);
+                sublayer.push((i, 1.0 - layer.turbulent_share(y_star)));
+            }
+        }
     }
 
     fn solve_k(

@@ -7,7 +7,8 @@ use interfaces::{SolveError, WallRow};
 #[derive(Clone, Debug)]
 pub(crate) struct WallLayer {
     pub(crate) functions: WallFunctions,
-    laminar: f64,
+    /// y+_lam of the functions.
+    pub(crate) laminar: f64,
     /// Rows, those of a cell together.
     order: Vec<usize>,
     pub(crate) cells: Vec<WallCell>,
@@ -90,6 +91,11 @@ impl WallLayer {
             viscosity.resize(rows.len(), 0.0);
         }
         Ok(fresh)
+    }
+
+    /// [`WallFunctions::turbulent_share`].
+    pub(crate) fn turbulent_share(&self, y_star: f64) -> f64 {
+        share(y_star, self.laminar)
     }
 
     /// What the walls do, from the velocity in the rows, k of every cell and the ν_t on walls of before.

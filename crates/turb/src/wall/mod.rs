@@ -3,6 +3,6 @@ mod functions;
 mod layer;
 mod statistics;
 
-pub use functions::{WallFunctions, WallShear};
+pub use functions::{Sublayer, WallFunctions, WallShear};
 pub(crate) use layer::WallLayer;
 pub use statistics::YPlus;

@@ -62,7 +62,7 @@ struct Cli {
 /// Residual to which coarser grids are solved.
 const COARSE: f64 = 1e-3;
 
-/// Largest mean y+ of the cells beside the wall with which the drag has been seen to be that of a wall-resolved run, within 10 %.
+/// Largest mean y+ of the cells beside the wall with which the drag has been seen to be that of a wall-resolved run, within 13 %.
 const TRUSTED: f64 = 7.0;
 
 /// Where the stream begins and ends along its way, from the body's centre, and how far to either side it goes \[m\].

@@ -2,7 +2,7 @@
 use example_support::Outcome;
 use example_support::turbulent_flows::{between_walls, steady_couette};
 use siltflow::flow::Axis;
-use turb::{Law, Sst, Sublayer, WallFunctions, Wilcox};
+use turb::{Sst, Sublayer, WallFunctions, Wilcox};
 
 /// Plane Couette flow at Re 10⁴ and 10⁵ (speed and distance of the walls), even cells, against 200 cells that begin at y+ 0.1.
 pub(crate) fn first_cells() -> Outcome<()> {
@@ -19,21 +19,20 @@ pub(crate) fn first_cells() -> Outcome<()> {
         let (wilcox, _) = steady_couette(Wilcox::default(), default, fine()?, nu)?;
         println!("{:>6.0e} {:>6} {:>8.1} {sst:>9.3e} {wilcox:>9.3e}", 1.0 / nu, 200, 0.1);
         for cells in [160, 113, 80, 56, 40, 28, 20, 14, 10] {
-            let y_plus = steady_couette(Sst::default(), default, Axis::uniform(cells, 0.0, 1.0)?, nu)?.1.mean;
+            let even = || Axis::uniform(cells, 0.0, 1.0);
+            let (of_sst, y_plus) = steady_couette(Sst::default(), default, even()?, nu)?;
+            let (of_wilcox, _) = steady_couette(Wilcox::default(), default, even()?, nu)?;
+            let (of_linear, _) = steady_couette(Sst::default(), linear, even()?, nu)?;
+            let off = |friction: f64, fine: f64| 100.0 * (friction / fine - 1.0);
             println!(
-                "{:>6.0e} {cells:>6} {y_plus:>8.1} {:>7.1} % {:>7.1} % {:>14.1} %",
+                "{:>6.0e} {cells:>6} {:>8.1} {:>7.1} % {:>7.1} % {:>14.1} %",
                 1.0 / nu,
-                off(Sst::default(), default, cells, nu, sst)?,
-                off(Wilcox::default(), default, cells, nu, wilcox)?,
-                off(Sst::default(), linear, cells, nu, sst)?
+                y_plus.mean,
+                off(of_sst, sst),
+                off(of_wilcox, wilcox),
+                off(of_linear, sst)
             );
         }
     }
     Ok(())
-}
-
-/// How far friction is from that of fine cells \[%\].
-fn off<L: Law>(law: L, functions: WallFunctions, cells: usize, nu: f64, fine: f64) -> Outcome<f64> {
-    let (friction, _) = steady_couette(law, functions, Axis::uniform(cells, 0.0, 1.0)?, nu)?;
-    Ok(100.0 * (friction / fine - 1.0))
 }

@@ -8,7 +8,7 @@ use interfaces::{Aabb, Bodies, BodyId, Lattice, Pose, Vector};
 use rayon::prelude::*;
 use slab::{Image, Scene, Slab};
 
-/// Cells from which on threads gain more than it costs to wake them.
+/// Lattices of fewer cells are not handed to threads.
 const WORTH_THREADS: usize = 4096;
 
 /// The distance of every cell's centre from the nearest surface of any body and, if told, from sides of the box that are walls:

@@ -169,7 +169,13 @@ impl<const D: usize> CellTransport<D> {
             }
             self.check_row(cell, v)?;
         }
-        e.pinned.iter().chain(e.steep).try_for_each(|&(cell, v)| self.check_row(cell, v))?;
+        for &(cell, share) in e.steep {
+            if !(0.0..=1.0).contains(&share) {
+                return value("the share of a steep cell", Some(cell), share, "in 0 … 1");
+            }
+            self.check_row(cell, share)?;
+        }
+        e.pinned.iter().try_for_each(|&(cell, v)| self.check_row(cell, v))?;
         if !e.inlet.is_finite() {
             return value("the value on inlets", None, e.inlet, "finite");
         }
@@ -189,7 +195,7 @@ impl<const D: usize> CellTransport<D> {
         let n = self.volume.len();
         if cell >= n {
             return Err(SolveError::Value {
-                what: "a pinned or blended cell",
+                what: "a pinned, blended or steep cell",
                 cell: Some(cell),
                 value,
                 range: "a cell of the flow",

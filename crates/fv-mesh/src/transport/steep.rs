@@ -25,8 +25,9 @@ impl<const D: usize> CellTransport<D> {
         let (grid, metrics, gamma) = (ops.grid(), ops.metrics(), gamma.data());
         let (centre, lower, upper) = matrix.parts_mut();
         for &(cell, _) in e.steep {
+            let at = grid.cell(cell);
             for (axis, up) in (0..D).flat_map(|a| [(a, false), (a, true)]) {
-                if let Some(other) = neighbour(ops, grid.cell(cell), axis, up) {
+                if let Some(other) = neighbour(ops, at, axis, up) {
                     shares[other] = 0.0;
                 }
             }

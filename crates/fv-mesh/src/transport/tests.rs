@@ -354,6 +354,9 @@ fn bad_equations_are_errors() {
     check(Equation { pinned: &[(6, 0.0)], ..good });
     check(Equation { pinned: &[(5, f64::NAN)], ..good });
     check(Equation { blend: &[(0, 1.1, 0.0)], ..good });
+    check(Equation { steep: &[(0, 1.1)], ..good });
+    check(Equation { steep: &[(1, f64::NAN)], ..good });
+    check(Equation { steep: &[(6, 0.5)], ..good });
     check(Equation { inlet: f64::NAN, ..good });
     check(Equation { wall: Some(f64::INFINITY), ..good });
     check(Equation { dt: Some(0.0), ..good });

@@ -5,6 +5,7 @@ mod channel;
 mod couette;
 mod eddies_in_channel;
 mod first_cells;
+mod hindered;
 mod large_eddies;
 mod places;
 mod plate;
@@ -20,6 +21,7 @@ fn main() -> Outcome<()> {
         ("channel", channel::against_simple_foam),
         ("dns", channel::against_dns),
         ("first_cells", first_cells::first_cells),
+        ("hindered", hindered::hindered),
         ("plate", plate::flat_plate),
         ("step", step::backward_facing_step),
         ("cost", robust::cost),

@@ -1,15 +1,13 @@
 //! Developed flow between immersed walls that are turned against the grid.
 use example_support::Outcome;
 use example_support::cpu::Stopwatch;
-use example_support::turbulent_flows::numbers;
-use example_support::turned_ducts::TurnedDucts;
-use siltflow::flow::{Convection, Fluid, Modelled, Side, Simple, SimpleParams, TransportParams, WallStress};
-use siltflow::ibm::{StaticBodies, cut_cells};
-use turb::{Inflow, Law, Sst, TwoEquation, Wilcox};
+use example_support::developed_duct::DevelopedDuct;
+use example_support::turbulent_flows::{Drive, between_walls, developed_channel, numbers};
+use turb::{Inflow, Law, Sst, WallFunctions, Wilcox};
 
 const VISCOSITY: f64 = 1e-6;
-/// How fast the force brings the mean velocity to 1 m/s \[1/s\].
-const GAIN: f64 = 0.02;
+/// That of the ducts whose first cells are in the buffer layer.
+const VISCOUS: f64 = 1e-4;
 
 /// Walls turned by 0 to 45°, driven to the mean velocity of simpleFoam's mesh c, whose profiles they are held against.
 pub(crate) fn turned_ducts() -> Outcome<()> {
@@ -36,6 +34,33 @@ pub(crate) fn turned_ducts() -> Outcome<()> {
             of_model("k-omega", Wilcox::openfoam(), wilcox, angle, cells)?;
         }
     }
+    println!("\nThe same at Re 1e4: friction against that of cells which resolve the layer");
+    println!(
+        "{:>8} {:>6} {:>6} {:>9} {:>7} {:>5} {:>8}",
+        "model", "angle", "cells", "f off", "mean y+", "its", "residual"
+    );
+    let fine = developed_channel(
+        Sst::default(),
+        WallFunctions::default(),
+        between_walls(200, 1.0, 3.0 * VISCOUS)?,
+        VISCOUS,
+        Drive::Bulk(1.0),
+        Inflow::from_length(1.0, 0.05, 0.07)?,
+    )?;
+    let given = 2.0 * fine.u_tau * fine.u_tau;
+    for angle in [0.0, 15.0, 45.0] {
+        for cells in [10, 20, 40] {
+            let DevelopedDuct { flow, model, force, residual, .. } =
+                DevelopedDuct::new(Sst::default(), angle, cells, 0.3, VISCOUS, given)?;
+            println!(
+                "{:>8} {angle:>6} {cells:>6} {:>7.2} % {:>7.1} {:>5} {residual:>8.0e}",
+                "SST",
+                100.0 * (force / given - 1.0),
+                model.closure.y_plus().mean,
+                flow.iterations()
+            );
+        }
+    }
     Ok(())
 }
 
@@ -57,32 +82,13 @@ impl Norms {
 fn of_model<L: Law>(name: &str, law: L, text: &str, angle: f64, cells: usize) -> Outcome<()> {
     let reference = numbers::<6>(text);
     let h = 1.0 / cells as f64;
-    let (ducts, grid) = TurnedDucts::new(1.0, angle.to_radians(), h, 0.3)?;
-    let [along, up] = ducts.along();
-    let fluid = Fluid { density: 1.0, viscosity: VISCOSITY };
-    let mut flow = Simple::new(grid.clone(), [Side::Periodic.both(), Side::Periodic.both()], fluid)?
-        .with_convection(Convection::Quick)
-        .with_params(SimpleParams { velocity_relaxation: 0.97, ..SimpleParams::turbulent() })?;
-    let cuts = cut_cells(flow.velocity(), &StaticBodies::new().with(ducts, ducts.pose()))?;
-    flow.set_walls(Some((&cuts, WallStress::LAW_OF_THE_WALL)))?;
-    flow.set_velocity(|_| [along, up]);
-    let closure = TwoEquation::new(law, grid.n_cells(), Inflow::from_length(1.0, 0.05, 0.07)?)?;
-    let mut model = Modelled::new(closure, flow.grid(), flow.sides(), TransportParams::steady())?;
-    let centre = |i: usize| grid.centre(grid.cell(i));
-    for (i, distance) in model.transport_mut().wall_distance_mut().iter_mut().enumerate() {
-        *distance = ducts.distance(centre(i)).max(0.0);
-    }
     let u_tau = reference[0][1] * VISCOSITY / reference[0][0];
     let given = 2.0 * u_tau * u_tau;
-    let (mut force, mut residual, mut settled) = (given, f64::INFINITY, 0);
     let watch = Stopwatch::start();
-    while settled < 20 && flow.iterations() < 4000 {
-        flow.set_force([along, up].map(|x| x * force));
-        residual = flow.iterate_with(&mut model)?.largest();
-        let bulk = ducts.mean_velocity(&flow, &cuts);
-        settled = if residual < 1e-5 && (bulk - 1.0).abs() < 1e-4 { settled + 1 } else { 0 };
-        force = ducts.drag(&flow) / ducts.area() + GAIN * (1.0 - bulk);
-    }
+    let DevelopedDuct { ducts, flow, model, force, residual } =
+        DevelopedDuct::new(law, angle, cells, 0.3, VISCOSITY, given)?;
+    let ([along, up], grid) = (ducts.along(), flow.grid());
+    let centre = |i: usize| grid.centre(grid.cell(i));
     let at = |y: f64, column: usize| {
         let y = y.min(1.0 - y);
         let k = reference.partition_point(|r| r[0] < y).clamp(1, reference.len() - 1);

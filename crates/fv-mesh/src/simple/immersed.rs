@@ -25,7 +25,7 @@ impl<const D: usize> Simple<D> {
     /// what comes to their open part, and faces of given pressure are open or shut as a whole.
     ///
     /// # Errors
-    /// [`FlowError::Parameter`] for walls on another grid, and those of the sides.
+    /// [`FlowError::Parameter`] for walls on another grid and a law with impossible numbers, and those of the sides.
     pub fn set_walls(&mut self, walls: Option<(&CutCells, WallStress)>) -> Result<(), FlowError> {
         let FlowState { grid, metrics, boundaries, velocity, pressure, .. } = &mut self.state;
         let made = match walls {

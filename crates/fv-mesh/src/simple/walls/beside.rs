@@ -9,8 +9,8 @@ use interfaces::WallRow;
 #[derive(Default)]
 pub(super) struct Beside {
     pub(super) rows: Vec<WallRow>,
-    /// The piece of wall of each, and how far from it the cell ends \[m\].
-    probes: Vec<(usize, f64)>,
+    /// The piece of wall of each, and how far from it the cell begins and ends \[m\].
+    probes: Vec<(usize, [f64; 2])>,
 }
 
 impl Beside {
@@ -41,18 +41,19 @@ impl Beside {
             let extent = openings.extent(index, &wall);
             let y = y.max(NEAREST * extent);
             new.rows.push(WallRow { cell, y, area: wall.area, ..WallRow::default() });
-            new.probes.push((probe, y + 0.5 * extent));
+            new.probes.push((probe, [(y - 0.5 * extent).max(0.0), y + 0.5 * extent]));
         }
         new
     }
 
     /// What the flow is there: the velocity that has the wall's friction by the logarithmic law.
     pub(super) fn fill<const D: usize>(&mut self, stresses: &Stresses<D>, nu: f64) {
-        for (row, &(probe, end)) in self.rows.iter_mut().zip(&self.probes) {
+        for (row, &(probe, ends)) in self.rows.iter_mut().zip(&self.probes) {
             row.nu = nu;
             row.u_t = stresses.seen(probe, row.y, nu);
             // Of the whole cell, as from differences over it.
-            row.shear = Some(stresses.seen(probe, end, nu) / end);
+            let [below, above] = ends.map(|y| stresses.seen(probe, y, nu));
+            row.shear = Some((above - below) / (ends[1] - ends[0]));
         }
     }
 }

@@ -37,6 +37,8 @@ pub(crate) struct SimpleWalls<const D: usize> {
     sides: [Vec<(usize, f64)>; D],
     /// Cells without fluid at their centre, and the weights of those around from which their ν_t is taken.
     dry: Vec<(usize, Vec<(usize, f64)>)>,
+    /// Their ghosts beyond sides of the box: ghost and cell.
+    beyond: Vec<(usize, usize)>,
     /// The cells that wall functions see.
     beside: Beside,
     /// Nodes in the solid beside nodes in the fluid.
@@ -67,7 +69,7 @@ pub(crate) struct Iteration<'a, const D: usize> {
 
 impl<const D: usize> SimpleWalls<D> {
     /// # Errors
-    /// Those of the openings.
+    /// Those of the openings and of the law.
     pub(super) fn new(
         cuts: &CutCells,
         law: WallStress,
@@ -75,6 +77,7 @@ impl<const D: usize> SimpleWalls<D> {
         metrics: &Metrics<D>,
         outlets: &HashSet<(usize, usize)>,
     ) -> Result<Self, FlowError> {
+        law.check()?;
         let openings = Openings::new(cuts, grid, metrics, outlets, matches!(law, WallStress::Law { .. }))?;
         let spans = openings.spans();
         let mut gradients = std::array::from_fn(|_| Gradients::default());
@@ -118,6 +121,7 @@ impl<const D: usize> SimpleWalls<D> {
         let longest = rows.iter().map(Vec::len).max().unwrap_or(0);
         Ok(Self {
             dry: dry(&openings),
+            beyond: beyond(&openings),
             beside,
             ghosts,
             sums: vec![0.0; longest],
@@ -283,6 +287,7 @@ impl<const D: usize> SimpleWalls<D> {
         for (cell, from) in self.dry.iter().filter(|(_, from)| !from.is_empty()) {
             data[*cell] = from.iter().map(|&(o, w)| w * data[o]).sum();
         }
+        self.beyond.iter().for_each(|&(ghost, cell)| data[ghost] = data[cell]);
     }
 
     /// Force of friction on each body \[N\], about its centre of mass.
@@ -326,4 +331,12 @@ fn dry<const D: usize>(openings: &Openings<D>) -> Vec<(usize, Vec<(usize, f64)>)
             (cell, from.into_iter().map(|o| (o, weight)).collect())
         })
         .collect()
+}
+
+/// Ghosts of cells without fluid at their centre beyond sides of the box that are not periodic.
+fn beyond<const D: usize>(openings: &Openings<D>) -> Vec<(usize, usize)> {
+    let grid = openings.grid;
+    let dry = (0..grid.n_cells()).map(|cell| grid.place(grid.cell(cell))).filter(|&o| !openings.wet[o]);
+    let around = dry.flat_map(|o| grid.stride().into_iter().flat_map(move |s| [(o - s, o), (o + s, o)]));
+    around.filter(|&(ghost, _)| grid.cell_at(openings.wrap(ghost)).is_none()).collect()
 }

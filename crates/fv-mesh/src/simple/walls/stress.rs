@@ -2,8 +2,8 @@
 use super::gradients::{AtWall, height, to_wall};
 use super::openings::Openings;
 use super::rows::Row;
-use crate::Field;
 use crate::linear::StencilMatrix;
+use crate::{Field, FlowError};
 use interfaces::{LawOfTheWall, Vector, WallPiece};
 
 /// How the fluid meets immersed walls.
@@ -14,32 +14,56 @@ pub enum WallStress {
     NoSlip,
     /// It slips along them.
     Slip,
-    /// τ = ρ u_τ u/u+(u_τ y/ν), u_τ = C_μ^¼ √k where the turbulence kinetic energy k is known (Launder & Spalding 1974), else u/u+; u is what
-    /// the law has at some distance y if it has Σ w u of the nodes around, w the weights of that place.
+    /// τ = ρ u_* u/u+(u_* y/ν), u what the law has at some distance y if it has Σ w u of the nodes around, w the weights of that place.
+    ///
+    /// u_* = u_k^(1 − w) u_u^w where the turbulence kinetic energy k is known, else u_u: u_k = C_μ^¼ √k (Launder & Spalding 1974), u_u/u+(u_u y/ν) = u/u_u
+    /// (Spalding 1961). In equilibrium they are the same; where the flow along the wall speeds up or slows down the stress changes within half
+    /// a cell, k comes late, and u_k misses the friction by three times as much as u_u. Where k is that of a viscous sublayer w is 0.
     Law {
         /// u+.
         law: LawOfTheWall,
-        /// y along the normal over the cell's extent along it.
+        /// y along the normal over the cell's extent along it, above 0.
         distance: f64,
+        /// w, 0 to 1.
+        velocity_weight: f64,
     },
 }
 
 /// Velocity nodes nearer to a wall than this share of a cell are taken to be there.
 const NEAREST: f64 = 0.05;
-/// y+ of half a cell at which the gradients beside it take the wall for half.
+/// Nodes nearer than this share of a cell tell nothing of a logarithmic layer: what is left of a cell that is nearly shut moves with the fluid
+/// beside it.
+const SLIVER: f64 = 0.25;
+/// y+ of half a cell at which the gradients beside it take the wall for half, and above which the layer is logarithmic.
 const RESOLVED: f64 = 30.0;
 
 impl WallStress {
     /// The usual law of the wall, seen from half a cell.
-    pub const LAW_OF_THE_WALL: Self = Self::Law { law: LawOfTheWall::USUAL, distance: 0.5 };
+    pub const LAW_OF_THE_WALL: Self =
+        Self::Law { law: LawOfTheWall::USUAL, distance: 0.5, velocity_weight: 0.4 };
+
+    pub(super) fn check(self) -> Result<(), FlowError> {
+        let Self::Law { distance, velocity_weight, .. } = self else { return Ok(()) };
+        let parameter = |name, value, range| Err(FlowError::Parameter { name, value, range });
+        if !(distance.is_finite() && distance > 0.0) {
+            return parameter("the distance from which a wall sees the flow", distance, "finite and above 0");
+        }
+        if !(0.0..=1.0).contains(&velocity_weight) {
+            return parameter(
+                "the weight of the velocity in the friction velocity",
+                velocity_weight,
+                "0 to 1",
+            );
+        }
+        Ok(())
+    }
 
     /// The least distance at which gradients see walls, in extents of the cell along the normal; none if they do not.
     pub(super) fn nearest(self) -> Option<f64> {
         match self {
             Self::NoSlip => Some(0.0),
             Self::Slip => None,
-            // What is left of a cell that is nearly shut moves with the fluid beside it.
-            Self::Law { .. } => Some(0.25),
+            Self::Law { .. } => Some(SLIVER),
         }
     }
 }
@@ -70,6 +94,16 @@ pub(super) struct Probe {
     pub(super) arm: Vector,
 }
 
+/// A node around a probe.
+struct Term {
+    node: usize,
+    weight: f64,
+    /// Distance from the wall \[m\].
+    y: f64,
+    /// It does not count in a logarithmic layer.
+    sliver: bool,
+}
+
 /// The part of a wall in a row.
 struct Share {
     row: usize,
@@ -85,8 +119,7 @@ struct Share {
 pub(super) struct Stresses<const D: usize> {
     law: WallStress,
     pub(super) probes: Vec<Probe>,
-    /// Nodes, their weights, and their distances from the wall \[m\].
-    terms: Vec<(usize, f64, f64)>,
+    terms: Vec<Term>,
     cells: Vec<(usize, f64)>,
     shares: [Vec<Share>; D],
     /// Per probe: what the wall takes from the fluid per area and density \[m²/s²\], and that over the velocity.
@@ -154,9 +187,13 @@ impl<const D: usize> Stresses<D> {
         for c in 0..D {
             let first = self.terms.len();
             let corners = corners(openings, Some(c), x, index, |o| openings.alive(c, o));
-            self.terms.extend(corners.into_iter().map(|(node, weight)| {
-                let height = height(wall, openings.node(c, node));
-                (node, weight, height.max(NEAREST * openings.extent(index, wall)))
+            let part = |node: usize| height(wall, openings.node(c, node)) / (2.0 * probe.half);
+            let any = corners.iter().any(|&(node, _)| part(node) >= SLIVER);
+            self.terms.extend(corners.into_iter().map(|(node, weight)| Term {
+                node,
+                weight,
+                y: 2.0 * probe.half * part(node).max(NEAREST),
+                sliver: any && part(node) < SLIVER,
             }));
             probe.ranges[c] = (first, self.terms.len());
         }
@@ -168,7 +205,7 @@ impl<const D: usize> Stresses<D> {
 
     /// Looks at the flow.
     pub(super) fn update(&mut self, velocity: &[Field<D>; D], k: Option<&Field<D>>, nu: f64) {
-        let WallStress::Law { law, .. } = self.law else { return };
+        let WallStress::Law { law, velocity_weight, .. } = self.law else { return };
         for (p, probe) in self.probes.iter().enumerate() {
             let k = k.map(|k| {
                 self.cells[probe.cells.0..probe.cells.1].iter().map(|&(o, w)| w * k.data()[o]).sum()
@@ -177,18 +214,31 @@ impl<const D: usize> Stresses<D> {
             let scale = self.speed(p) / nu;
             // In fluid at rest the law is that of the viscous sublayer.
             let law_at = |y: f64| if scale > 0.0 { law.u_plus(scale * y) } else { y };
+            // 1 in the viscous sublayer, 0 in the logarithmic layer.
+            let viscous = (-(scale * probe.half / RESOLVED).powi(4)).exp();
             let mut u = Vector::zeros();
             for c in 0..D {
                 let (first, last) = probe.ranges[c];
                 let [mut sum, mut plus] = [0.0; 2];
-                for &(o, w, y) in &self.terms[first..last] {
-                    sum += w * (velocity[c].data()[o] - probe.velocity[c]);
-                    plus += w * law_at(y);
+                for term in &self.terms[first..last] {
+                    let weight = term.weight * if term.sliver { viscous } else { 1.0 };
+                    sum += weight * (velocity[c].data()[term.node] - probe.velocity[c]);
+                    plus += weight * law_at(term.y);
                 }
                 u[c] = sum / plus * law_at(probe.y);
             }
             u -= probe.normal * probe.normal.dot(&u);
-            self.friction[p] = friction(law, [probe.y, u.norm()], self.speeds[p], nu);
+            let place = [probe.y, u.norm()];
+            let speed = self.speeds[p].map(|of_k| {
+                let weight = velocity_weight * (1.0 - viscous);
+                // Next to none is none, which costs nothing.
+                if weight < 1e-3 {
+                    return of_k;
+                }
+                let of_u = law.y_plus(place[1] * probe.y / nu) * nu / probe.y;
+                of_k.powf(1.0 - weight) * of_u.powf(weight)
+            });
+            self.friction[p] = friction(law, place, speed, nu);
             self.traction[p] = u * self.friction[p];
         }
     }
@@ -209,7 +259,7 @@ impl<const D: usize> Stresses<D> {
         AtWall { velocity: probe.velocity[c], share }
     }
 
-    /// Tangential velocity at distance `y` from the wall that goes with its friction, by the law where there is one.
+    /// Tangential velocity at distance `y` from the wall that goes with its friction and k, by the law where there is one.
     pub(super) fn seen(&self, piece: usize, y: f64, nu: f64) -> f64 {
         let WallStress::Law { law, .. } = self.law else {
             return self.force[piece].norm() / self.probes[piece].area * y / nu;

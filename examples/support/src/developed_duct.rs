@@ -1,0 +1,69 @@
+//! Developed turbulent flow in ducts that are turned against the grid.
+use crate::Outcome;
+use crate::turned_ducts::TurnedDucts;
+use fv_mesh::{
+    CartesianGrid, Convection, Fluid, Modelled, Side, Simple, SimpleParams, TransportParams, WallStress,
+};
+use ibm::{StaticBodies, cut_cells};
+use turb::{Inflow, Law, TwoEquation};
+
+/// How fast the force brings the mean velocity to 1 m/s \[1/s\].
+const GAIN: f64 = 0.02;
+
+/// Flow of mean velocity 1 m/s in ducts of height 1 m, developed.
+pub struct DevelopedDuct<L: Law> {
+    /// The solid between the ducts.
+    pub ducts: TurnedDucts,
+    /// The flow in them.
+    pub flow: Simple<2>,
+    /// Its model.
+    pub model: Modelled<2, TwoEquation<L>>,
+    /// The force per mass that keeps it up \[m/s²\].
+    pub force: f64,
+    /// The largest residual of the last iteration.
+    pub residual: f64,
+}
+
+impl<L: Law> DevelopedDuct<L> {
+    /// Ducts turned by `angle` \[°\] with so many cells across, the first wall `shift` cells from a corner of the grid, in a fluid of kinematic `viscosity`
+    /// \[m²/s\]; iterates until the flow rests to 1e-5 and its mean velocity to 1e-4, or 4000 times. `force`: a guess of it \[m/s²\].
+    ///
+    /// # Errors
+    /// Those of the flow, the walls and the model.
+    pub fn new(
+        law: L,
+        angle: f64,
+        cells: usize,
+        shift: f64,
+        viscosity: f64,
+        mut force: f64,
+    ) -> Outcome<Self> {
+        let (ducts, grid) = TurnedDucts::new(1.0, angle.to_radians(), 1.0 / cells as f64, shift)?;
+        let along = ducts.along();
+        let mut flow = at_rest(&grid, viscosity)?;
+        let cuts = cut_cells(flow.velocity(), &StaticBodies::new().with(ducts, ducts.pose()))?;
+        flow.set_walls(Some((&cuts, WallStress::LAW_OF_THE_WALL)))?;
+        flow.set_velocity(|_| along);
+        let closure = TwoEquation::new(law, grid.n_cells(), Inflow::from_length(1.0, 0.05, 0.07)?)?;
+        let mut model = Modelled::new(closure, flow.grid(), flow.sides(), TransportParams::steady())?;
+        for (i, distance) in model.transport_mut().wall_distance_mut().iter_mut().enumerate() {
+            *distance = ducts.distance(grid.centre(grid.cell(i))).max(0.0);
+        }
+        let (mut residual, mut settled) = (f64::INFINITY, 0);
+        while settled < 20 && flow.iterations() < 4000 {
+            flow.set_force(along.map(|x| x * force));
+            residual = flow.iterate_with(&mut model)?.largest();
+            let bulk = ducts.mean_velocity(&flow, &cuts);
+            settled = if residual < 1e-5 && (bulk - 1.0).abs() < 1e-4 { settled + 1 } else { 0 };
+            force = ducts.drag(&flow) / ducts.area() + GAIN * (1.0 - bulk);
+        }
+        Ok(Self { ducts, flow, model, force, residual })
+    }
+}
+
+fn at_rest(grid: &CartesianGrid<2>, viscosity: f64) -> Outcome<Simple<2>> {
+    let sides = [Side::Periodic.both(), Side::Periodic.both()];
+    Ok(Simple::new(grid.clone(), sides, Fluid { density: 1.0, viscosity })?
+        .with_convection(Convection::Quick)
+        .with_params(SimpleParams { velocity_relaxation: 0.97, ..SimpleParams::turbulent() })?)
+}

@@ -1,0 +1,116 @@
+//! A duct with a force in its middle, past which the flow along the walls speeds up and slows down again.
+use crate::Outcome;
+use crate::plane_duct::PlaneDuct;
+use crate::turbulent_flows::{between_walls, growing, iterate};
+use fv_mesh::{
+    Axis, CartesianGrid, Convection, Fluid, Modelled, Profile, Side, Simple, SimpleParams, TransportParams,
+    WallStress,
+};
+use ibm::{StaticBodies, cut_cells};
+use interfaces::{Closure, Pose};
+use turb::{Inflow, Law, TwoEquation};
+
+/// Kinematic viscosity \[m²/s\].
+const VISCOSITY: f64 = 1e-6;
+/// The force on the fluid \[m/s²\] in the middle of the duct, and the distance at which it is 1/e of that \[m\].
+const FORCE: f64 = 1.5;
+const RADIUS: f64 = 0.2;
+/// Where cells are even along the duct, and the cells before and behind that.
+const EVEN: [f64; 2] = [-1.2, 2.4];
+const TAIL: usize = 60;
+
+/// What the walls of the duct are.
+#[derive(Clone, Copy, Debug)]
+pub enum DuctWalls {
+    /// Sides of the box; the first cells are so high \[m\], all of them 1/cells without it.
+    Sides(Option<f64>),
+    /// In cut cells, so much of a cell behind lines of the grid.
+    Immersed(f64, WallStress),
+}
+
+/// Friction of the lower wall over the density \[m²/s²\] at places along it \[m\].
+#[derive(Clone, Debug)]
+pub struct HinderedDuct {
+    friction: Vec<[f64; 2]>,
+    /// Iterations to residuals of 1e-5.
+    pub iterations: usize,
+}
+
+impl HinderedDuct {
+    /// Of a duct of height 1 with so many cells across, at Re 10⁶.
+    ///
+    /// # Errors
+    /// Those of the flow, the walls and the model, and if the flow does not come to rest.
+    pub fn new<L: Law>(law: L, walls: DuctWalls, cells: usize) -> Outcome<Self> {
+        let h = 1.0 / cells as f64;
+        let (y, side) = match walls {
+            DuctWalls::Sides(Some(first)) => (between_walls(cells, 1.0, first)?, Side::WALL),
+            DuctWalls::Sides(None) => (Axis::uniform(cells, 0.0, 1.0)?, Side::WALL),
+            DuctWalls::Immersed(..) => (Axis::uniform(cells + 8, -4.0 * h, 1.0 + 4.0 * h)?, Side::FreeSlip),
+        };
+        let grid = CartesianGrid::from_axes([along(h)?, y])?;
+        let inlet = Side::Inlet(Profile::Uniform([1.0, 0.0, 0.0]));
+        let sides = [[inlet, Side::PressureOutlet(0.0)], side.both()];
+        let mut flow = Simple::new(grid.clone(), sides, Fluid { density: 1.0, viscosity: VISCOSITY })?
+            .with_convection(Convection::Quick)
+            .with_params(SimpleParams { velocity_relaxation: 0.9, ..SimpleParams::turbulent() })?;
+        let model = TwoEquation::new(law, grid.n_cells(), Inflow::from_length(1.0, 0.05, 0.07)?)?;
+        let mut model = Modelled::new(model, &grid, flow.sides(), TransportParams::steady())?;
+        let mut pieces = Vec::new();
+        if let DuctWalls::Immersed(behind, stress) = walls {
+            let duct = PlaneDuct { half: 0.5 + behind * h, angle: 0.0, at: [0.0, 0.5] };
+            let cuts = cut_cells(flow.velocity(), &StaticBodies::new().with(duct, Pose::at([0.0; 3])))?;
+            flow.set_walls(Some((&cuts, stress)))?;
+            pieces = cuts.walls;
+            for (cell, distance) in model.transport_mut().wall_distance_mut().iter_mut().enumerate() {
+                *distance = (duct.half - duct.height(grid.centre(grid.cell(cell))).abs()).max(0.0);
+            }
+        }
+        flow.set_velocity(|_| [1.0, 0.0]);
+        flow.source_mut()[0]
+            .set(|[x, y]| -FORCE * (-(x * x + (y - 0.5) * (y - 0.5)) / (RADIUS * RADIUS)).exp());
+        let (info, rests) = iterate(&mut flow, &mut model, 2000, 1e-5)?;
+        if !rests {
+            return Err(format!("the flow is not at rest: {info:?}").into());
+        }
+        let mut friction: Vec<[f64; 2]> = match walls {
+            DuctWalls::Immersed(..) => {
+                let all = pieces.iter().zip(flow.wall_tractions()).filter(|(wall, _)| wall.foot.y < 0.5);
+                all.map(|(wall, traction)| [wall.foot.x, traction.x]).collect()
+            }
+            DuctWalls::Sides(_) => {
+                let all = model.wall_rows().iter().zip(model.closure.wall_viscosity());
+                let all = all.map(|(row, nu_t)| (grid.centre(grid.cell(row.cell)), row, nu_t));
+                let lower = all.filter(|(x, ..)| x[1] < 0.5);
+                lower.map(|(x, row, nu_t)| [x[0], (VISCOSITY + nu_t) * row.u_t / row.y]).collect()
+            }
+        };
+        friction.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        Ok(Self { friction, iterations: info.iterations })
+    }
+
+    /// At `x` along the wall \[m²/s²\].
+    pub fn friction(&self, x: f64) -> f64 {
+        let k = self.friction.partition_point(|at| at[0] < x).clamp(1, self.friction.len() - 1);
+        let [[x0, f0], [x1, f1]] = [self.friction[k - 1], self.friction[k]];
+        f0 + (f1 - f0) * (x - x0) / (x1 - x0)
+    }
+
+    /// Least and largest of what friction is off that of `other` from 0.9 before the middle of the force to 1.8 behind it.
+    pub fn off(&self, other: &Self) -> [f64; 2] {
+        let off = (-18..=36).map(|k| 0.05 * f64::from(k)).map(|x| self.friction(x) / other.friction(x) - 1.0);
+        off.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], o| [low.min(o), high.max(o)])
+    }
+}
+
+/// Faces from 9 before the force to 6 behind it.
+fn along(h: f64) -> Outcome<Axis> {
+    let [a, b] = EVEN;
+    let before = growing(TAIL, 0.0, 9.0 + a, h);
+    let behind = growing(TAIL, 0.0, 6.0 - b, h);
+    let even = ((b - a) / h).round() as usize;
+    let mut faces: Vec<f64> = before.iter().skip(1).rev().map(|x| a - x).collect();
+    faces.extend((0..=even).map(|k| a + k as f64 * h));
+    faces.extend(behind.iter().skip(1).map(|x| b + x));
+    Ok(Axis::from_faces(faces)?)
+}

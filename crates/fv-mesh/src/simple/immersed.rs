@@ -75,17 +75,17 @@ impl<const D: usize> Simple<D> {
 
     /// Takes from a model what holds in cells that walls cut.
     pub(super) fn look_at<C: Closure>(&mut self, model: &mut Modelled<D, C>) {
-        let Some(walls) = &self.walls else { return };
-        if let Some(stress) = &mut self.stress {
-            walls.extend(&mut stress.eddy);
-            model.transport().wrap(&mut stress.eddy);
-        }
+        let Some(walls) = &mut self.walls else { return };
         match model.closure.kinetic_energy() {
             Some(k) => {
                 let field = self.energy.get_or_insert_with(|| Field::zeros(&self.state.grid));
                 model.transport().spread(k, field);
             }
             None => self.energy = None,
+        }
+        if let Some(stress) = &mut self.stress {
+            walls.extend(&mut stress.eddy, self.energy.as_ref(), self.state.fluid.viscosity);
+            model.transport().wrap(&mut stress.eddy);
         }
         if !model.transport().has_walls() {
             model.transport_mut().set_walls(walls.dry_cells(&self.state.grid), false);

@@ -156,8 +156,8 @@ impl<const D: usize> Simple<D> {
     /// they are: half the sum of a ghost and the cell inside is ν_t on the side.
     pub fn set_eddy_viscosity(&mut self, eddy: Option<&Field<D>>) {
         self.stress = eddy.map(|eddy| EddyStress::of(eddy.clone()));
-        if let (Some(walls), Some(stress)) = (&self.walls, &mut self.stress) {
-            walls.extend(&mut stress.eddy);
+        if let (Some(walls), Some(stress)) = (&mut self.walls, &mut self.stress) {
+            walls.extend(&mut stress.eddy, self.energy.as_ref(), self.state.fluid.viscosity);
         }
     }
 

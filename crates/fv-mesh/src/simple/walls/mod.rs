@@ -37,6 +37,8 @@ pub(crate) struct SimpleWalls<const D: usize> {
     sides: [Vec<(usize, f64)>; D],
     /// Cells without fluid at their centre, and the weights of those around from which their ν_t is taken.
     dry: Vec<(usize, Vec<(usize, f64)>)>,
+    /// Those of them that a wall cuts: the cell, its piece of wall, and how little of its ν_t is left in a logarithmic layer.
+    calm: Vec<(usize, usize, f64)>,
     /// Their ghosts beyond sides of the box: ghost and cell.
     beyond: Vec<(usize, usize)>,
     /// The cells that wall functions see.
@@ -121,6 +123,7 @@ impl<const D: usize> SimpleWalls<D> {
         let longest = rows.iter().map(Vec::len).max().unwrap_or(0);
         Ok(Self {
             dry: dry(&openings),
+            calm: calm(&openings),
             beyond: beyond(&openings),
             beside,
             ghosts,
@@ -281,11 +284,16 @@ impl<const D: usize> SimpleWalls<D> {
         }
     }
 
-    /// Gives cells in the solid the values around them.
-    pub(super) fn extend(&self, values: &mut Field<D>) {
-        let data = values.data_mut();
+    /// Gives cells in the solid the ν_t around them, and less of it where a wall leaves them a part in a logarithmic layer: half way to the
+    /// next centre it is then about that of the law. Slivers go along with the fluid beside them.
+    pub(super) fn extend(&mut self, eddy: &mut Field<D>, k: Option<&Field<D>>, viscosity: f64) {
+        self.stresses.see(k);
+        let data = eddy.data_mut();
         for (cell, from) in self.dry.iter().filter(|(_, from)| !from.is_empty()) {
             data[*cell] = from.iter().map(|&(o, w)| w * data[o]).sum();
+        }
+        for &(cell, piece, left) in &self.calm {
+            data[cell] *= 1.0 + self.stresses.logarithmic(piece, viscosity) * (left - 1.0);
         }
         self.beyond.iter().for_each(|&(ghost, cell)| data[ghost] = data[cell]);
     }
@@ -331,6 +339,20 @@ fn dry<const D: usize>(openings: &Openings<D>) -> Vec<(usize, Vec<(usize, f64)>)
             (cell, from.into_iter().map(|o| (o, weight)).collect())
         })
         .collect()
+}
+
+/// Cells without fluid at their centre that a wall cuts: storage index, piece, and 1 for slivers to 0 where a quarter of a cell is left.
+fn calm<const D: usize>(openings: &Openings<D>) -> Vec<(usize, usize, f64)> {
+    let grid = openings.grid;
+    let dry = (0..grid.n_cells()).map(|cell| grid.place(grid.cell(cell))).filter(|&o| !openings.wet[o]);
+    dry.filter_map(|cell| {
+        let (piece, wall) = openings.piece(cell)?;
+        let centre = grid.centre(grid.cell_at(cell)?);
+        let height = gradients::height(&wall, centre);
+        let part = 0.5 + height / openings.extent(cell, &wall);
+        Some((cell, piece, 1.0 - (part / stress::SLIVER).clamp(0.0, 1.0)))
+    })
+    .collect()
 }
 
 /// Ghosts of cells without fluid at their centre beyond sides of the box that are not periodic.

@@ -33,7 +33,7 @@ pub enum WallStress {
 const NEAREST: f64 = 0.05;
 /// Nodes nearer than this share of a cell tell nothing of a logarithmic layer: what is left of a cell that is nearly shut moves with the fluid
 /// beside it.
-const SLIVER: f64 = 0.25;
+pub(super) const SLIVER: f64 = 0.25;
 /// y+ of half a cell at which the gradients beside it take the wall for half, and above which the layer is logarithmic.
 const RESOLVED: f64 = 30.0;
 
@@ -203,25 +203,34 @@ impl<const D: usize> Stresses<D> {
         probe
     }
 
-    /// Looks at the flow.
-    pub(super) fn update(&mut self, velocity: &[Field<D>; D], k: Option<&Field<D>>, nu: f64) {
-        let WallStress::Law { law, velocity_weight, .. } = self.law else { return };
-        for (p, probe) in self.probes.iter().enumerate() {
+    /// Looks at k.
+    pub(super) fn see(&mut self, k: Option<&Field<D>>) {
+        if !matches!(self.law, WallStress::Law { .. }) {
+            return;
+        }
+        for (speed, probe) in self.speeds.iter_mut().zip(&self.probes) {
             let k = k.map(|k| {
                 self.cells[probe.cells.0..probe.cells.1].iter().map(|&(o, w)| w * k.data()[o]).sum()
             });
-            self.speeds[p] = k.map(LawOfTheWall::friction_velocity);
+            *speed = k.map(LawOfTheWall::friction_velocity);
+        }
+    }
+
+    /// Looks at the flow.
+    pub(super) fn update(&mut self, velocity: &[Field<D>; D], k: Option<&Field<D>>, nu: f64) {
+        let WallStress::Law { law, velocity_weight, .. } = self.law else { return };
+        self.see(k);
+        for (p, probe) in self.probes.iter().enumerate() {
             let scale = self.speed(p) / nu;
             // In fluid at rest the law is that of the viscous sublayer.
             let law_at = |y: f64| if scale > 0.0 { law.u_plus(scale * y) } else { y };
-            // 1 in the viscous sublayer, 0 in the logarithmic layer.
-            let viscous = (-(scale * probe.half / RESOLVED).powi(4)).exp();
+            let logarithmic = self.logarithmic(p, nu);
             let mut u = Vector::zeros();
             for c in 0..D {
                 let (first, last) = probe.ranges[c];
                 let [mut sum, mut plus] = [0.0; 2];
                 for term in &self.terms[first..last] {
-                    let weight = term.weight * if term.sliver { viscous } else { 1.0 };
+                    let weight = term.weight * if term.sliver { 1.0 - logarithmic } else { 1.0 };
                     sum += weight * (velocity[c].data()[term.node] - probe.velocity[c]);
                     plus += weight * law_at(term.y);
                 }
@@ -230,7 +239,7 @@ impl<const D: usize> Stresses<D> {
             u -= probe.normal * probe.normal.dot(&u);
             let place = [probe.y, u.norm()];
             let speed = self.speeds[p].map(|of_k| {
-                let weight = velocity_weight * (1.0 - viscous);
+                let weight = velocity_weight * logarithmic;
                 // Next to none is none, which costs nothing.
                 if weight < 1e-3 {
                     return of_k;
@@ -246,6 +255,11 @@ impl<const D: usize> Stresses<D> {
     /// u_τ beside a piece of wall \[m/s\].
     fn speed(&self, piece: usize) -> f64 {
         self.speeds[piece].unwrap_or_else(|| self.traction[piece].norm().sqrt())
+    }
+
+    /// Is the layer beside a piece of wall logarithmic? From 0 in the viscous sublayer to 1.
+    pub(super) fn logarithmic(&self, piece: usize, nu: f64) -> f64 {
+        -(-(self.speed(piece) * self.probes[piece].half / nu / RESOLVED).powi(4)).exp_m1()
     }
 
     /// What a wall tells gradients of component `c`: where cells are much larger than the viscous sublayer the nodes around say more of

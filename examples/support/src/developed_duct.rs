@@ -1,9 +1,7 @@
 //! Developed turbulent flow in ducts that are turned against the grid.
 use crate::Outcome;
 use crate::turned_ducts::TurnedDucts;
-use fv_mesh::{
-    CartesianGrid, Convection, Fluid, Modelled, Side, Simple, SimpleParams, TransportParams, WallStress,
-};
+use fv_mesh::{Convection, Fluid, Modelled, Side, Simple, SimpleParams, TransportParams, WallStress};
 use ibm::{StaticBodies, cut_cells};
 use turb::{Inflow, Law, TwoEquation};
 
@@ -40,7 +38,10 @@ impl<L: Law> DevelopedDuct<L> {
     ) -> Outcome<Self> {
         let (ducts, grid) = TurnedDucts::new(1.0, angle.to_radians(), 1.0 / cells as f64, shift)?;
         let along = ducts.along();
-        let mut flow = at_rest(&grid, viscosity)?;
+        let sides = [Side::Periodic.both(), Side::Periodic.both()];
+        let mut flow = Simple::new(grid.clone(), sides, Fluid { density: 1.0, viscosity })?
+            .with_convection(Convection::Quick)
+            .with_params(SimpleParams { velocity_relaxation: 0.97, ..SimpleParams::turbulent() })?;
         let cuts = cut_cells(flow.velocity(), &StaticBodies::new().with(ducts, ducts.pose()))?;
         flow.set_walls(Some((&cuts, WallStress::LAW_OF_THE_WALL)))?;
         flow.set_velocity(|_| along);
@@ -59,11 +60,4 @@ impl<L: Law> DevelopedDuct<L> {
         }
         Ok(Self { ducts, flow, model, force, residual })
     }
-}
-
-fn at_rest(grid: &CartesianGrid<2>, viscosity: f64) -> Outcome<Simple<2>> {
-    let sides = [Side::Periodic.both(), Side::Periodic.both()];
-    Ok(Simple::new(grid.clone(), sides, Fluid { density: 1.0, viscosity })?
-        .with_convection(Convection::Quick)
-        .with_params(SimpleParams { velocity_relaxation: 0.97, ..SimpleParams::turbulent() })?)
 }

@@ -32,8 +32,6 @@ pub enum DuctWalls {
 #[derive(Clone, Debug)]
 pub struct HinderedDuct {
     friction: Vec<[f64; 2]>,
-    /// Iterations to residuals of 1e-5.
-    pub iterations: usize,
 }
 
 impl HinderedDuct {
@@ -63,7 +61,7 @@ impl HinderedDuct {
             flow.set_walls(Some((&cuts, stress)))?;
             pieces = cuts.walls;
             for (cell, distance) in model.transport_mut().wall_distance_mut().iter_mut().enumerate() {
-                *distance = (duct.half - duct.height(grid.centre(grid.cell(cell))).abs()).max(0.0);
+                *distance = duct.distance(grid.centre(grid.cell(cell))).max(0.0);
             }
         }
         flow.set_velocity(|_| [1.0, 0.0]);
@@ -86,7 +84,7 @@ impl HinderedDuct {
             }
         };
         friction.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        Ok(Self { friction, iterations: info.iterations })
+        Ok(Self { friction })
     }
 
     /// At `x` along the wall \[m²/s²\].

@@ -24,11 +24,16 @@ impl PlaneDuct {
     pub fn height(&self, [x, y]: [f64; 2]) -> f64 {
         (y - self.at[1]) * self.angle.cos() - (x - self.at[0]) * self.angle.sin()
     }
+
+    /// Distance from the nearest wall, positive in the fluid \[m\].
+    pub fn distance(&self, x: [f64; 2]) -> f64 {
+        self.half - self.height(x).abs()
+    }
 }
 
 impl Solid for PlaneDuct {
     fn signed_distance(&self, x: Point, _: f64) -> f64 {
-        self.half - self.height([x.x, x.y]).abs()
+        self.distance([x.x, x.y])
     }
     fn aabb(&self) -> Aabb {
         Aabb::around(Point::origin(), Vector::new(10.0, 10.0, 0.0))
@@ -62,7 +67,7 @@ pub fn turbulent_duct<L: Law>(
     let model = TwoEquation::new(law, grid.n_cells(), Inflow::from_length(1.0, 0.05, 0.07)?)?;
     let mut model = Modelled::new(model, &grid, flow.sides(), TransportParams::steady())?;
     for (cell, distance) in model.transport_mut().wall_distance_mut().iter_mut().enumerate() {
-        *distance = (duct.half - duct.height(grid.centre(grid.cell(cell))).abs()).max(0.0);
+        *distance = duct.distance(grid.centre(grid.cell(cell))).max(0.0);
     }
     Ok((flow, model))
 }

@@ -38,10 +38,12 @@ pub(super) const SLIVER: f64 = 0.25;
 const RESOLVED: f64 = 30.0;
 
 impl WallStress {
-    /// The usual law of the wall, seen from half a cell.
+    /// The usual law of the wall, seen from half a cell. Its weight is between what bends and what ducts past a force would have
+    /// (0.3 and 1; docs/results.md, "Friction where the flow speeds up").
     pub const LAW_OF_THE_WALL: Self =
         Self::Law { law: LawOfTheWall::USUAL, distance: 0.5, velocity_weight: 0.4 };
 
+    /// Are its numbers possible?
     pub(super) fn check(self) -> Result<(), FlowError> {
         let Self::Law { distance, velocity_weight, .. } = self else { return Ok(()) };
         let parameter = |name, value, range| Err(FlowError::Parameter { name, value, range });

@@ -5,7 +5,7 @@ use example_support::picture::profiles::{Curve, Panel, draw};
 use example_support::turbulent_flows::{ChannelProfile, Drive, between_walls, developed_channel, numbers};
 use siltflow::flow::Axis;
 use std::path::Path;
-use turb::{Inflow, Law, Realizable, Sst, StandardKEpsilon, Sublayer, WallFunctions, WallShear, Wilcox};
+use turb::{Inflow, Law, Realizable, Sst, StandardKEpsilon, Sublayer, WallFunctions, Wilcox};
 
 macro_rules! simple_foam {
     ($model:literal) => {
@@ -20,8 +20,8 @@ macro_rules! simple_foam {
 pub(crate) fn against_simple_foam() -> Outcome<()> {
     println!("\nDeveloped channel, Re 1e6, wall functions, against simpleFoam on the same cells across");
     println!(
-        "{:>16} {:>5} {:>10} {:>10} {:>8} {:>8} {:>9} {:>6} {:>6} {:>6}",
-        "model", "mesh", "Darcy f", "reference", "off", "u off", "nu_t off", "y+", "its", "CPU s"
+        "{:>16} {:>5} {:>8} {:>10} {:>10} {:>8} {:>8} {:>9} {:>6} {:>6} {:>6}",
+        "model", "mesh", "setting", "Darcy f", "reference", "off", "u off", "nu_t off", "y+", "its", "CPU s"
     );
     let mut panels = Vec::new();
     of_model("k-omega SST", Sst::default(), simple_foam!("kOmegaSST"), &mut panels)?;
@@ -35,12 +35,17 @@ pub(crate) fn against_simple_foam() -> Outcome<()> {
 
 fn of_model<L: Law>(name: &str, law: L, texts: [&str; 2], panels: &mut Vec<Panel>) -> Outcome<()> {
     let nu = 1e-6;
-    for (mesh, cells, first, text) in [("c", 40, 3e-3, texts[0]), ("f", 80, 1.5e-3, texts[1])] {
+    let (own, alone) = (WallFunctions::default(), WallFunctions::of_k_alone());
+    for (mesh, setting, functions, cells, first, text) in [
+        ("c", "k alone", alone, 40, 3e-3, texts[0]),
+        ("c", "", own, 40, 3e-3, texts[0]),
+        ("f", "k alone", alone, 80, 1.5e-3, texts[1]),
+        ("f", "", own, 80, 1.5e-3, texts[1]),
+    ] {
         let reference = numbers::<6>(text);
         let start = Inflow::from_length(1.0, 0.05, 0.07)?;
         let y = between_walls(cells, 1.0, first)?;
         let watch = Stopwatch::start();
-        let functions = WallFunctions::default();
         let ours = developed_channel(law.clone(), functions, y, nu, Drive::Bulk(1.0), start)?;
         let seconds = watch.elapsed().cpu;
         let u_tau = reference[0][1] * nu / reference[0][0];
@@ -52,7 +57,7 @@ fn of_model<L: Law>(name: &str, law: L, texts: [&str; 2], panels: &mut Vec<Panel
         .sqrt();
         let f = |u_tau: f64| 8.0 * u_tau * u_tau;
         println!(
-            "{name:>16} {mesh:>5} {:>10.5} {:>10.5} {:>6.2} % {:>6.3} % {:>7.2} % {:>6.1} {:>6} {:>6.2}",
+            "{name:>16} {mesh:>5} {setting:>8} {:>10.5} {:>10.5} {:>6.2} % {:>6.3} % {:>7.2} % {:>6.1} {:>6} {:>6.2}",
             f(ours.u_tau),
             f(u_tau),
             100.0 * (f(ours.u_tau) / f(u_tau) - 1.0),
@@ -62,7 +67,7 @@ fn of_model<L: Law>(name: &str, law: L, texts: [&str; 2], panels: &mut Vec<Panel
             ours.iterations,
             seconds
         );
-        if mesh == "c" {
+        if mesh == "c" && setting.is_empty() {
             let points = |column: usize| reference[..half].iter().map(|r| (r[1], r[column])).collect();
             let wall = ours.u_tau / nu;
             let line = |list: &[f64], unit: f64| {
@@ -103,16 +108,16 @@ pub(crate) fn against_dns() -> Outcome<()> {
         let mut resolved = Vec::new();
         let default = WallFunctions::default();
         let linear = WallFunctions { sublayer: Sublayer::Linear, ..default };
-        let logarithmic = WallFunctions { shear: WallShear::Logarithmic, ..default };
+        let alone = WallFunctions::of_k_alone();
         for (y_plus, setting, functions) in [
             (0.3, "", default),
             (0.3, "linear", linear),
             (1.0, "", default),
             (1.0, "linear", linear),
             (30.0, "", default),
-            (30.0, "logarithmic", logarithmic),
+            (30.0, "k alone", alone),
             (100.0, "", default),
-            (100.0, "logarithmic", logarithmic),
+            (100.0, "k alone", alone),
         ] {
             let case = Channel { re, bulk, dns: &dns, y_plus, setting, functions };
             let sst = case.run("k-omega SST", Sst::default())?;

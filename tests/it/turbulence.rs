@@ -1,10 +1,11 @@
 //! Turbulence models in flows between walls, against body-fitted runs of others and direct numerical simulation.
 use example_support::reference_curve;
 use example_support::turbulent_flows::{
-    ChannelProfile, Drive, between_walls, developed_channel, duct, iterate, numbers, steady_couette,
+    ChannelProfile, Drive, between_walls, developed_channel, duct, growing, iterate, numbers, steady_couette,
 };
 use siltflow::flow::{
-    Axis, CartesianGrid, Fluid, Modelled, Scalar, ScalarSide, Settling, Side, Simple, TransportParams,
+    Axis, CartesianGrid, Convection, Fluid, Modelled, Profile, Scalar, ScalarSide, Settling, Side, Simple,
+    SimpleParams, TransportParams,
 };
 use turb::{
     Inflow, Law, Realizable, Sst, StandardKEpsilon, Sublayer, TwoEquation, WallFunctions, Wilcox, YPlus,
@@ -34,13 +35,13 @@ fn compare<L: Law>(law: L, text: &str) {
     let nu = 1e-6;
     let start = Inflow::from_length(1.0, 0.05, 0.07).unwrap();
     let y = between_walls(40, 1.0, 3e-3).unwrap();
-    let ours = developed_channel(law, WallFunctions::default(), y, nu, Drive::Bulk(1.0), start).unwrap();
+    let ours = developed_channel(law, WallFunctions::of_k_alone(), y, nu, Drive::Bulk(1.0), start).unwrap();
     let [friction, u, nu_t] = deviations(&ours, &reference(text), nu);
     assert!(friction.abs() < 4e-3 && u < 1e-3 && nu_t < 2e-3, "{friction} {u} {nu_t}");
     assert!(ours.y_plus.warnings().is_empty() && ours.y_plus.rows == 4);
 }
 
-/// The same equations and cells at y+ 54, where the law of the wall is 0.4 % above the logarithmic law of simpleFoam (0.34 to 0.37 % of the
+/// The same equations and cells, and friction by k alone, at y+ 54, where the law of the wall is 0.4 % above the logarithmic law of simpleFoam (0.34 to 0.37 % of the
 /// friction by k–ε).
 #[test]
 fn a_channel_at_re_1e6_is_that_of_simple_foam() {
@@ -48,6 +49,25 @@ fn a_channel_at_re_1e6_is_that_of_simple_foam() {
     compare(Wilcox::openfoam(), include_str!("../data/turbulence/channel_kOmega_c.csv"));
     compare(StandardKEpsilon::default(), include_str!("../data/turbulence/channel_kEpsilon_c.csv"));
     compare(Realizable::default(), include_str!("../data/turbulence/channel_realizableKE_c.csv"));
+}
+
+/// Against DNS at Re_τ 590 and 1000, friction of SST with wall functions is within 3 % at y+ 30 and 100 (by k alone, with |S| the mean over the first cell,
+/// 3.4 to 7 % low).
+#[test]
+fn a_channel_with_wall_functions_has_the_friction_of_dns() {
+    for (re, bulk) in [(587.19_f64, 18.654_f64), (1000.512, 19.990)] {
+        for y_plus in [30.0, 100.0] {
+            let cells = 2 * (re / (2.0 * y_plus)).round() as usize;
+            let friction = |functions: WallFunctions| -> f64 {
+                let (y, start) = (Axis::uniform(cells, 0.0, 2.0).unwrap(), Inflow { k: 1.0, omega: 10.0 });
+                let drive = Drive::Force(1.0);
+                let ours = developed_channel(Sst::default(), functions, y, 1.0 / re, drive, start).unwrap();
+                (bulk / ours.bulk).powi(2) - 1.0
+            };
+            let [own, alone] = [WallFunctions::default(), WallFunctions::of_k_alone()].map(friction);
+            assert!(own.abs() < 0.03 && alone < -0.033, "{re} {y_plus}: {own} {alone}");
+        }
+    }
 }
 
 /// Wall-resolved friction is that of the model, not of the cells: beside the lower wall of a Couette flow at Re 10⁴ that of ever finer cells is 7.948e-4 by SST (with
@@ -188,8 +208,9 @@ fn an_axis_between_walls_is_symmetric() {
     assert!(Axis::largest_ratio(&y) < 1.2);
 }
 
-/// The temperature of a developed channel at Re_τ 1000, warmed evenly, by SST: from y+ 80 to 0.3 of the half width within 5 % of Kader's correlation of what was measured in air (1981,
-/// *Int. J. Heat Mass Transfer* 24, 1541–1544) with wall functions; cells that resolve the layer have the buffer layer of SST, which mixes too much: within 9 %.
+/// The temperature of a developed channel at Re_τ 1000, warmed evenly, by SST: from y+ 80 to 0.3 of the half width within 8 % of Kader's correlation of what was measured in air (1981,
+/// *Int. J. Heat Mass Transfer* 24, 1541–1544) with wall functions, whose thermal law is 6 to 9 % below it in the first cells (found: 7.7); cells that resolve the layer have the buffer layer
+/// of SST, which mixes too much: within 9 %.
 #[test]
 fn a_channel_warms_as_measured() {
     let (re, prandtl) = (1000.0, 0.71);
@@ -199,7 +220,7 @@ fn a_channel_warms_as_measured() {
         2.12 * ((1.0 + y) * 1.5 * (1.0 + outer) / (1.0 + 2.0 * outer * outer)).ln() + beta
     };
     for (y, within) in
-        [(between_walls(96, 2.0, 0.6 / re).unwrap(), 0.09), (Axis::uniform(34, 0.0, 2.0).unwrap(), 0.05)]
+        [(between_walls(96, 2.0, 0.6 / re).unwrap(), 0.09), (Axis::uniform(34, 0.0, 2.0).unwrap(), 0.08)]
     {
         let n = y.cells();
         let grid = CartesianGrid::from_axes([Axis::uniform(2, 0.0, 0.2).unwrap(), y]).unwrap();
@@ -227,4 +248,24 @@ fn a_channel_warms_as_measured() {
         }
         assert!(seen >= 4, "{seen}");
     }
+}
+
+/// Behind an inlet of little turbulence the limited scheme steepens ε in one cell, where it went to and fro between two states for ever.
+#[test]
+fn a_channel_with_little_turbulence_at_its_inlet_comes_to_rest() {
+    let viscosity = 1.0 / 36_000.0;
+    let mut y = growing(24, 1.0, 6.0, 0.04);
+    y.extend(growing(12, 0.0, 3.0, 0.04).iter().rev().skip(1).map(|y| 9.0 - y));
+    let x = Axis::uniform(100, 0.0, 100.0).unwrap();
+    let grid = CartesianGrid::from_axes([x, Axis::from_faces(y).unwrap()]).unwrap();
+    let ends = [Side::Inlet(Profile::Uniform([1.0, 0.0, 0.0])), Side::PressureOutlet(0.0)];
+    let mut flow =
+        Simple::new(grid.clone(), [ends, Side::WALL.both()], Fluid { density: 1.0, viscosity }).unwrap();
+    flow = flow.with_convection(Convection::LinearUpwind).with_params(SimpleParams::turbulent()).unwrap();
+    flow.set_velocity(|_| [1.0, 0.0]);
+    let inflow = Inflow::from_viscosity_ratio(1.0, 0.003, 1.0, viscosity).unwrap();
+    let model = TwoEquation::new(StandardKEpsilon::default(), grid.n_cells(), inflow).unwrap();
+    let mut model = Modelled::new(model, &grid, flow.sides(), TransportParams::steady()).unwrap();
+    let info = flow.solve_with(&mut model, 600, 1e-5).unwrap();
+    assert!(info.iterations < 400, "{info:?}");
 }

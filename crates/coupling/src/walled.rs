@@ -84,6 +84,7 @@ impl<const D: usize, C: Closure> ClosureSlot<D> for Walled<D, C> {
         }
         let nearest = self.of_box.iter().zip(self.near.distance()).map(|(a, b)| a.min(*b));
         self.model.transport_mut().wall_distance_mut().iter_mut().zip(nearest).for_each(|(d, n)| *d = n);
+        self.near.fill(flow.velocity(), flow.fluid().viscosity);
         self.show(flow)
     }
 }

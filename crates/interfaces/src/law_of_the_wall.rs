@@ -16,6 +16,9 @@ pub struct LawOfTheWall {
     pub e: f64,
 }
 
+/// y+ above which a layer is logarithmic.
+const LOGARITHMIC: f64 = 30.0;
+
 impl Default for LawOfTheWall {
     fn default() -> Self {
         Self::USUAL
@@ -31,6 +34,25 @@ impl LawOfTheWall {
     pub fn friction_velocity(k: f64) -> f64 {
         // 0.09^¼.
         0.547_722_557_505_166_1 * k.max(0.0).sqrt()
+    }
+
+    /// u_* \[m/s\] that k and the tangential velocity `u` \[m/s\] at distance `y` \[m\] tell together:
+    ///
+    /// ```text
+    /// u_* = u_k^(1 − s) u_u^s,   s = w (1 − e^−(u_k y/30ν)⁴),   u/u_u = u+(u_u y/ν)
+    /// ```
+    ///
+    /// u_k = `of_k` the [friction velocity](Self::friction_velocity) of k, u_u that of the velocity (Spalding 1961, *J. Appl. Mech.* 28, 455–458), w = `weight` in 0 … 1. In
+    /// equilibrium they are the same; where the flow along the wall speeds up or slows down the stress changes within half a cell, k comes late, and u_k
+    /// misses the friction by three times as much as u_u. In the viscous sublayer u_k is taken, which resolved layers have.
+    pub fn shared_friction_velocity(&self, of_k: f64, [y, u]: [f64; 2], nu: f64, weight: f64) -> f64 {
+        let share = -weight * (-(of_k * y / nu / LOGARITHMIC).powi(4)).exp_m1();
+        // Next to none is none, which costs nothing.
+        if share < 1e-3 {
+            return of_k;
+        }
+        let of_u = self.y_plus(u * y / nu) * nu / y;
+        of_k.powf(1.0 - share) * of_u.powf(share)
     }
 
     /// u+ at y+.
@@ -50,14 +72,19 @@ impl LawOfTheWall {
 
     /// y+ where u+ y+ is `reynolds` = u y/ν: what the velocity u at the distance y tells of the friction, u_τ = y+ ν/y.
     pub fn y_plus(&self, reynolds: f64) -> f64 {
-        // In the viscous sublayer the first guess is the solution; farther out each step leaves less than half of the error.
-        let mut y = reynolds.max(0.0).sqrt();
-        for _ in 0..60 {
-            let next = (y * reynolds / self.u_plus(y).max(f64::MIN_POSITIVE)).sqrt();
-            if (next - y).abs() <= 1e-13 * y {
+        if reynolds.is_nan() || reynolds <= 0.0 {
+            return 0.0;
+        }
+        // Newton's method for the logarithms: in the viscous sublayer the first guess is the solution.
+        let mut y = reynolds.sqrt();
+        for _ in 0..20 {
+            let u = self.u_plus(y);
+            let step = (reynolds / (y * u)).ln() / (1.0 + y * self.slope(y) / u);
+            y *= step.exp();
+            // What is left goes with its square.
+            if step.abs() <= 1e-8 {
                 break;
             }
-            y = next;
         }
         y
     }
@@ -82,6 +109,27 @@ mod tests {
         assert!((logarithmic(30.0) / law.u_plus(30.0) - 1.03).abs() < 0.01);
         assert!((logarithmic(11.0) / law.u_plus(11.0) - 1.29).abs() < 0.01);
         assert!((law.u_plus(1e4) / logarithmic(1e4) - 1.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn the_velocity_has_a_share_where_the_layer_is_logarithmic() {
+        let (law, nu, weight) = (LawOfTheWall::USUAL, 1e-6, 0.4);
+        let of_u: f64 = 0.05;
+        for (y_plus, share) in [(1.0, 0.0), (30.0, weight * (1.0 - (-1.0_f64).exp())), (200.0, weight)] {
+            let of_k = 0.04;
+            let y = y_plus * nu / of_k;
+            let u = of_u * law.u_plus(of_u * y / nu);
+            let found = law.shared_friction_velocity(of_k, [y, u], nu, weight);
+            let wanted = of_k * (of_u / of_k).powf(share);
+            assert!((found / wanted - 1.0).abs() < 1e-9, "{y_plus}: {found} {wanted}");
+            // Both tell the same.
+            let same = law.shared_friction_velocity(of_u, [y, u], nu, weight);
+            assert!((same / of_u - 1.0).abs() < 1e-9);
+            assert_eq!(law.shared_friction_velocity(of_k, [y, u], nu, 0.0), of_k);
+        }
+        assert_eq!(law.shared_friction_velocity(0.0, [0.1, 1.0], nu, weight), 0.0);
+        // A flow at rest.
+        assert_eq!(law.shared_friction_velocity(1.0, [0.1, 0.0], nu, weight), 0.0);
     }
 
     #[test]

@@ -27,6 +27,8 @@ pub struct WallRow {
     /// Where the wall's friction (ν + ν_t) u_t/y is taken from, and k for its ν_t, instead of from the centre: for walls beside which the
     /// velocity of the centre is not to be trusted.
     pub seen: Option<WallPoint>,
+    /// The wall's friction τ_w/ρ \[m²/s²\] where it is known already, instead of (ν + ν_t) u_t/y.
+    pub friction: Option<f64>,
     /// Share of the model's own equations in the cell, in 0 … 1: with 0 the wall functions say all.
     pub free: f64,
 }

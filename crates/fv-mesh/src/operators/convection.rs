@@ -76,6 +76,16 @@ fn face_value<const KIND: u8>(w: Interface, u: f64, [m2, m1, p1, p2]: [f64; 4]) 
     if u > 0.0 { rising } else { falling }
 }
 
+/// How fast the limited `face_value` grows with the upwind one of the middle two beyond that value itself; 0 where it does not.
+#[inline(always)]
+fn steepness(w: Interface, u: f64, [m2, m1, p1, p2]: [f64; 4]) -> f64 {
+    let [b, g, ahead, behind] =
+        if u > 0.0 { [w.b[0], w.g[0], p1 - m1, m1 - m2] } else { [w.b[1], w.g[1], m1 - p1, p1 - p2] };
+    let behind = g * behind;
+    let (sum, more) = (ahead + behind, g * ahead * ahead - behind * behind);
+    if ahead * behind > 0.0 && more > 0.0 { b * more / (sum * sum) } else { 0.0 }
+}
+
 /// A row of cells, their neighbours and the speeds through their faces.
 pub(crate) struct CarriedRow<'a, const D: usize> {
     pub(crate) here: &'a [f64],
@@ -126,6 +136,26 @@ impl<'a, const D: usize> CarriedRow<'a, D> {
     /// −∇·(uφ) of cell `i`.
     #[inline(always)]
     pub(crate) fn convection<const KIND: u8>(&self, i: usize) -> f64 {
+        self.over_faces(i, |low, [u, v], [m2, m1, c, p1, p2], high| {
+            let inflow = u * face_value::<KIND>(low, u, [m2, m1, c, p1]);
+            inflow - v * face_value::<KIND>(high, v, [m1, c, p1, p2])
+        })
+    }
+
+    /// How fast what the limited scheme lets flow out of cell `i` beyond what upwind values take grows with what is in it, where it
+    /// does \[1/s\].
+    #[inline(always)]
+    fn steepness(&self, i: usize) -> f64 {
+        self.over_faces(i, |low, [u, v], [m2, m1, c, p1, p2], high| {
+            let below = if u < 0.0 { -u * steepness(low, u, [m2, m1, c, p1]) } else { 0.0 };
+            let above = if v > 0.0 { v * steepness(high, v, [m1, c, p1, p2]) } else { 0.0 };
+            below + above
+        })
+    }
+
+    /// Sums what `axis` has of both faces along each axis, over the width: their weights and speeds, and the five cells in a row.
+    #[inline(always)]
+    fn over_faces(&self, i: usize, axis: impl Fn(Interface, [f64; 2], [f64; 5], Interface) -> f64) -> f64 {
         let mut sum = 0.0;
         for b in 0..D {
             let (m2, m1, c) = (self.below2[b][i], self.below[b][i], self.here[i]);
@@ -135,31 +165,44 @@ impl<'a, const D: usize> CarriedRow<'a, D> {
             } else {
                 (self.across[b][0], self.across[b][1])
             };
-            let (u, v) = (self.lower[b][i], self.upper[b][i]);
-            let inflow = u * face_value::<KIND>(low, u, [m2, m1, c, p1]);
-            let outflow = v * face_value::<KIND>(high, v, [m1, c, p1, p2]);
-            sum += (if b == 0 { self.inv[i] } else { self.inv_b[b] }) * (inflow - outflow);
+            let speeds = [self.lower[b][i], self.upper[b][i]];
+            let inv = if b == 0 { self.inv[i] } else { self.inv_b[b] };
+            sum += inv * axis(low, speeds, [m2, m1, c, p1, p2], high);
         }
         sum
     }
 }
 
 /// −∇·(uφ).
-pub(crate) struct Convect<'a, const KIND: u8, const D: usize> {
+pub(crate) const WHOLE: u8 = 0;
+/// The same less that of the upwind values.
+pub(crate) const CORRECTION: u8 = 1;
+/// How fast what that takes out of a cell by the limited scheme grows with what is in it, where it does \[1/s\].
+pub(crate) const STEEPNESS: u8 = 2;
+
+/// `WHAT` of these.
+pub(crate) struct Convect<'a, const WHAT: u8, const KIND: u8, const D: usize> {
     pub(crate) carrier: &'a Carrier<D>,
+    pub(crate) upwind: &'a Carrier<D>,
     pub(crate) grid: &'a CartesianGrid<D>,
     pub(crate) metrics: &'a Metrics<D>,
     pub(crate) velocity: &'a [Field<D>; D],
     pub(crate) phi: &'a [f64],
 }
 
-impl<const KIND: u8, const D: usize> RowKernel<D> for Convect<'_, KIND, D> {
+impl<const WHAT: u8, const KIND: u8, const D: usize> RowKernel<D> for Convect<'_, WHAT, KIND, D> {
     #[inline(always)]
     fn row(&self, at: [usize; D], o: usize, out: &mut [f64]) {
         let range = [o, out.len()];
-        let row = CarriedRow::new(self.carrier, self.grid, self.metrics, at, range, self.velocity, self.phi);
+        let row =
+            |carrier| CarriedRow::new(carrier, self.grid, self.metrics, at, range, self.velocity, self.phi);
+        let (row, upwind) = (row(self.carrier), row(self.upwind));
         for (i, out) in out.iter_mut().enumerate() {
-            *out = row.convection::<KIND>(i);
+            *out = match WHAT {
+                WHOLE => row.convection::<KIND>(i),
+                CORRECTION => row.convection::<KIND>(i) - upwind.convection::<LINEAR>(i),
+                _ => row.steepness(i),
+            };
         }
     }
 }

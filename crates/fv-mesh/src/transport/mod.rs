@@ -24,7 +24,7 @@ use crate::linear::{
     BiCgStabParams, BiCgStabScratch, Dilu, GaussSeidelParams, GaussSeidelScratch, GaussSeidelSweep,
     LinearError, LinearOperator, StencilMatrix, Sweep, SweepOrder, bicgstab, gauss_seidel, vector,
 };
-use crate::operators::{Operators, fill_dense};
+use crate::operators::{CORRECTION, Operators, STEEPNESS, fill_dense};
 use crate::{CartesianGrid, Convection, Field, FlowError, Sides, Velocity};
 use interfaces::{Equation, SolveError, SolveInfo};
 use kernels::Neighbour;
@@ -53,7 +53,7 @@ pub struct CellTransport<const D: usize> {
     matrix: StencilMatrix<D>,
     dilu: Dilu,
     b: Vec<f64>,
-    /// 1/(a_P s) and φ/s.
+    /// 1/(a_P s), and how steep convection is.
     units: Vec<f64>,
     x: Vec<f64>,
     pinned: Vec<bool>,
@@ -69,9 +69,14 @@ pub struct CellTransport<const D: usize> {
     forced: bool,
     bicgstab: BiCgStabScratch,
     gauss_seidel: GaussSeidelScratch,
-    /// Γ or a, φ or b, and two terms.
-    fields: [Field<D>; 4],
+    /// Γ or a, φ or b, and a list.
+    fields: [Field<D>; 3],
 }
+
+/// The share of Newton's method in steady iterations: so much of what a convection scheme lets out of a cell beyond the upwind value because φ is as
+/// large as it is there is implicit. Where a limited scheme steepens what flows in, as behind inlets, that grows as fast as the upwind part: with none
+/// of it such cells go to and fro between two states for ever.
+const NEWTON: f64 = 0.5;
 
 impl<const D: usize> CellTransport<D> {
     /// For flows on `grid` between `sides`.
@@ -230,13 +235,25 @@ impl<const D: usize> CellTransport<D> {
         if second_order {
             self.carry(velocity);
         }
-        let Self { ops, sides, params, volume, wall_distance, matrix, b, x, fields, carrier, near, .. } =
-            self;
+        let Self {
+            ops,
+            sides,
+            params,
+            volume,
+            wall_distance,
+            matrix,
+            b,
+            units,
+            x,
+            fields,
+            carrier,
+            near,
+            ..
+        } = self;
         let whole = velocity;
         // Else a difference could be taken from what the matrix does not bring.
         let velocity = carrier.as_deref().unwrap_or(velocity);
-        let grid = ops.grid();
-        let [_, carried, high, low] = fields;
+        let [_, carried, ..] = fields;
         let (centre, mut lower, mut upper) = matrix.parts_mut();
         for run in ops.cells() {
             for ((b, source), v) in b[run.clone()].iter_mut().zip(&e.source[run.clone()]).zip(&volume[run]) {
@@ -254,15 +271,16 @@ impl<const D: usize> CellTransport<D> {
             b[i] += volume[i] * rate * phi[i];
         }
         if second_order {
-            copy_dense(grid, phi, carried);
+            copy_dense(ops.grid(), phi, carried);
             sides.fill(carried, Some(e.inlet), e.wall);
-            ops.convection(velocity, carried, params.scheme, high)?;
-            ops.convection(velocity, carried, Convection::Upwind, low)?;
-            for run in ops.cells() {
-                let (o, cells) = (grid.place(grid.cell(run.start)), run.len());
-                let values = high.data()[o..][..cells].iter().zip(&low.data()[o..][..cells]);
-                for ((x, v), (high, low)) in x[run.clone()].iter_mut().zip(&volume[run]).zip(values) {
-                    *x = v * (high - low);
+            ops.beyond_upwind::<CORRECTION>(velocity, carried, params.scheme, x);
+            ops.cells().flatten().for_each(|i| x[i] *= volume[i]);
+            if e.dt.is_none() && params.scheme == Convection::Limited {
+                ops.beyond_upwind::<STEEPNESS>(velocity, carried, params.scheme, units);
+                for i in ops.cells().flatten() {
+                    let newton = NEWTON * volume[i] * units[i];
+                    centre[i] += newton;
+                    b[i] += newton * phi[i];
                 }
             }
             if let Some(near) = near {

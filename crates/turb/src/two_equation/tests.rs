@@ -1,4 +1,5 @@
 use super::*;
+use crate::WallShear;
 use crate::testing::Uniform;
 use interfaces::{LogSlope, WallPoint};
 use proptest::prelude::*;
@@ -151,12 +152,46 @@ fn rows_get_wall_functions() {
         assert_eq!(w.cell, *cell);
         assert!((value / f.omega(y, k, nu) - 1.0).abs() < 1e-14);
         assert!((w.production / (0.3_f64.powi(2) * k * value) - 1.0).abs() < 1e-9);
-        assert!((w.shear.unwrap() * 2.0 * y / u_t - 1.0).abs() < 1e-14 && w.share > 1.0 - 1e-12);
+        assert!((w.shear.unwrap() / f.log_shear(y, k) - 1.0).abs() < 1e-9 && w.share > 1.0 - 1e-12);
     }
+    let mut mean = WallLayer::new(WallFunctions { shear: WallShear::Mean, ..f });
+    mean.update(&rows, &[k, k, 5.0], nu, Scale::Omega).unwrap();
+    assert!(mean.cells.iter().all(|w| (w.shear.unwrap() * 2.0 * y / u_t - 1.0).abs() < 1e-14));
     let statistics = layer.y_plus(&rows, nu);
     assert!((statistics.mean / y_plus - 1.0).abs() < 1e-12 && statistics.rows == 3);
     let bad = layer.update(&[WallRow { cell: 9, y, ..WallRow::default() }], &[k; 3], nu, Scale::Omega);
     assert!(matches!(bad, Err(SolveError::Value { .. })));
+}
+
+/// k of a flow that has sped up by a fourth is still that of before: the velocity has its share in the friction, unless a row knows it.
+#[test]
+fn friction_is_shared_by_k_and_the_velocity() {
+    let f = WallFunctions::default();
+    let (nu, y_plus, u_tau) = (1e-5, 80.0, 0.4);
+    let (y, k) = (y_plus * nu / u_tau, u_tau * u_tau / 0.3);
+    let u_t = 1.25 * u_tau * f.u_plus(1.25 * y_plus);
+    let row = WallRow { cell: 0, y, area: 1.0, u_t, ..WallRow::default() };
+    let of = |functions: WallFunctions, row: WallRow| {
+        let mut layer = WallLayer::new(functions);
+        layer.see(&[row], &[k], nu).unwrap();
+        layer.update(&[row], &[k], nu, Scale::Omega).unwrap();
+        let plus = layer.y_plus(&[row], nu).mean;
+        ((nu + layer.viscosity[0]) * u_t / y / (u_tau * u_tau), plus / y_plus, layer.cells[0].production)
+    };
+    let alone = |speed: f64| speed * 1.25 * f.u_plus(1.25 * y_plus) / f.u_plus(speed * y_plus);
+    for (velocity_weight, speed) in [(0.0, 1.0), (0.4, 1.25_f64.powf(0.4)), (1.0, 1.25)] {
+        let (found, plus, produced) = of(WallFunctions { velocity_weight, ..f }, row);
+        assert!((found / alone(speed) - 1.0).abs() < 1e-9, "{velocity_weight}: {found}");
+        assert!((plus * plus / found - 1.0).abs() < 1e-9);
+        // As much as that friction produces with the shear of the same share.
+        let wanted = speed * f.production(Scale::Omega, f.omega(y, k, nu), k, found * u_tau * u_tau);
+        assert!((produced / wanted - 1.0).abs() < 1e-9);
+    }
+    let known = 1.1 * u_tau * u_tau;
+    let (_, plus, produced) = of(f, WallRow { friction: Some(known), ..row });
+    assert!((plus * plus - 1.1).abs() < 1e-9);
+    let wanted = 1.25_f64.powf(0.4) * f.production(Scale::Omega, f.omega(y, k, nu), k, known);
+    assert!((produced / wanted - 1.0).abs() < 1e-9);
 }
 
 /// A row that sees the flow elsewhere has the friction of there; half of the model's own equations go half in.

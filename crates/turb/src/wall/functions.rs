@@ -8,10 +8,10 @@ use interfaces::LawOfTheWall;
 ///
 /// | | viscous sublayer | logarithmic layer | between |
 /// |---|---|---|---|
-/// | ν_t/ν on the wall | 0 | κy*/ln(E y*) − 1 | y*/u+(y*) − 1 with [`u_plus`](Self::u_plus) of Reichardt (1951) |
+/// | ν_t/ν on the wall, with the velocity's share in y* | 0 | κy*/ln(E y*) − 1 | y*/u+(y*) − 1 with [`u_plus`](Self::u_plus) of Reichardt (1951) |
 /// | ω | ω_v = 6ν/(β₁y²) | ω_l = √k/(C_μ^¼ κ y) | ω_v + ω_l, and √(ω_v² + ω_l²) beyond the buffer layer ([`omega`](Self::omega)) |
 /// | ε | 2νk/y² | C_μ^¾ k^(3/2)/(κy) | √(Σ²) |
-/// | production | ν_t S² | τ √C_μ ω or τ ε/(√C_μ k) | the two weighted by [`turbulent_share`](Self::turbulent_share) |
+/// | production | ν_t S² | τ √C_μ ω or τ ε/(√C_μ k), times u_*/u_k of the [velocity's share](Self::velocity_weight) | the two weighted by [`turbulent_share`](Self::turbulent_share) |
 /// | k | 0 on the wall | ∂k/∂n = 0 | the flux νk/y weighted likewise |
 ///
 /// τ = (ν + ν_t) u_t/y is the wall's friction over ρ. Production is what ω or ε takes where τ = √C_μ k, with the viscous part that these
@@ -29,7 +29,10 @@ pub struct WallFunctions {
     pub c_mu: f64,
     /// β₁ of ω in the viscous sublayer. Default 0.075.
     pub beta_1: f64,
-    /// |S| of the cells beside walls. Default [`WallShear::Mean`].
+    /// w of the velocity in the friction velocity of ν_t on the wall, beside k's ([`shared_friction_velocity`](LawOfTheWall::shared_friction_velocity)), 0 to 1. Default 0.4, as
+    /// immersed walls have; with 0 it is k's alone (Launder & Spalding 1974).
+    pub velocity_weight: f64,
+    /// |S| of the cells beside walls. Default [`WallShear::Logarithmic`].
     pub shear: WallShear,
     /// ω of the cells that resolve a viscous sublayer. Default [`Sublayer::InverseSquare`].
     pub sublayer: Sublayer,
@@ -55,10 +58,10 @@ const BUFFER: f64 = 1.25;
 pub enum WallShear {
     /// The mean over the cell, from the velocity on its far face to the wall's: what a finite-volume gradient is, and what OpenFOAM
     /// takes. It is larger than the shear at the centre, so models whose ν_t depends on |S| (SST, realizable k–ε) have a ν_t that
-    /// is too low in this cell.
-    #[default]
+    /// is too low in this cell, and too little friction.
     Mean,
-    /// C_μ^¼ √k/(κy) of the logarithmic layer.
+    /// C_μ^¼ √k/(κy) of the logarithmic layer, as far as the cell is in one.
+    #[default]
     Logarithmic,
 }
 
@@ -70,17 +73,27 @@ impl Default for WallFunctions {
             e,
             c_mu: 0.09,
             beta_1: 0.075,
-            shear: WallShear::Mean,
+            velocity_weight: 0.4,
+            shear: WallShear::Logarithmic,
             sublayer: Sublayer::InverseSquare,
         }
     }
 }
 
 impl WallFunctions {
+    /// Friction by k alone, and |S| the mean over the cell, as OpenFOAM has them.
+    pub fn of_k_alone() -> Self {
+        Self { velocity_weight: 0.0, shear: WallShear::Mean, ..Self::default() }
+    }
+
     pub(crate) fn check(&self) -> Result<(), TurbulenceError> {
         positive("κ", self.kappa)?;
         positive("C_μ", self.c_mu)?;
         positive("β₁", self.beta_1)?;
+        if !(0.0..=1.0).contains(&self.velocity_weight) {
+            let name = "the weight of the velocity in the friction velocity";
+            return Err(TurbulenceError::Value { name, value: self.velocity_weight, range: "0 to 1" });
+        }
         // Else the linear and the logarithmic law do not meet.
         if self.e.is_finite() && self.e > (std::f64::consts::E * self.kappa).max(1.0) {
             return Ok(());
@@ -109,9 +122,19 @@ impl WallFunctions {
         self.c_mu.sqrt().sqrt() * k.max(0.0).sqrt() * y / nu
     }
 
+    /// The same with the friction velocity that k and the velocity tell together, \[y, u\] at `place`.
+    pub fn shared_y_star(&self, place: [f64; 2], k: f64, nu: f64) -> f64 {
+        let of_k = self.y_star(1.0, k, nu) * nu;
+        self.law().shared_friction_velocity(of_k, place, nu, self.velocity_weight) * place[0] / nu
+    }
+
+    fn law(&self) -> LawOfTheWall {
+        LawOfTheWall { kappa: self.kappa, e: self.e }
+    }
+
     /// u+ at any y+ by the [law of the wall](LawOfTheWall).
     pub fn u_plus(&self, y_plus: f64) -> f64 {
-        LawOfTheWall { kappa: self.kappa, e: self.e }.u_plus(y_plus)
+        self.law().u_plus(y_plus)
     }
 
     /// ν_t/ν on the wall: y+/u+ − 1.
@@ -237,6 +260,9 @@ mod tests {
                 y >= least && ((e * y).ln() / kappa / y - 1.0).abs() < 1e-12
                     || e < std::f64::consts::E * kappa
             );
+        }
+        for velocity_weight in [-0.1, 1.1, f64::NAN] {
+            assert!(WallFunctions { velocity_weight, ..w }.check().is_err());
         }
         for e in [0.5, 1.0, f64::NAN] {
             assert!(WallFunctions { e, ..w }.check().is_err());

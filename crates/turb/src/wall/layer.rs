@@ -128,7 +128,11 @@ impl WallLayer {
                 };
                 value += part * given;
                 w.share += part * share;
-                w.production += part * share * f.production(scale, given, k, friction);
+                // By the shear of the law with the velocity's share in it: so k follows a flow that speeds up.
+                let (place, k_there) = seen(row, k);
+                let of_k = f.y_star(place[0], k_there, nu);
+                let shear = if of_k > 0.0 { f.shared_y_star(place, k_there, nu) / of_k } else { 1.0 };
+                w.production += part * share * shear * f.production(scale, given, k, friction);
                 w.conductance += (1.0 - share) * row.area * nu / row.y;
                 let shear = match f.shear {
                     WallShear::Mean if row.seen.is_none() => row.shear,
@@ -147,11 +151,11 @@ impl WallLayer {
         Ok(())
     }
 
-    /// Brings ν_t on the walls up to date with k.
+    /// Brings ν_t on the walls up to date with k and the velocity.
     pub(crate) fn refresh(&mut self, rows: &[WallRow], k: &[f64], nu: f64) {
         for (viscosity, row) in self.viscosity.iter_mut().zip(rows) {
-            let (y, k) = row.seen.map_or((row.y, k[row.cell]), |seen| (seen.y, seen.k));
-            let y_star = self.functions.y_star(y, k, nu);
+            let (place, k) = seen(row, k[row.cell]);
+            let y_star = self.functions.shared_y_star(place, k, nu);
             *viscosity = nu * self.functions.viscosity_ratio(y_star);
         }
     }
@@ -172,8 +176,13 @@ impl WallLayer {
     }
 }
 
-/// τ_w/ρ \[m²/s²\] with the viscosity on the wall.
+/// Distance and tangential velocity where a row sees the flow, and k there, `k` at the centre.
+fn seen(row: &WallRow, k: f64) -> ([f64; 2], f64) {
+    row.seen.map_or(([row.y, row.u_t], k), |seen| ([seen.y, seen.u_t], seen.k))
+}
+
+/// τ_w/ρ \[m²/s²\], with the viscosity on the wall where it is not known.
 fn friction(row: &WallRow, viscosity: f64) -> f64 {
-    let (y, u_t) = row.seen.map_or((row.y, row.u_t), |seen| (seen.y, seen.u_t));
-    viscosity * u_t / y
+    let ([y, u_t], _) = seen(row, row.k);
+    row.friction.unwrap_or(viscosity * u_t / y)
 }

@@ -51,6 +51,7 @@ impl Beside {
         for (row, &(probe, ends)) in self.rows.iter_mut().zip(&self.probes) {
             row.nu = nu;
             row.u_t = stresses.seen(probe, row.y, nu);
+            row.friction = Some(stresses.of(probe));
             // Of the whole cell, as from differences over it.
             let [below, above] = ends.map(|y| stresses.seen(probe, y, nu));
             row.shear = Some((above - below) / (ends[1] - ends[0]));

@@ -16,9 +16,7 @@ pub enum WallStress {
     Slip,
     /// τ = ρ u_* u/u+(u_* y/ν), u what the law has at some distance y if it has Σ w u of the nodes around, w the weights of that place.
     ///
-    /// u_* = u_k^(1 − w) u_u^w where the turbulence kinetic energy k is known, else u_u: u_k = C_μ^¼ √k (Launder & Spalding 1974), u_u/u+(u_u y/ν) = u/u_u
-    /// (Spalding 1961). In equilibrium they are the same; where the flow along the wall speeds up or slows down the stress changes within half
-    /// a cell, k comes late, and u_k misses the friction by three times as much as u_u. Where k is that of a viscous sublayer w is 0.
+    /// u_* is [shared](LawOfTheWall::shared_friction_velocity) by k and u with `velocity_weight` w where the turbulence kinetic energy k is known, else that of u.
     Law {
         /// u+.
         law: LawOfTheWall,
@@ -240,15 +238,7 @@ impl<const D: usize> Stresses<D> {
             }
             u -= probe.normal * probe.normal.dot(&u);
             let place = [probe.y, u.norm()];
-            let speed = self.speeds[p].map(|of_k| {
-                let weight = velocity_weight * logarithmic;
-                // Next to none is none, which costs nothing.
-                if weight < 1e-3 {
-                    return of_k;
-                }
-                let of_u = law.y_plus(place[1] * probe.y / nu) * nu / probe.y;
-                of_k.powf(1.0 - weight) * of_u.powf(weight)
-            });
+            let speed = self.speeds[p].map(|k| law.shared_friction_velocity(k, place, nu, velocity_weight));
             self.friction[p] = friction(law, place, speed, nu);
             self.traction[p] = u * self.friction[p];
         }
@@ -275,12 +265,20 @@ impl<const D: usize> Stresses<D> {
         AtWall { velocity: probe.velocity[c], share }
     }
 
+    /// What a wall takes from the fluid per area and density \[m²/s²\].
+    pub(super) fn of(&self, piece: usize) -> f64 {
+        match self.law {
+            WallStress::Law { .. } => self.traction[piece].norm(),
+            _ => self.force[piece].norm() / self.probes[piece].area,
+        }
+    }
+
     /// Tangential velocity at distance `y` from the wall that goes with its friction and k, by the law where there is one.
     pub(super) fn seen(&self, piece: usize, y: f64, nu: f64) -> f64 {
         let WallStress::Law { law, .. } = self.law else {
-            return self.force[piece].norm() / self.probes[piece].area * y / nu;
+            return self.of(piece) * y / nu;
         };
-        let (stress, speed) = (self.traction[piece].norm(), self.speed(piece));
+        let (stress, speed) = (self.of(piece), self.speed(piece));
         if speed > 0.0 { stress / speed * law.u_plus(speed * y / nu) } else { stress * y / nu }
     }
 

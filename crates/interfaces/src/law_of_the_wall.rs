@@ -16,9 +16,6 @@ pub struct LawOfTheWall {
     pub e: f64,
 }
 
-/// y+ above which a layer is logarithmic.
-const LOGARITHMIC: f64 = 30.0;
-
 impl Default for LawOfTheWall {
     fn default() -> Self {
         Self::USUAL
@@ -28,12 +25,22 @@ impl Default for LawOfTheWall {
 impl LawOfTheWall {
     /// κ = 0.41, E = 9.8.
     pub const USUAL: Self = Self { kappa: 0.41, e: 9.8 };
+    /// y+ above which a layer is logarithmic.
+    pub const LOGARITHMIC: f64 = 30.0;
+    /// The usual weight of the velocity in the [friction velocity](Self::shared_friction_velocity): between what bends and what ducts past a force would have
+    /// (0.3 and 1; docs/results.md, "Friction where the flow speeds up").
+    pub const VELOCITY_WEIGHT: f64 = 0.4;
 
     /// u_τ \[m/s\] of a layer in equilibrium with k \[m²/s²\]: C_μ^¼ √k with C_μ = 0.09, 0 where k is not positive (Launder & Spalding 1974,
     /// *Comput. Methods Appl. Mech. Eng.* 3, 269–289).
     pub fn friction_velocity(k: f64) -> f64 {
         // 0.09^¼.
         0.547_722_557_505_166_1 * k.max(0.0).sqrt()
+    }
+
+    /// Is the layer logarithmic at y+? 1 − e^−(y+/30)⁴, from 0 in the viscous sublayer to 1.
+    pub fn logarithmic(y_plus: f64) -> f64 {
+        -(-(y_plus / Self::LOGARITHMIC).powi(4)).exp_m1()
     }
 
     /// u_* \[m/s\] that k and the tangential velocity `u` \[m/s\] at distance `y` \[m\] tell together:
@@ -46,7 +53,7 @@ impl LawOfTheWall {
     /// equilibrium they are the same; where the flow along the wall speeds up or slows down the stress changes within half a cell, k comes late, and u_k
     /// misses the friction by three times as much as u_u. In the viscous sublayer u_k is taken, which resolved layers have.
     pub fn shared_friction_velocity(&self, of_k: f64, [y, u]: [f64; 2], nu: f64, weight: f64) -> f64 {
-        let share = -weight * (-(of_k * y / nu / LOGARITHMIC).powi(4)).exp_m1();
+        let share = weight * Self::logarithmic(of_k * y / nu);
         // Next to none is none, which costs nothing.
         if share < 1e-3 {
             return of_k;
@@ -57,17 +64,25 @@ impl LawOfTheWall {
 
     /// u+ at y+.
     pub fn u_plus(&self, y_plus: f64) -> f64 {
-        self.curve(y_plus).min(y_plus)
+        self.with_slope(y_plus).0
     }
 
     /// du+/dy+ at y+.
     pub fn slope(&self, y_plus: f64) -> f64 {
-        if self.curve(y_plus) >= y_plus {
-            return 1.0;
-        }
+        self.with_slope(y_plus).1
+    }
+
+    /// u+ and du+/dy+ at y+.
+    #[inline]
+    fn with_slope(&self, y_plus: f64) -> (f64, f64) {
         let (near, far) = ((-y_plus / 3.0).exp(), (-y_plus / 11.0).exp());
-        let layer = (far - (1.0 - y_plus / 3.0) * near) / 11.0;
-        1.0 / (1.0 + self.kappa * y_plus) + (self.e / self.kappa).ln() / self.kappa * layer
+        let layer = (self.e / self.kappa).ln() / self.kappa;
+        let curve = (self.kappa * y_plus).ln_1p() / self.kappa + layer * (1.0 - far - y_plus / 11.0 * near);
+        if curve >= y_plus {
+            return (y_plus, 1.0);
+        }
+        let rise = (far - (1.0 - y_plus / 3.0) * near) / 11.0;
+        (curve, 1.0 / (1.0 + self.kappa * y_plus) + layer * rise)
     }
 
     /// y+ where u+ y+ is `reynolds` = u y/ν: what the velocity u at the distance y tells of the friction, u_τ = y+ ν/y.
@@ -78,21 +93,15 @@ impl LawOfTheWall {
         // Newton's method for the logarithms: in the viscous sublayer the first guess is the solution.
         let mut y = reynolds.sqrt();
         for _ in 0..20 {
-            let u = self.u_plus(y);
-            let step = (reynolds / (y * u)).ln() / (1.0 + y * self.slope(y) / u);
+            let (u, slope) = self.with_slope(y);
+            let step = (reynolds / (y * u)).ln() / (1.0 + y * slope / u);
             y *= step.exp();
-            // What is left goes with its square.
-            if step.abs() <= 1e-8 {
+            // What is left is a tenth of its square.
+            if step.abs() <= 1e-7 {
                 break;
             }
         }
         y
-    }
-
-    fn curve(&self, y_plus: f64) -> f64 {
-        let core = (self.kappa * y_plus).ln_1p() / self.kappa;
-        let layer = 1.0 - (-y_plus / 11.0).exp() - y_plus / 11.0 * (-y_plus / 3.0).exp();
-        core + (self.e / self.kappa).ln() / self.kappa * layer
     }
 }
 

@@ -76,14 +76,14 @@ fn face_value<const KIND: u8>(w: Interface, u: f64, [m2, m1, p1, p2]: [f64; 4]) 
     if u > 0.0 { rising } else { falling }
 }
 
-/// How fast the limited `face_value` grows with the upwind one of the middle two beyond that value itself; 0 where it does not.
+/// How fast the limited value between the upwind node `u` and the downwind node `d` grows with φ_U beyond it; 0 where it does not.
 #[inline(always)]
-fn steepness(w: Interface, u: f64, [m2, m1, p1, p2]: [f64; 4]) -> f64 {
-    let [b, g, ahead, behind] =
-        if u > 0.0 { [w.b[0], w.g[0], p1 - m1, m1 - m2] } else { [w.b[1], w.g[1], m1 - p1, p1 - p2] };
-    let behind = g * behind;
+fn steepness(b: f64, g: f64, [far, u, d]: [f64; 3]) -> f64 {
+    let (ahead, behind) = (d - u, g * (u - far));
     let (sum, more) = (ahead + behind, g * ahead * ahead - behind * behind);
-    if ahead * behind > 0.0 && more > 0.0 { b * more / (sum * sum) } else { 0.0 }
+    let slope = b * more / (sum * sum);
+    // Both: a branch would keep the loop from being vectorised.
+    if (ahead * behind > 0.0) & (more > 0.0) { slope } else { 0.0 }
 }
 
 /// A row of cells, their neighbours and the speeds through their faces.
@@ -146,10 +146,10 @@ impl<'a, const D: usize> CarriedRow<'a, D> {
     /// does \[1/s\].
     #[inline(always)]
     fn steepness(&self, i: usize) -> f64 {
-        self.over_faces(i, |low, [u, v], [m2, m1, c, p1, p2], high| {
-            let below = if u < 0.0 { -u * steepness(low, u, [m2, m1, c, p1]) } else { 0.0 };
-            let above = if v > 0.0 { v * steepness(high, v, [m1, c, p1, p2]) } else { 0.0 };
-            below + above
+        self.over_faces(i, |low, [u, v], [_, m1, c, p1, _], high| {
+            let out = [if u < 0.0 { -u } else { 0.0 }, if v > 0.0 { v } else { 0.0 }];
+            out[0] * steepness(low.b[1], low.g[1], [p1, c, m1])
+                + out[1] * steepness(high.b[0], high.g[0], [m1, c, p1])
         })
     }
 
@@ -174,35 +174,41 @@ impl<'a, const D: usize> CarriedRow<'a, D> {
 }
 
 /// −∇·(uφ).
-pub(crate) const WHOLE: u8 = 0;
-/// The same less that of the upwind values.
-pub(crate) const CORRECTION: u8 = 1;
-/// How fast what that takes out of a cell by the limited scheme grows with what is in it, where it does \[1/s\].
-pub(crate) const STEEPNESS: u8 = 2;
-
-/// `WHAT` of these.
-pub(crate) struct Convect<'a, const WHAT: u8, const KIND: u8, const D: usize> {
+pub(crate) struct Convect<'a, const KIND: u8, const D: usize> {
     pub(crate) carrier: &'a Carrier<D>,
-    pub(crate) upwind: &'a Carrier<D>,
     pub(crate) grid: &'a CartesianGrid<D>,
     pub(crate) metrics: &'a Metrics<D>,
     pub(crate) velocity: &'a [Field<D>; D],
     pub(crate) phi: &'a [f64],
 }
 
-impl<const WHAT: u8, const KIND: u8, const D: usize> RowKernel<D> for Convect<'_, WHAT, KIND, D> {
+impl<const KIND: u8, const D: usize> RowKernel<D> for Convect<'_, KIND, D> {
     #[inline(always)]
     fn row(&self, at: [usize; D], o: usize, out: &mut [f64]) {
         let range = [o, out.len()];
-        let row =
-            |carrier| CarriedRow::new(carrier, self.grid, self.metrics, at, range, self.velocity, self.phi);
-        let (row, upwind) = (row(self.carrier), row(self.upwind));
+        let row = CarriedRow::new(self.carrier, self.grid, self.metrics, at, range, self.velocity, self.phi);
         for (i, out) in out.iter_mut().enumerate() {
-            *out = match WHAT {
-                WHOLE => row.convection::<KIND>(i),
-                CORRECTION => row.convection::<KIND>(i) - upwind.convection::<LINEAR>(i),
-                _ => row.steepness(i),
-            };
+            *out = row.convection::<KIND>(i);
+        }
+    }
+}
+
+/// How fast what limited convection lets out of a cell beyond upwind values grows with what is in it, where it does \[1/s\].
+pub(crate) struct Steepness<'a, const D: usize> {
+    pub(crate) carrier: &'a Carrier<D>,
+    pub(crate) grid: &'a CartesianGrid<D>,
+    pub(crate) metrics: &'a Metrics<D>,
+    pub(crate) velocity: &'a [Field<D>; D],
+    pub(crate) phi: &'a [f64],
+}
+
+impl<const D: usize> RowKernel<D> for Steepness<'_, D> {
+    #[inline(always)]
+    fn row(&self, at: [usize; D], o: usize, out: &mut [f64]) {
+        let range = [o, out.len()];
+        let row = CarriedRow::new(self.carrier, self.grid, self.metrics, at, range, self.velocity, self.phi);
+        for (i, out) in out.iter_mut().enumerate() {
+            *out = row.steepness(i);
         }
     }
 }

@@ -45,7 +45,7 @@ mod strain;
 pub(crate) mod tests;
 mod weighted;
 
-pub(crate) use convection::{CENTRAL, CORRECTION, CarriedRow, Carrier, STEEPNESS, with_kind};
+pub(crate) use convection::{CENTRAL, CarriedRow, Carrier, with_kind};
 pub(crate) use rows::{RowKernel, fill_dense};
 pub(crate) use strain::StrainRate;
 
@@ -53,7 +53,7 @@ use crate::grid::GHOSTS;
 use crate::metrics::Metrics;
 use crate::spans::Spans;
 use crate::{CartesianGrid, Convection, Field, FlowError, Velocity};
-use convection::{Convect, WHOLE};
+use convection::{Convect, Steepness};
 use rows::fill_rows;
 use weighted::{Divergence, Laplacian, VariableLaplacian, Weighted};
 
@@ -210,36 +210,25 @@ impl<const D: usize> Operators<D> {
     ) -> Result<(), FlowError> {
         self.check(&velocity.components.each_ref())?;
         self.check(&[phi, out])?;
-        let (grid, metrics) = (&self.grid, &self.metrics);
-        let [carrier, upwind] = [scheme, Convection::Upwind].map(|s| self.carrier(s));
+        let (grid, metrics, carrier) = (&self.grid, &self.metrics, self.carrier(scheme));
         let (velocity, phi) = (&velocity.components, phi.data());
         with_kind!(carrier, KIND => {
-            let kernel = Convect::<WHOLE, KIND, D> { carrier, upwind, grid, metrics, velocity, phi };
+            let kernel = Convect::<KIND, D> { carrier, grid, metrics, velocity, phi };
             fill_rows(grid, grid.cells(), &self.spans, &kernel, out);
         });
         Ok(())
     }
 
-    fn carrier(&self, scheme: Convection) -> &Carrier<D> {
-        &self.carriers[Convection::ALL.iter().position(|&s| s == scheme).unwrap_or(0)]
+    /// How fast what [`Convection::Limited`] takes out of every cell beyond what [`Convection::Upwind`] does grows with φ there, where it
+    /// does \[1/s\].
+    pub(crate) fn steepness(&self, velocity: &Velocity<D>, phi: &Field<D>, out: &mut [f64]) {
+        let (grid, metrics, carrier) = (&self.grid, &self.metrics, self.carrier(Convection::Limited));
+        let kernel = Steepness { carrier, grid, metrics, velocity: &velocity.components, phi: phi.data() };
+        fill_dense(grid, &self.spans, &kernel, out);
     }
 
-    /// −∇·(uφ) by `scheme` less that by [`Convection::Upwind`], of every cell ([`CORRECTION`]), or how fast what this takes out of the cell with
-    /// [`Convection::Limited`] grows with φ there, where it does \[1/s\] ([`STEEPNESS`]).
-    pub(crate) fn beyond_upwind<const WHAT: u8>(
-        &self,
-        velocity: &Velocity<D>,
-        phi: &Field<D>,
-        scheme: Convection,
-        out: &mut [f64],
-    ) {
-        let (grid, metrics) = (&self.grid, &self.metrics);
-        let [carrier, upwind] = [scheme, Convection::Upwind].map(|s| self.carrier(s));
-        let (velocity, phi) = (&velocity.components, phi.data());
-        with_kind!(carrier, KIND => {
-            let kernel = Convect::<WHAT, KIND, D> { carrier, upwind, grid, metrics, velocity, phi };
-            fill_dense(grid, &self.spans, &kernel, out);
-        });
+    fn carrier(&self, scheme: Convection) -> &Carrier<D> {
+        &self.carriers[Convection::ALL.iter().position(|&s| s == scheme).unwrap_or(0)]
     }
 
     /// ∂u_a/∂x_b at the centres: over the cell for a = b, else the centred difference of the mean of both faces.

@@ -24,7 +24,7 @@ use crate::linear::{
     BiCgStabParams, BiCgStabScratch, Dilu, GaussSeidelParams, GaussSeidelScratch, GaussSeidelSweep,
     LinearError, LinearOperator, StencilMatrix, Sweep, SweepOrder, bicgstab, gauss_seidel, vector,
 };
-use crate::operators::{CORRECTION, Operators, STEEPNESS, fill_dense};
+use crate::operators::{Operators, fill_dense};
 use crate::{CartesianGrid, Convection, Field, FlowError, Sides, Velocity};
 use interfaces::{Equation, SolveError, SolveInfo};
 use kernels::Neighbour;
@@ -69,8 +69,8 @@ pub struct CellTransport<const D: usize> {
     forced: bool,
     bicgstab: BiCgStabScratch,
     gauss_seidel: GaussSeidelScratch,
-    /// Γ or a, φ or b, and a list.
-    fields: [Field<D>; 3],
+    /// Γ or a, φ or b, and two terms.
+    fields: [Field<D>; 4],
 }
 
 /// The share of Newton's method in steady iterations: so much of what a convection scheme lets out of a cell beyond the upwind value because φ is as
@@ -253,7 +253,8 @@ impl<const D: usize> CellTransport<D> {
         let whole = velocity;
         // Else a difference could be taken from what the matrix does not bring.
         let velocity = carrier.as_deref().unwrap_or(velocity);
-        let [_, carried, ..] = fields;
+        let grid = ops.grid();
+        let [_, carried, high, low] = fields;
         let (centre, mut lower, mut upper) = matrix.parts_mut();
         for run in ops.cells() {
             for ((b, source), v) in b[run.clone()].iter_mut().zip(&e.source[run.clone()]).zip(&volume[run]) {
@@ -271,16 +272,27 @@ impl<const D: usize> CellTransport<D> {
             b[i] += volume[i] * rate * phi[i];
         }
         if second_order {
-            copy_dense(ops.grid(), phi, carried);
+            copy_dense(grid, phi, carried);
             sides.fill(carried, Some(e.inlet), e.wall);
-            ops.beyond_upwind::<CORRECTION>(velocity, carried, params.scheme, x);
-            ops.cells().flatten().for_each(|i| x[i] *= volume[i]);
+            ops.convection(velocity, carried, params.scheme, high)?;
+            ops.convection(velocity, carried, Convection::Upwind, low)?;
+            for run in ops.cells() {
+                let (o, cells) = (grid.place(grid.cell(run.start)), run.len());
+                let values = high.data()[o..][..cells].iter().zip(&low.data()[o..][..cells]);
+                for ((x, v), (high, low)) in x[run.clone()].iter_mut().zip(&volume[run]).zip(values) {
+                    *x = v * (high - low);
+                }
+            }
             if e.dt.is_none() && params.scheme == Convection::Limited {
-                ops.beyond_upwind::<STEEPNESS>(velocity, carried, params.scheme, units);
-                for i in ops.cells().flatten() {
-                    let newton = NEWTON * volume[i] * units[i];
-                    centre[i] += newton;
-                    b[i] += newton * phi[i];
+                ops.steepness(velocity, carried, units);
+                for run in ops.cells() {
+                    let given = volume[run.clone()].iter().zip(&units[run.clone()]).zip(&phi[run.clone()]);
+                    let rows = centre[run.clone()].iter_mut().zip(&mut b[run]);
+                    for ((centre, b), ((v, steepness), phi)) in rows.zip(given) {
+                        let newton = NEWTON * v * steepness;
+                        *centre += newton;
+                        *b += newton * phi;
+                    }
                 }
             }
             if let Some(near) = near {

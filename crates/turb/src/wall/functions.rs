@@ -73,7 +73,7 @@ impl Default for WallFunctions {
             e,
             c_mu: 0.09,
             beta_1: 0.075,
-            velocity_weight: 0.4,
+            velocity_weight: LawOfTheWall::VELOCITY_WEIGHT,
             shear: WallShear::Logarithmic,
             sublayer: Sublayer::InverseSquare,
         }

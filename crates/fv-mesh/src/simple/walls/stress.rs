@@ -32,14 +32,11 @@ const NEAREST: f64 = 0.05;
 /// Nodes nearer than this share of a cell tell nothing of a logarithmic layer: what is left of a cell that is nearly shut moves with the fluid
 /// beside it.
 pub(super) const SLIVER: f64 = 0.25;
-/// y+ of half a cell at which the gradients beside it take the wall for half, and above which the layer is logarithmic.
-const RESOLVED: f64 = 30.0;
 
 impl WallStress {
-    /// The usual law of the wall, seen from half a cell. Its weight is between what bends and what ducts past a force would have
-    /// (0.3 and 1; docs/results.md, "Friction where the flow speeds up").
+    /// The usual law of the wall and weight, seen from half a cell.
     pub const LAW_OF_THE_WALL: Self =
-        Self::Law { law: LawOfTheWall::USUAL, distance: 0.5, velocity_weight: 0.4 };
+        Self::Law { law: LawOfTheWall::USUAL, distance: 0.5, velocity_weight: LawOfTheWall::VELOCITY_WEIGHT };
 
     /// Are its numbers possible?
     pub(super) fn check(self) -> Result<(), FlowError> {
@@ -251,7 +248,7 @@ impl<const D: usize> Stresses<D> {
 
     /// Is the layer beside a piece of wall logarithmic? From 0 in the viscous sublayer to 1.
     pub(super) fn logarithmic(&self, piece: usize, nu: f64) -> f64 {
-        -(-(self.speed(piece) * self.probes[piece].half / nu / RESOLVED).powi(4)).exp_m1()
+        LawOfTheWall::logarithmic(self.speed(piece) * self.probes[piece].half / nu)
     }
 
     /// What a wall tells gradients of component `c`: where cells are much larger than the viscous sublayer the nodes around say more of
@@ -259,7 +256,11 @@ impl<const D: usize> Stresses<D> {
     pub(super) fn at_wall(&self, piece: usize, c: usize, nu: f64) -> AtWall {
         let probe = &self.probes[piece];
         let share = match self.law {
-            WallStress::Law { .. } => 1.0 / (1.0 + (self.speed(piece) * probe.half / nu / RESOLVED).powi(2)),
+            WallStress::Law { .. } => {
+                // A half where half a cell is as high as a layer that begins to be logarithmic.
+                let y_plus = self.speed(piece) * probe.half / nu;
+                1.0 / (1.0 + (y_plus / LawOfTheWall::LOGARITHMIC).powi(2))
+            }
             _ => 1.0,
         };
         AtWall { velocity: probe.velocity[c], share }

@@ -273,6 +273,11 @@ fn friction_of_developed_ducts_does_not_depend_on_where_their_walls_are() {
             let duct = DevelopedDuct::new(law.clone(), angle, 20, shift, viscosity, given).unwrap();
             let off = duct.force / given - 1.0;
             assert!(off.abs() < 0.05 && duct.residual < 1e-5, "{angle} {shift}: {off} {}", duct.residual);
+            // The closure produces k by it.
+            for row in duct.model.wall_rows() {
+                let told = row.friction.map_or(f64::NAN, |friction| friction / (0.5 * duct.force) - 1.0);
+                assert!(told.abs() < 0.2, "{angle} {shift}: {told}");
+            }
         }
     }
     run(Sst::default(), include_str!("../data/turbulence/channel_kOmegaSST_c.csv"));

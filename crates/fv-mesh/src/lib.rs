@@ -20,6 +20,7 @@
 //! ```
 #![deny(missing_docs)]
 
+mod across_stream;
 pub mod algebra;
 mod axis;
 mod boundary;

@@ -2,6 +2,7 @@
 use super::gradients::{Gradients, dot};
 use super::openings::Openings;
 use super::rows::{Flow, coordinate};
+use crate::across_stream::{Stream, across_stream};
 use crate::{Convection, Field};
 
 /// Faces with a smaller open share carry by first order: what is extrapolated from them would not settle.
@@ -228,9 +229,27 @@ fn middle<const D: usize>(
 }
 
 impl<const D: usize> Link<D> {
-    /// The velocity that is carried through the edge.
-    pub(super) fn value(&self, scheme: Convection, out: f64, u: [f64; 2], g: [&[f64; D]; 2]) -> f64 {
-        let linear = |k: usize| u[k] + dot(g[k], if k == 0 { &self.to_edge } else { &self.from_other });
+    /// What this node, and the other one, say of the velocity on the edge by their gradients.
+    fn ends(&self, u: [f64; 2], g: [&[f64; D]; 2]) -> [f64; 2] {
+        [u[0] + dot(g[0], &self.to_edge), u[1] + dot(g[1], &self.from_other)]
+    }
+
+    /// What the node below says less what the one above does.
+    pub(super) fn jump(&self, b: usize, u: [f64; 2], g: [&[f64; D]; 2]) -> f64 {
+        let [own, other] = self.ends(u, g);
+        if self.step[b] > 0.0 { own - other } else { other - own }
+    }
+
+    /// The velocity that is carried through the edge of axis `b`. By schemes whose upwind part is linear it acts along the stream only.
+    pub(super) fn value(
+        &self,
+        scheme: Convection,
+        b: usize,
+        out: f64,
+        u: [f64; 2],
+        g: [&[f64; D]; 2],
+        streams: [&Stream<D>; 2],
+    ) -> f64 {
         let upwind = usize::from(out < 0.0);
         // From the line through the nodes to the middle of the edge.
         let side: [f64; D] = std::array::from_fn(|a| self.to_edge[a] - self.share * self.step[a]);
@@ -240,7 +259,11 @@ impl<const D: usize> Link<D> {
             Convection::Upwind => u[upwind],
             Convection::Central => mean(),
             // Not QUICK's parabola: beside a law's logarithm it keeps layers on walls that they should leave.
-            Convection::LinearUpwind | Convection::Quick => linear(upwind),
+            Convection::LinearUpwind | Convection::Quick => {
+                let across = across_stream(b, self.jump(b, u, g), self.step[b].abs(), streams);
+                let from_below = (upwind == 0) == (self.step[b] > 0.0);
+                self.ends(u, g)[upwind] - if from_below { 0.5 * across } else { -0.5 * across }
+            }
             Convection::Limited => {
                 let (sign, share) = if upwind == 0 { (1.0, self.share) } else { (-1.0, 1.0 - self.share) };
                 let ahead = sign * (u[1] - u[0]);
@@ -300,7 +323,8 @@ mod tests {
         let (gradient, aside) = ([0.7, -0.4], 0.2);
         let schemes = Convection::ALL.into_iter().filter(|scheme| *scheme != Convection::Upwind);
         for (scheme, out) in schemes.flat_map(|scheme| [(scheme, 1.0), (scheme, -1.0)]) {
-            let value = link(aside).value(scheme, out, [2.0, 2.7], [&gradient; 2]);
+            let rest = Stream::new([0.0; 2], 1.0);
+            let value = link(aside).value(scheme, 0, out, [2.0, 2.7], [&gradient; 2], [&rest; 2]);
             assert!((value - (2.0 + 0.35 - 0.08)).abs() < 1e-14, "{scheme:?} {out}: {value}");
         }
     }
@@ -310,7 +334,8 @@ mod tests {
     fn the_limited_scheme_makes_nothing_new() {
         let value = |before: f64, here: f64, there: f64| {
             let [own, far] = [[0.5 * (there - before), 0.0], [0.0; 2]];
-            link(0.0).value(Convection::Limited, 1.0, [here, there], [&own, &far])
+            let rest = Stream::new([0.0; 2], 1.0);
+            link(0.0).value(Convection::Limited, 0, 1.0, [here, there], [&own, &far], [&rest; 2])
         };
         // At the foot and at the head of a step, and at a maximum.
         assert_eq!(value(0.0, 0.0, 1.0), 0.0);

@@ -8,6 +8,7 @@ mod stress;
 
 pub use stress::WallStress;
 
+use crate::across_stream::Stream;
 use crate::field::row_start;
 use crate::linear::StencilMatrix;
 use crate::metrics::Metrics;
@@ -47,6 +48,8 @@ pub(crate) struct SimpleWalls<const D: usize> {
     ghosts: [Vec<Ghost<D>>; D],
     sums: Vec<f64>,
     rates: Vec<f64>,
+    /// At the nodes of one component that have a gradient.
+    streams: Vec<Stream<D>>,
     n_bodies: usize,
     /// Of cells with fluid and their neighbours.
     pub(super) spans: Spans,
@@ -129,6 +132,7 @@ impl<const D: usize> SimpleWalls<D> {
             ghosts,
             sums: vec![0.0; longest],
             rates: vec![0.0; longest],
+            streams: Vec::new(),
             rows,
             gradients,
             stresses,
@@ -160,6 +164,17 @@ impl<const D: usize> SimpleWalls<D> {
     ) {
         let rows = &self.rows[c];
         let u = it.velocity[c].data();
+        self.streams.clear();
+        self.streams.resize(self.gradients[c].values.len(), Stream::new([0.0; D], 0.0));
+        if matches!(it.scheme, Convection::LinearUpwind | Convection::Quick) {
+            // Where cells resolve what changes across it; with a logarithmic layer less of it costs more than it saves (docs/results.md).
+            let viscous = it.viscosity > 0.0;
+            let spared =
+                |p: usize| if viscous { 1.0 - self.stresses.logarithmic(p, it.viscosity) } else { 0.0 };
+            for row in rows {
+                row.see_stream(c, it.velocity, &self.gradients[c], spared, &mut self.streams);
+            }
+        }
         let flow = Flow {
             grid: it.grid,
             metrics: it.metrics,
@@ -169,6 +184,7 @@ impl<const D: usize> SimpleWalls<D> {
             viscosity: it.viscosity,
             equations,
             gradients: &self.gradients,
+            streams: &self.streams,
         };
         for ((sum, rate), row) in self.sums.iter_mut().zip(&mut self.rates).zip(rows) {
             [*sum, *rate] = row.write(c, &flow, it.viscous_share, matrix);

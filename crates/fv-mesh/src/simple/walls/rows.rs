@@ -2,10 +2,19 @@
 use super::edges::{Edge, Kind, VolumeSide};
 use super::gradients::{Gradients, dot};
 use super::openings::Openings;
+use crate::across_stream::Stream;
+use crate::grid::GHOSTS;
 use crate::linear::StencilMatrix;
 use crate::metrics::Metrics;
 use crate::momentum_matrix::MomentumEquations;
 use crate::{CartesianGrid, Convection, Field};
+
+/// So many cells around a node a wall is looked for.
+const REACH: usize = 3;
+/// Nodes with a smaller open share are damped across the stream as along it.
+const WIDE: f64 = 0.25;
+/// A smaller share of what is [across the stream](crate::across_stream::across_stream) is damped as the rest.
+const LEAST_SPARED: f64 = 1e-3;
 
 /// One control volume: the halves of two cells, or all of one whose other face is shut.
 pub(super) struct Row<const D: usize> {
@@ -16,6 +25,8 @@ pub(super) struct Row<const D: usize> {
     pub(super) inv_volume: f64,
     edges: Vec<Edge<D>>,
     slot: u32,
+    /// The nearest piece of wall, of nodes whose face is open enough.
+    piece: Option<usize>,
 }
 
 /// What the rows of a component are computed with.
@@ -29,6 +40,8 @@ pub(super) struct Flow<'a, const D: usize> {
     pub(super) viscosity: f64,
     pub(super) equations: &'a MomentumEquations<D>,
     pub(super) gradients: &'a [Gradients<D>; D],
+    /// Of the component's nodes that have a gradient.
+    pub(super) streams: &'a [Stream<D>],
 }
 
 /// Does an edge of component `c`, below node `number` along `b`, touch nothing but open faces and cells in the fluid?
@@ -60,6 +73,27 @@ fn is_side<const D: usize>(openings: &Openings<D>, [c, b]: [usize; 2], number: u
     let n = openings.grid.cells()[b];
     let first = crate::grid::GHOSTS;
     b != c && !openings.metrics.periodic[b] && (i == first || i == first + n)
+}
+
+/// The piece of wall nearest to a node, if there is one near it.
+fn nearest_piece<const D: usize>(openings: &Openings<D>, c: usize, index: usize) -> Option<usize> {
+    let (grid, x, at) = (openings.grid, openings.node(c, index), openings.at(index));
+    let width = 2 * REACH + 1;
+    let found = (0..width.pow(D as u32)).filter_map(|k| {
+        let (mut cell, mut rest) = (0, k);
+        for a in 0..D {
+            let i = (at[a] + rest % width).checked_sub(REACH)?;
+            if i >= grid.cells()[a] + 2 * GHOSTS {
+                return None;
+            }
+            cell += i * grid.stride()[a];
+            rest /= width;
+        }
+        let (piece, wall) = openings.piece(cell)?;
+        let distance: f64 = (0..D).map(|a| (x[a] - wall.foot[a]).powi(2)).sum();
+        Some((piece, distance))
+    });
+    found.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(piece, _)| piece)
 }
 
 impl<const D: usize> Row<D> {
@@ -98,7 +132,46 @@ impl<const D: usize> Row<D> {
             side.add(kind(b, usize::from(upper)), gradients, &mut edges);
         }
         let cell = openings.grid.cell_at(index).map_or(0, |cell| openings.grid.index(cell));
-        Some(Self { cell, index, inv_volume, edges, slot })
+        // What is left of a cell that is nearly shut would not settle.
+        let wide = openings.open[c].data()[index] >= WIDE;
+        let piece = if wide { nearest_piece(openings, c, index) } else { None };
+        Some(Self { cell, index, inv_volume, edges, slot, piece })
+    }
+
+    /// Looks at the stream at the node; `spared`: how much of what changes across it a piece of wall has spared.
+    pub(super) fn see_stream(
+        &self,
+        c: usize,
+        velocity: &[Field<D>; D],
+        gradients: &Gradients<D>,
+        spared: impl Fn(usize) -> f64,
+        streams: &mut [Stream<D>],
+    ) {
+        let spared = self.piece.map_or(0.0, spared);
+        if spared < LEAST_SPARED {
+            return;
+        }
+        let u = velocity[c].data();
+        let here = u[self.index];
+        let gradient = &gradients.values[self.slot as usize];
+        let (mut through, mut area) = ([0.0; D], [0.0; D]);
+        for edge in self.edges.iter().filter(|edge| edge.axis != c) {
+            for &(o, a) in &edge.carriers {
+                through[edge.axis] += a * velocity[edge.axis].data()[o];
+                area[edge.axis] += a;
+            }
+        }
+        let mean = |b: usize| if area[b] > 0.0 { through[b] / area[b] } else { 0.0 };
+        let mut stream = Stream::new(std::array::from_fn(|b| if b == c { here } else { mean(b) }), spared);
+        for edge in &self.edges {
+            if let Kind::Cut(link) = &edge.kind {
+                let b = edge.axis;
+                let far = &gradients.values[link.other as usize];
+                let jump = link.jump(b, [here, u[edge.other]], [gradient, far]);
+                stream.add(b, jump, link.step[b].abs(), edge.area);
+            }
+        }
+        streams[self.slot as usize] = stream;
     }
 
     /// Writes the row but for the wall's stress; gives −∇·(u u_c) + viscous terms and the rate at which the flow passes by.
@@ -152,8 +225,10 @@ impl<const D: usize> Row<D> {
                 }
                 Kind::Cut(link) => {
                     let far = &flow.gradients[c].values[link.other as usize];
-                    let value = link.value(flow.scheme, out, [here, there], [gradient, far]);
-                    let slope = link.slope(b, [here, there], [gradient, far]);
+                    let (u, g) = ([here, there], [gradient, far]);
+                    let streams = [self.slot, link.other].map(|slot| &flow.streams[slot as usize]);
+                    let value = link.value(flow.scheme, b, out, u, g, streams);
+                    let slope = link.slope(b, u, g);
                     let mut stress = total * slope;
                     if b != c && nu > 0.0 {
                         stress += nu * link.cross(edge, [c, b], flow);

@@ -85,6 +85,9 @@ struct Bin {
 const SHARE: f64 = 1e-3;
 /// So many sizes are drawn at once, and no more.
 const MOST: usize = 100_000_000;
+/// After so many sizes it is known whether there would be more, if they would be so many times too many.
+const SAMPLE: usize = 10_000;
+const CERTAIN: f64 = 100.0;
 /// Bins that a Weibull distribution of mass is divided into.
 const BINS: usize = 2000;
 
@@ -250,8 +253,8 @@ impl SizeDistribution {
             if sum > total {
                 break;
             }
-            if out.len() >= MOST {
-                let number = total / sum * MOST as f64;
+            let number = total / sum * out.len() as f64;
+            if out.len() >= MOST || out.len() == SAMPLE && number > CERTAIN * MOST as f64 {
                 return Err(PlacingError::TooMany { what: "bodies", number, most: MOST as f64 });
             }
             out.push(size);

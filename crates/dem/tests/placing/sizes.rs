@@ -189,6 +189,23 @@ fn until_a_volume_is_reached() {
     assert!(matches!(law.until(1.0, |_| 0.0, 1), Err(PlacingError::Parameter { .. })));
 }
 
+/// Far too many are told about without drawing them (before: 10⁸ sizes, 800 MB).
+#[test]
+fn far_too_many_are_told_at_once() {
+    let law = SizeDistribution::constant(1e-3).unwrap();
+    let drawn = std::cell::Cell::new(0);
+    let count = |d: f64| {
+        drawn.set(drawn.get() + 1);
+        d.powi(3)
+    };
+    let error = law.until(1e9, count, 1).unwrap_err();
+    assert!(
+        matches!(error, PlacingError::TooMany { number, .. } if (number / 1e18 - 1.0).abs() < 1e-3),
+        "{error}"
+    );
+    assert!(drawn.get() < 20_000, "{}", drawn.get());
+}
+
 /// Written down once: other machines, and other versions of the crates below, must draw the same bits.
 #[test]
 fn the_same_bits_everywhere() {

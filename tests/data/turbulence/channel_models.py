@@ -3,12 +3,14 @@
 Half a channel in wall units, tau = 1 - y/Re_tau = (1 + nu_t) du/dy, k and omega by finite volumes on n cells that grow geometrically from
 y+ 0.05, omega = 6/(beta y^2) below y+ 0.3. With 750 and 3000 cells the bulk velocity is the same to 2e-5.
 
-    python3 channel_models.py > channel_models_590.csv        (numpy, scipy)
+    python3 channel_models.py [Re_tau] > channel_models_590.csv        (numpy, scipy)
 """
+import sys
+
 import numpy as np
 from scipy.linalg import solve_banded
 
-RE_TAU, CELLS, FIRST = 587.19, 3000, 0.05
+CELLS, FIRST = 3000, 0.05
 A_1, BETA_STAR, RELAX = 0.31, 0.09, 0.999
 WILCOX = dict(k=0.5, omega=0.5, beta=0.075, gamma=5 / 9)
 NEAR, FAR = dict(WILCOX, k=0.85), dict(k=1.0, omega=0.856, beta=0.0828, gamma=0.44)
@@ -70,8 +72,9 @@ def solve(re, sst, n):
 
 
 if __name__ == "__main__":
-    (y, sst, h), (_, wilcox, _) = (solve(RE_TAU, sst, CELLS) for sst in (True, False))
-    bulk = [(np.sum(u * h) + 0.5 * FIRST**2) / RE_TAU for u in (sst, wilcox)]
-    print(f"# y+, u+ of k-omega SST, u+ of k-omega 1988; channel at Re_tau {RE_TAU}, bulk u+ {bulk[0]:.4f} and {bulk[1]:.4f}; channel_models.py")
-    for at in np.append(np.geomspace(0.3, 580, 60), RE_TAU * 0.999):
+    re_tau = float(sys.argv[1]) if len(sys.argv) > 1 else 587.19
+    (y, sst, h), (_, wilcox, _) = (solve(re_tau, sst, CELLS) for sst in (True, False))
+    bulk = [(np.sum(u * h) + 0.5 * FIRST**2) / re_tau for u in (sst, wilcox)]
+    print(f"# y+, u+ of k-omega SST, u+ of k-omega 1988; channel at Re_tau {re_tau}, bulk u+ {bulk[0]:.4f} and {bulk[1]:.4f}; channel_models.py")
+    for at in np.append(np.geomspace(0.3, 0.988 * re_tau, 60), re_tau * 0.999):
         print(f"{at:.5g},{np.interp(at, y, sst):.5f},{np.interp(at, y, wilcox):.5f}")

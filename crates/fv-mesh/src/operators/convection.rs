@@ -86,6 +86,16 @@ fn steepness(b: f64, g: f64, [far, u, d]: [f64; 3]) -> f64 {
     if (ahead * behind > 0.0) & (more > 0.0) { slope } else { 0.0 }
 }
 
+/// What is carried, by what and how.
+#[derive(Clone, Copy)]
+pub(crate) struct Carried<'a, const D: usize> {
+    pub(crate) carrier: &'a Carrier<D>,
+    pub(crate) grid: &'a CartesianGrid<D>,
+    pub(crate) metrics: &'a Metrics<D>,
+    pub(crate) velocity: &'a [Field<D>; D],
+    pub(crate) phi: &'a [f64],
+}
+
 /// A row of cells, their neighbours and the speeds through their faces.
 pub(crate) struct CarriedRow<'a, const D: usize> {
     pub(crate) here: &'a [f64],
@@ -101,22 +111,15 @@ pub(crate) struct CarriedRow<'a, const D: usize> {
     across: [[Interface; 2]; D],
 }
 
-impl<'a, const D: usize> CarriedRow<'a, D> {
+impl<'a, const D: usize> Carried<'a, D> {
     /// The row of `n` cells from storage index `o`, which is at `at`.
     #[inline(always)]
-    pub(crate) fn new(
-        carrier: &'a Carrier<D>,
-        grid: &CartesianGrid<D>,
-        metrics: &'a Metrics<D>,
-        at: [usize; D],
-        [o, n]: [usize; 2],
-        velocity: &'a [Field<D>; D],
-        phi: &'a [f64],
-    ) -> Self {
+    pub(crate) fn row(self, at: [usize; D], [o, n]: [usize; 2]) -> CarriedRow<'a, D> {
+        let Self { carrier, grid, metrics, velocity, phi } = self;
         let s = grid.stride();
         let axes = &metrics.axes;
         let weights = &carrier.weights;
-        Self {
+        CarriedRow {
             here: &phi[o..][..n],
             above: std::array::from_fn(|b| &phi[o + s[b]..][..n]),
             below: std::array::from_fn(|b| &phi[o - s[b]..][..n]),
@@ -132,7 +135,9 @@ impl<'a, const D: usize> CarriedRow<'a, D> {
             }),
         }
     }
+}
 
+impl<const D: usize> CarriedRow<'_, D> {
     /// −∇·(uφ) of cell `i`.
     #[inline(always)]
     pub(crate) fn convection<const KIND: u8>(&self, i: usize) -> f64 {
@@ -174,19 +179,12 @@ impl<'a, const D: usize> CarriedRow<'a, D> {
 }
 
 /// −∇·(uφ).
-pub(crate) struct Convect<'a, const KIND: u8, const D: usize> {
-    pub(crate) carrier: &'a Carrier<D>,
-    pub(crate) grid: &'a CartesianGrid<D>,
-    pub(crate) metrics: &'a Metrics<D>,
-    pub(crate) velocity: &'a [Field<D>; D],
-    pub(crate) phi: &'a [f64],
-}
+pub(crate) struct Convect<'a, const KIND: u8, const D: usize>(pub(crate) Carried<'a, D>);
 
 impl<const KIND: u8, const D: usize> RowKernel<D> for Convect<'_, KIND, D> {
     #[inline(always)]
     fn row(&self, at: [usize; D], o: usize, out: &mut [f64]) {
-        let range = [o, out.len()];
-        let row = CarriedRow::new(self.carrier, self.grid, self.metrics, at, range, self.velocity, self.phi);
+        let row = self.0.row(at, [o, out.len()]);
         for (i, out) in out.iter_mut().enumerate() {
             *out = row.convection::<KIND>(i);
         }
@@ -194,19 +192,12 @@ impl<const KIND: u8, const D: usize> RowKernel<D> for Convect<'_, KIND, D> {
 }
 
 /// How fast what limited convection lets out of a cell beyond upwind values grows with what is in it, where it does \[1/s\].
-pub(crate) struct Steepness<'a, const D: usize> {
-    pub(crate) carrier: &'a Carrier<D>,
-    pub(crate) grid: &'a CartesianGrid<D>,
-    pub(crate) metrics: &'a Metrics<D>,
-    pub(crate) velocity: &'a [Field<D>; D],
-    pub(crate) phi: &'a [f64],
-}
+pub(crate) struct Steepness<'a, const D: usize>(pub(crate) Carried<'a, D>);
 
 impl<const D: usize> RowKernel<D> for Steepness<'_, D> {
     #[inline(always)]
     fn row(&self, at: [usize; D], o: usize, out: &mut [f64]) {
-        let range = [o, out.len()];
-        let row = CarriedRow::new(self.carrier, self.grid, self.metrics, at, range, self.velocity, self.phi);
+        let row = self.0.row(at, [o, out.len()]);
         for (i, out) in out.iter_mut().enumerate() {
             *out = row.steepness(i);
         }

@@ -45,7 +45,7 @@ mod strain;
 pub(crate) mod tests;
 mod weighted;
 
-pub(crate) use convection::{CENTRAL, CarriedRow, Carrier, with_kind};
+pub(crate) use convection::{CENTRAL, Carried, Carrier, with_kind};
 pub(crate) use rows::{RowKernel, fill_dense};
 pub(crate) use strain::StrainRate;
 
@@ -210,11 +210,9 @@ impl<const D: usize> Operators<D> {
     ) -> Result<(), FlowError> {
         self.check(&velocity.components.each_ref())?;
         self.check(&[phi, out])?;
-        let (grid, metrics, carrier) = (&self.grid, &self.metrics, self.carrier(scheme));
-        let (velocity, phi) = (&velocity.components, phi.data());
-        with_kind!(carrier, KIND => {
-            let kernel = Convect::<KIND, D> { carrier, grid, metrics, velocity, phi };
-            fill_rows(grid, grid.cells(), &self.spans, &kernel, out);
+        let carried = self.carried(velocity, phi, scheme);
+        with_kind!(carried.carrier, KIND => {
+            fill_rows(&self.grid, self.grid.cells(), &self.spans, &Convect::<KIND, D>(carried), out);
         });
         Ok(())
     }
@@ -222,13 +220,19 @@ impl<const D: usize> Operators<D> {
     /// How fast what [`Convection::Limited`] takes out of every cell beyond what [`Convection::Upwind`] does grows with φ there, where it
     /// does \[1/s\].
     pub(crate) fn steepness(&self, velocity: &Velocity<D>, phi: &Field<D>, out: &mut [f64]) {
-        let (grid, metrics, carrier) = (&self.grid, &self.metrics, self.carrier(Convection::Limited));
-        let kernel = Steepness { carrier, grid, metrics, velocity: &velocity.components, phi: phi.data() };
-        fill_dense(grid, &self.spans, &kernel, out);
+        let carried = self.carried(velocity, phi, Convection::Limited);
+        fill_dense(&self.grid, &self.spans, &Steepness(carried), out);
     }
 
-    fn carrier(&self, scheme: Convection) -> &Carrier<D> {
-        &self.carriers[Convection::ALL.iter().position(|&s| s == scheme).unwrap_or(0)]
+    fn carried<'a>(
+        &'a self,
+        velocity: &'a Velocity<D>,
+        phi: &'a Field<D>,
+        scheme: Convection,
+    ) -> Carried<'a, D> {
+        let carrier = &self.carriers[Convection::ALL.iter().position(|&s| s == scheme).unwrap_or(0)];
+        let (velocity, phi) = (&velocity.components, phi.data());
+        Carried { carrier, grid: &self.grid, metrics: &self.metrics, velocity, phi }
     }
 
     /// ∂u_a/∂x_b at the centres: over the cell for a = b, else the centred difference of the mean of both faces.

@@ -3,7 +3,7 @@ use crate::field::row_start;
 use crate::grid::GHOSTS;
 use crate::kernels::{for_layers, row_place};
 use crate::metrics::Metrics;
-use crate::operators::{CarriedRow, Carrier, with_kind};
+use crate::operators::{Carried, Carrier, with_kind};
 use crate::{CartesianGrid, Field};
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
@@ -87,7 +87,7 @@ fn advance_row<const KIND: u8, const D: usize>(
     let Input { grid, metrics, carrier, velocity, phi, .. } = input;
     let n = next.len();
     let tendency = &mut tendency[..n];
-    let row = CarriedRow::new(carrier, grid, metrics, at, [o, n], velocity, phi);
+    let row = Carried { carrier, grid, metrics, velocity, phi }.row(at, [o, n]);
     let source = input.source.map_or(&input.zeros[..n], |s| &s[o..][..n]);
     let axes = &metrics.axes;
     let (up, down) = (&axes[0].centres.up[GHOSTS..][..n], &axes[0].centres.down[GHOSTS..][..n]);

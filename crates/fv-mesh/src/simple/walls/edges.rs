@@ -240,7 +240,7 @@ impl<const D: usize> Link<D> {
         if self.step[b] > 0.0 { own - other } else { other - own }
     }
 
-    /// The velocity that is carried through the edge of axis `b`. By schemes whose upwind part is linear it acts along the stream only.
+    /// The velocity that is carried through the edge of axis `b`. The upwind part of linear schemes is that along the `streams`, if there are any.
     pub(super) fn value(
         &self,
         scheme: Convection,
@@ -248,7 +248,7 @@ impl<const D: usize> Link<D> {
         out: f64,
         u: [f64; 2],
         g: [&[f64; D]; 2],
-        streams: [&Stream<D>; 2],
+        streams: Option<[&Stream<D>; 2]>,
     ) -> f64 {
         let upwind = usize::from(out < 0.0);
         // From the line through the nodes to the middle of the edge.
@@ -260,7 +260,8 @@ impl<const D: usize> Link<D> {
             Convection::Central => mean(),
             // Not QUICK's parabola: beside a law's logarithm it keeps layers on walls that they should leave.
             Convection::LinearUpwind | Convection::Quick => {
-                let across = across_stream(b, self.jump(b, u, g), self.step[b].abs(), streams);
+                let across =
+                    streams.map_or(0.0, |s| across_stream(b, self.jump(b, u, g), self.step[b].abs(), s));
                 let from_below = (upwind == 0) == (self.step[b] > 0.0);
                 self.ends(u, g)[upwind] - if from_below { 0.5 * across } else { -0.5 * across }
             }
@@ -323,8 +324,7 @@ mod tests {
         let (gradient, aside) = ([0.7, -0.4], 0.2);
         let schemes = Convection::ALL.into_iter().filter(|scheme| *scheme != Convection::Upwind);
         for (scheme, out) in schemes.flat_map(|scheme| [(scheme, 1.0), (scheme, -1.0)]) {
-            let rest = Stream::new([0.0; 2], 1.0);
-            let value = link(aside).value(scheme, 0, out, [2.0, 2.7], [&gradient; 2], [&rest; 2]);
+            let value = link(aside).value(scheme, 0, out, [2.0, 2.7], [&gradient; 2], None);
             assert!((value - (2.0 + 0.35 - 0.08)).abs() < 1e-14, "{scheme:?} {out}: {value}");
         }
     }
@@ -334,8 +334,7 @@ mod tests {
     fn the_limited_scheme_makes_nothing_new() {
         let value = |before: f64, here: f64, there: f64| {
             let [own, far] = [[0.5 * (there - before), 0.0], [0.0; 2]];
-            let rest = Stream::new([0.0; 2], 1.0);
-            link(0.0).value(Convection::Limited, 0, 1.0, [here, there], [&own, &far], [&rest; 2])
+            link(0.0).value(Convection::Limited, 0, 1.0, [here, there], [&own, &far], None)
         };
         // At the foot and at the head of a step, and at a maximum.
         assert_eq!(value(0.0, 0.0, 1.0), 0.0);

@@ -50,6 +50,8 @@ pub(crate) struct SimpleWalls<const D: usize> {
     rates: Vec<f64>,
     /// At the nodes of one component that have a gradient.
     streams: Vec<Stream<D>>,
+    /// How much of what changes across the stream every piece of wall has spared; nothing if none has.
+    spared: Vec<f64>,
     n_bodies: usize,
     /// Of cells with fluid and their neighbours.
     pub(super) spans: Spans,
@@ -133,6 +135,7 @@ impl<const D: usize> SimpleWalls<D> {
             sums: vec![0.0; longest],
             rates: vec![0.0; longest],
             streams: Vec::new(),
+            spared: Vec::new(),
             rows,
             gradients,
             stresses,
@@ -150,6 +153,7 @@ impl<const D: usize> SimpleWalls<D> {
         for (c, (gradients, u)) in self.gradients.iter_mut().zip(velocity).enumerate() {
             gradients.update(u, |piece| self.stresses.at_wall(piece, c, viscosity));
         }
+        self.stresses.spare(viscosity, &mut self.spared);
     }
 
     /// Puts the rows beside walls into the equation of component `c`. `terms` gets the sizes of the terms of rows that are
@@ -164,17 +168,15 @@ impl<const D: usize> SimpleWalls<D> {
     ) {
         let rows = &self.rows[c];
         let u = it.velocity[c].data();
-        self.streams.clear();
-        self.streams.resize(self.gradients[c].values.len(), Stream::new([0.0; D], 0.0));
-        if matches!(it.scheme, Convection::LinearUpwind | Convection::Quick) {
-            // Where cells resolve what changes across it; with a logarithmic layer less of it costs more than it saves (docs/results.md).
-            let viscous = it.viscosity > 0.0;
-            let spared =
-                |p: usize| if viscous { 1.0 - self.stresses.logarithmic(p, it.viscosity) } else { 0.0 };
+        let upwind = matches!(it.scheme, Convection::LinearUpwind | Convection::Quick);
+        let streams = (upwind && !self.spared.is_empty()).then(|| {
+            self.streams.clear();
+            self.streams.resize(self.gradients[c].values.len(), Stream::new([0.0; D], 0.0));
             for row in rows {
-                row.see_stream(c, it.velocity, &self.gradients[c], spared, &mut self.streams);
+                row.see_stream(c, it.velocity, &self.gradients[c], &self.spared, &mut self.streams);
             }
-        }
+            self.streams.as_slice()
+        });
         let flow = Flow {
             grid: it.grid,
             metrics: it.metrics,
@@ -184,7 +186,7 @@ impl<const D: usize> SimpleWalls<D> {
             viscosity: it.viscosity,
             equations,
             gradients: &self.gradients,
-            streams: &self.streams,
+            streams,
         };
         for ((sum, rate), row) in self.sums.iter_mut().zip(&mut self.rates).zip(rows) {
             [*sum, *rate] = row.write(c, &flow, it.viscous_share, matrix);

@@ -13,8 +13,6 @@ use crate::{CartesianGrid, Convection, Field};
 const REACH: usize = 3;
 /// Nodes with a smaller open share are damped across the stream as along it.
 const WIDE: f64 = 0.25;
-/// A smaller share of what is [across the stream](crate::across_stream::across_stream) is damped as the rest.
-const LEAST_SPARED: f64 = 1e-3;
 
 /// One control volume: the halves of two cells, or all of one whose other face is shut.
 pub(super) struct Row<const D: usize> {
@@ -40,8 +38,8 @@ pub(super) struct Flow<'a, const D: usize> {
     pub(super) viscosity: f64,
     pub(super) equations: &'a MomentumEquations<D>,
     pub(super) gradients: &'a [Gradients<D>; D],
-    /// Of the component's nodes that have a gradient.
-    pub(super) streams: &'a [Stream<D>],
+    /// Of the component's nodes that have a gradient, if they are looked at.
+    pub(super) streams: Option<&'a [Stream<D>]>,
 }
 
 /// Does an edge of component `c`, below node `number` along `b`, touch nothing but open faces and cells in the fluid?
@@ -138,19 +136,18 @@ impl<const D: usize> Row<D> {
         Some(Self { cell, index, inv_volume, edges, slot, piece })
     }
 
-    /// Looks at the stream at the node; `spared`: how much of what changes across it a piece of wall has spared.
+    /// Looks at the stream at the node; `spared`: how much of what changes across it every piece of wall has spared.
     pub(super) fn see_stream(
         &self,
         c: usize,
         velocity: &[Field<D>; D],
         gradients: &Gradients<D>,
-        spared: impl Fn(usize) -> f64,
+        spared: &[f64],
         streams: &mut [Stream<D>],
     ) {
-        let spared = self.piece.map_or(0.0, spared);
-        if spared < LEAST_SPARED {
+        let Some(spared) = self.piece.map(|piece| spared[piece]).filter(|spared| *spared > 0.0) else {
             return;
-        }
+        };
         let u = velocity[c].data();
         let here = u[self.index];
         let gradient = &gradients.values[self.slot as usize];
@@ -226,7 +223,7 @@ impl<const D: usize> Row<D> {
                 Kind::Cut(link) => {
                     let far = &flow.gradients[c].values[link.other as usize];
                     let (u, g) = ([here, there], [gradient, far]);
-                    let streams = [self.slot, link.other].map(|slot| &flow.streams[slot as usize]);
+                    let streams = flow.streams.map(|s| [self.slot, link.other].map(|slot| &s[slot as usize]));
                     let value = link.value(flow.scheme, b, out, u, g, streams);
                     let slope = link.slope(b, u, g);
                     let mut stress = total * slope;

@@ -33,6 +33,9 @@ const NEAREST: f64 = 0.05;
 /// beside it.
 pub(super) const SLIVER: f64 = 0.25;
 
+/// A smaller share of what is [across the stream](crate::across_stream::across_stream) is damped as the rest.
+const LEAST_SPARED: f64 = 1e-3;
+
 impl WallStress {
     /// The usual law of the wall and weight, seen from half a cell.
     pub const LAW_OF_THE_WALL: Self =
@@ -249,6 +252,19 @@ impl<const D: usize> Stresses<D> {
     /// Is the layer beside a piece of wall logarithmic? From 0 in the viscous sublayer to 1.
     pub(super) fn logarithmic(&self, piece: usize, nu: f64) -> f64 {
         LawOfTheWall::logarithmic(self.speed(piece) * self.probes[piece].half / nu)
+    }
+
+    /// How much of what changes across the stream beside every piece of wall upwind parts spare; nothing if it is none. That is where cells resolve
+    /// it: beside a logarithmic layer less damping costs more than it saves (docs/results.md, "First cells of any height").
+    pub(super) fn spare(&self, nu: f64, out: &mut Vec<f64>) {
+        out.clear();
+        if nu > 0.0 {
+            let share = |piece| 1.0 - self.logarithmic(piece, nu);
+            out.extend((0..self.probes.len()).map(share).map(|s| if s < LEAST_SPARED { 0.0 } else { s }));
+        }
+        if out.iter().all(|share| *share == 0.0) {
+            out.clear();
+        }
     }
 
     /// What a wall tells gradients of component `c`: where cells are much larger than the viscous sublayer the nodes around say more of

@@ -284,8 +284,8 @@ fn friction_of_developed_ducts_does_not_depend_on_where_their_walls_are() {
     run(Wilcox::openfoam(), include_str!("../data/turbulence/channel_kOmega_c.csv"));
 }
 
-/// Walls across the grid have friction in the buffer layer, too, where the upwind part of what carries momentum acts along the stream only. (With upwind parts
-/// along the axes it was 11 and 26 % too low.)
+/// Walls across the grid have friction in the buffer layer, too, where the upwind part of what carries momentum and k acts along the stream only. (With upwind parts
+/// along the axes it was 11 and 26 % too low, with that of k alone along them 17 % at 45°.)
 #[test]
 fn friction_of_walls_across_the_grid_in_the_buffer_layer() {
     let viscosity = 1e-4;
@@ -299,7 +299,7 @@ fn friction_of_walls_across_the_grid_in_the_buffer_layer() {
     )
     .unwrap();
     let given = 2.0 * fine.u_tau * fine.u_tau;
-    for (angle, cells, most) in [(15.0, 20, 0.05), (45.0, 20, 0.2)] {
+    for (angle, cells, most) in [(15.0, 20, 0.05), (45.0, 20, 0.15)] {
         let duct = DevelopedDuct::new(Sst::default(), angle, cells, 0.3, viscosity, given).unwrap();
         let off = duct.force / given - 1.0;
         assert!(off.abs() < most && duct.residual < 1e-5, "{angle} {cells}: {off} {}", duct.residual);

@@ -1,5 +1,16 @@
 //! What upwind convection changes across a stream.
 use crate::least_squares::{dot, norm2};
+use interfaces::LawOfTheWall;
+
+/// A smaller share of what is across the stream is damped as the rest.
+const LEAST: f64 = 1e-3;
+
+/// How much of what changes across the stream upwind parts spare, from 0 to 1, where half a cell has this y+: where cells resolve the layer on a wall. Beside a
+/// logarithmic layer less damping costs more than it saves (docs/results.md, "First cells of any height").
+pub(crate) fn spared(y_plus: f64) -> f64 {
+    let share = 1.0 - LawOfTheWall::logarithmic(y_plus);
+    if share < LEAST { 0.0 } else { share }
+}
 
 /// What a node sees of the stream and of what it carries.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +44,7 @@ impl<const D: usize> Stream<D> {
 ///
 /// Upwind values of second order are the mean of both sides' and ±½ J, J the difference of what both say, ∝ h³ ∂³φ/∂x³ along its axis: what damps
 /// waves. It should act along the stream only (as streamline diffusion does: Brooks & Hughes 1982, *Comput. Methods Appl. Mech. Eng.* 32, 199–259): of a layer
-/// along a wall that lies across the grid it carries momentum away from the wall as if it were friction. Where φ = f(s·x) + g(n·x), s along the stream and n across it,
+/// along a wall that lies across the grid it carries momentum, or k, away from the wall as if it were friction. Where φ = f(s·x) + g(n·x), s along the stream and n across it,
 ///
 /// ```text
 /// J_a/h_a³ = f‴ s_a³ + g‴ n_a³,     f‴ = Σ_a s_a³ J_a/h_a³ / Σ_a s_a⁶

@@ -298,6 +298,7 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
         dt: Option<f64>,
     ) -> Result<(), FlowError> {
         self.list_rows(velocity, immersed, viscosity);
+        self.transport.see_layers(self.closure.kinetic_energy(), viscosity);
         let mut cells = self.transport.on(velocity)?;
         let corrected = self.closure.correct(&mut cells, &self.rows, viscosity, dt);
         corrected.map_err(|source| FlowError::Closure { time, source })

@@ -91,6 +91,13 @@ impl<const D: usize> CellTransport<D> {
         (0..to.n_cells()).map(|cell| value(to.centre(to.cell(cell)))).collect()
     }
 
+    /// Looks at k of all cells, where a model has it, and at how well cells resolve layers.
+    pub(crate) fn see_layers(&mut self, k: Option<&[f64]>, viscosity: f64) {
+        if let (Some(near), Some(k), false) = (&mut self.near, k, self.forced) {
+            near.see_layers(k, viscosity);
+        }
+    }
+
     pub(crate) fn has_walls(&self) -> bool {
         !self.dry.is_empty()
     }

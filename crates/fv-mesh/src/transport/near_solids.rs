@@ -1,10 +1,11 @@
 //! Convection near cells without fluid.
 use super::log_slopes::LogSlopes;
 use super::neighbours::{around, neighbour};
+use crate::across_stream::{Stream, across_stream, spared};
 use crate::least_squares::{gradient_weights, norm2};
 use crate::operators::Operators;
 use crate::{CartesianGrid, Velocity};
-use interfaces::LogSlope;
+use interfaces::{LawOfTheWall, LogSlope};
 
 /// Faces of cells that are at most as many steps from one without fluid are near it.
 const LAYERS: u8 = 8;
@@ -29,6 +30,9 @@ pub(super) struct NearSolids<const D: usize> {
     terms: Vec<(usize, [f64; D])>,
     carried: Vec<Linear<D>>,
     distances: Option<Distances<D>>,
+    /// Of every cell in the list, how much of what changes across the stream is not to be damped; none if it is nothing anywhere.
+    spared: Vec<f64>,
+    streams: Vec<Stream<D>>,
 }
 
 /// A value in a cell, and its gradient.
@@ -51,6 +55,27 @@ struct Face {
     index: usize,
     area: f64,
     sides: [Option<(usize, f64)>; 2],
+}
+
+/// What the cells on both sides of a face say of the value on it differs.
+struct Jump {
+    /// Their places in the list.
+    ends: [usize; 2],
+    /// J of [`across_stream`].
+    jump: f64,
+    /// Between their centres \[m\].
+    h: f64,
+}
+
+impl Face {
+    /// None where there is fluid on one side only.
+    fn jump<const D: usize>(&self, values: &[Linear<D>]) -> Option<Jump> {
+        let [Some((low, below)), Some((high, above))] = self.sides else { return None };
+        let [(u, s), (v, t)] = [low, high].map(|place| (values[place].0, values[place].1[self.axis]));
+        // Of what is on the line between both they say the same.
+        let jump = (1.0 - KAPPA) * (u - v + s * below + t * above);
+        Some(Jump { ends: [low, high], jump, h: below + above })
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -94,6 +119,8 @@ impl<const D: usize> NearSolids<D> {
             terms: Vec::new(),
             carried: Vec::new(),
             distances: None,
+            spared: Vec::new(),
+            streams: Vec::new(),
         };
         let mut places = vec![usize::MAX; dry.len()];
         for upper in 0..dry.len() {
@@ -188,6 +215,39 @@ impl<const D: usize> NearSolids<D> {
         Some(Distances { dense, near, log_slopes })
     }
 
+    /// Looks at k \[m²/s²\] of all cells in a fluid of viscosity `nu`: where half a cell is no higher than the buffer layer, what changes across the stream is not
+    /// to be damped.
+    pub(super) fn see_layers(&mut self, k: &[f64], nu: f64) {
+        self.spared.clear();
+        let of = |near: &Near<D>| {
+            let half = 0.5 * near.width.iter().sum::<f64>() / D as f64;
+            spared(LawOfTheWall::friction_velocity(k[near.cell]) * half / nu)
+        };
+        self.spared.extend(self.cells.iter().map(of));
+        if self.spared.iter().all(|share| *share == 0.0) {
+            self.spared.clear();
+        }
+    }
+
+    /// The streams in the cells, and what `carried` jumps by through them.
+    fn see_streams(&mut self, velocity: &Velocity<D>, carried: &[Linear<D>]) {
+        let grid = velocity.components[0].grid();
+        let strides = grid.stride();
+        self.streams.clear();
+        self.streams.extend(self.cells.iter().zip(&self.spared).map(|(near, &spared)| {
+            let o = grid.place(grid.cell(near.cell));
+            let mean = |a: usize| {
+                let u = velocity.components[a].data();
+                0.5 * (u[o] + u[o + strides[a]])
+            };
+            Stream::new(std::array::from_fn(mean), spared)
+        }));
+        for face in &self.faces {
+            let Some(Jump { ends, jump, h }) = face.jump(carried) else { continue };
+            ends.into_iter().for_each(|place| self.streams[place].add(face.axis, jump, h, 1.0));
+        }
+    }
+
     /// Adds to `out` what the faces bring to the cells \[m³/s φ\], less what upwind differences between cells with fluid bring.
     /// With `distance` φ goes like 1/y, y the distance of every cell from the nearest wall.
     pub(super) fn add(
@@ -201,11 +261,15 @@ impl<const D: usize> NearSolids<D> {
             self.distances = self.measure(velocity.components[0].grid(), distance);
         }
         let mut carried = std::mem::take(&mut self.carried);
-        let distances = self.distances.as_ref().filter(|_| distance.is_some());
-        match distances {
+        let spares = distance.is_none() && !self.spared.is_empty();
+        match self.distances.as_ref().filter(|_| distance.is_some()) {
             Some(y) => self.look(|c| y.dense[c] * phi[c], &mut carried),
             None => self.look(|c| phi[c], &mut carried),
         }
+        if spares {
+            self.see_streams(velocity, &carried);
+        }
+        let distances = self.distances.as_ref().filter(|_| distance.is_some());
         for face in &self.faces {
             let flux = face.area * velocity.components[face.axis].data()[face.index];
             let ends = if flux >= 0.0 { [0, 1] } else { [1, 0] };
@@ -225,7 +289,11 @@ impl<const D: usize> NearSolids<D> {
                     [*value, more]
                 })
             };
-            let [g, more] = on_face(&carried);
+            let [g, mut more] = on_face(&carried);
+            if let Some(Jump { ends, jump, h }) = face.jump(&carried).filter(|_| spares) {
+                let across = across_stream(face.axis, jump, h, ends.map(|place| &self.streams[place]));
+                more -= if from == 0 { 0.5 * across } else { -0.5 * across };
+            }
             // Nothing flows out that is not there.
             let g = g + more.clamp(-g.abs(), g.abs());
             let y = distances.map(|y| (&y.near, on_face(&y.near).iter().sum::<f64>()));

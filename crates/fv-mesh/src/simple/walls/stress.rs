@@ -2,6 +2,7 @@
 use super::gradients::{AtWall, height, to_wall};
 use super::openings::Openings;
 use super::rows::Row;
+use crate::across_stream::spared;
 use crate::linear::StencilMatrix;
 use crate::{Field, FlowError};
 use interfaces::{LawOfTheWall, Vector, WallPiece};
@@ -32,9 +33,6 @@ const NEAREST: f64 = 0.05;
 /// Nodes nearer than this share of a cell tell nothing of a logarithmic layer: what is left of a cell that is nearly shut moves with the fluid
 /// beside it.
 pub(super) const SLIVER: f64 = 0.25;
-
-/// A smaller share of what is [across the stream](crate::across_stream::across_stream) is damped as the rest.
-const LEAST_SPARED: f64 = 1e-3;
 
 impl WallStress {
     /// The usual law of the wall and weight, seen from half a cell.
@@ -251,16 +249,19 @@ impl<const D: usize> Stresses<D> {
 
     /// Is the layer beside a piece of wall logarithmic? From 0 in the viscous sublayer to 1.
     pub(super) fn logarithmic(&self, piece: usize, nu: f64) -> f64 {
-        LawOfTheWall::logarithmic(self.speed(piece) * self.probes[piece].half / nu)
+        LawOfTheWall::logarithmic(self.y_plus(piece, nu))
     }
 
-    /// How much of what changes across the stream beside every piece of wall upwind parts spare; nothing if it is none. That is where cells resolve
-    /// it: beside a logarithmic layer less damping costs more than it saves (docs/results.md, "First cells of any height").
+    /// y+ of half a cell.
+    fn y_plus(&self, piece: usize, nu: f64) -> f64 {
+        self.speed(piece) * self.probes[piece].half / nu
+    }
+
+    /// How much of what changes across the stream upwind parts spare beside every piece of wall; nothing if it is none.
     pub(super) fn spare(&self, nu: f64, out: &mut Vec<f64>) {
         out.clear();
         if nu > 0.0 {
-            let share = |piece| 1.0 - self.logarithmic(piece, nu);
-            out.extend((0..self.probes.len()).map(share).map(|s| if s < LEAST_SPARED { 0.0 } else { s }));
+            out.extend((0..self.probes.len()).map(|piece| spared(self.y_plus(piece, nu))));
         }
         if out.iter().all(|share| *share == 0.0) {
             out.clear();
@@ -274,8 +275,7 @@ impl<const D: usize> Stresses<D> {
         let share = match self.law {
             WallStress::Law { .. } => {
                 // A half where half a cell is as high as a layer that begins to be logarithmic.
-                let y_plus = self.speed(piece) * probe.half / nu;
-                1.0 / (1.0 + (y_plus / LawOfTheWall::LOGARITHMIC).powi(2))
+                1.0 / (1.0 + (self.y_plus(piece, nu) / LawOfTheWall::LOGARITHMIC).powi(2))
             }
             _ => 1.0,
         };

@@ -13,11 +13,13 @@ const VISCOUS: f64 = 1e-4;
 pub(crate) fn turned_ducts() -> Outcome<()> {
     println!("\nDeveloped flow in ducts turned against the grid, Re 1e6, against simpleFoam's mesh c");
     println!(
-        "{:>8} {:>6} {:>6} {:>9} {:>7} {:>7} {:>7} {:>13} {:>5} {:>8} {:>6}",
+        "{:>8} {:>6} {:>6} {:>9} {:>9} {:>9} {:>7} {:>7} {:>7} {:>13} {:>5} {:>8} {:>6}",
         "model",
         "angle",
         "cells",
         "f off",
+        "rising",
+        "receding",
         "u off",
         "k off",
         "nu_t",
@@ -36,8 +38,8 @@ pub(crate) fn turned_ducts() -> Outcome<()> {
     }
     println!("\nThe same at Re 1e4: friction against that of cells which resolve the layer");
     println!(
-        "{:>8} {:>6} {:>6} {:>9} {:>7} {:>5} {:>8}",
-        "model", "angle", "cells", "f off", "mean y+", "its", "residual"
+        "{:>8} {:>6} {:>6} {:>9} {:>9} {:>9} {:>7} {:>5} {:>8}",
+        "model", "angle", "cells", "f off", "rising", "receding", "mean y+", "its", "residual"
     );
     let fine = developed_channel(
         Sst::default(),
@@ -50,12 +52,14 @@ pub(crate) fn turned_ducts() -> Outcome<()> {
     let given = 2.0 * fine.u_tau * fine.u_tau;
     for angle in [0.0, 15.0, 45.0] {
         for cells in [10, 20, 40] {
-            let DevelopedDuct { flow, model, force, residual, .. } =
+            let DevelopedDuct { flow, model, force, frictions, residual, .. } =
                 DevelopedDuct::new(Sst::default(), angle, cells, 0.3, VISCOUS, given)?;
             println!(
-                "{:>8} {angle:>6} {cells:>6} {:>7.2} % {:>7.1} {:>5} {residual:>8.0e}",
+                "{:>8} {angle:>6} {cells:>6} {:>7.2} % {:>7.1} % {:>7.1} % {:>7.1} {:>5} {residual:>8.0e}",
                 "SST",
                 100.0 * (force / given - 1.0),
+                100.0 * (2.0 * frictions[0] / given - 1.0),
+                100.0 * (2.0 * frictions[1] / given - 1.0),
                 model.closure.y_plus().mean,
                 flow.iterations()
             );
@@ -85,7 +89,7 @@ fn of_model<L: Law>(name: &str, law: L, text: &str, angle: f64, cells: usize) ->
     let u_tau = reference[0][1] * VISCOSITY / reference[0][0];
     let given = 2.0 * u_tau * u_tau;
     let watch = Stopwatch::start();
-    let DevelopedDuct { ducts, flow, model, force, residual } =
+    let DevelopedDuct { ducts, flow, model, force, frictions, residual } =
         DevelopedDuct::new(law, angle, cells, 0.3, VISCOSITY, given)?;
     let ([along, up], grid) = (ducts.along(), flow.grid());
     let centre = |i: usize| grid.centre(grid.cell(i));
@@ -111,8 +115,10 @@ fn of_model<L: Law>(name: &str, law: L, text: &str, angle: f64, cells: usize) ->
         nu_t.add(model.closure.nu_t()[i] / VISCOSITY, at(y, 5));
     }
     println!(
-        "{name:>8} {angle:>6} {cells:>6} {:>7.2} % {:>5.2} % {:>5.1} % {:>5.1} % {:>11.2} % {:>5} {:>8.0e} {:>6.1}",
+        "{name:>8} {angle:>6} {cells:>6} {:>7.2} % {:>7.1} % {:>7.1} % {:>5.2} % {:>5.1} % {:>5.1} % {:>11.2} % {:>5} {:>8.0e} {:>6.1}",
         100.0 * (force / given - 1.0),
+        100.0 * (2.0 * frictions[0] / given - 1.0),
+        100.0 * (2.0 * frictions[1] / given - 1.0),
         100.0 * u.relative(),
         100.0 * k.relative(),
         100.0 * nu_t.relative(),

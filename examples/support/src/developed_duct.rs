@@ -18,6 +18,8 @@ pub struct DevelopedDuct<L: Law> {
     pub model: Modelled<2, TwoEquation<L>>,
     /// The force per mass that keeps it up \[m/s²\].
     pub force: f64,
+    /// Friction of the walls that rise along the stream and of those that recede \[Pa\].
+    pub frictions: [f64; 2],
     /// The largest residual of the last iteration.
     pub residual: f64,
 }
@@ -58,6 +60,7 @@ impl<L: Law> DevelopedDuct<L> {
             settled = if residual < 1e-5 && (bulk - 1.0).abs() < 1e-4 { settled + 1 } else { 0 };
             force = ducts.drag(&flow) / ducts.area() + GAIN * (1.0 - bulk);
         }
-        Ok(Self { ducts, flow, model, force, residual })
+        let frictions = ducts.friction_of_each(&flow, &cuts);
+        Ok(Self { ducts, flow, model, force, frictions, residual })
     }
 }

@@ -97,6 +97,19 @@ impl TurnedDucts {
         let forces = flow.wall_friction().into_iter().chain(flow.wall_pressure_force());
         forces.map(|w| along * w.force.x + up * w.force.y).sum()
     }
+
+    /// Friction of the lower walls, which rise along the ducts, and of the upper ones, which recede: its mean along the ducts \[Pa\].
+    pub fn friction_of_each(&self, flow: &Simple<2>, cuts: &CutCells) -> [f64; 2] {
+        let [along, up] = self.along();
+        let (mut sums, mut areas) = ([0.0; 2], [0.0; 2]);
+        for (wall, traction) in cuts.walls.iter().zip(flow.wall_tractions()) {
+            let height = self.height_of([wall.foot.x, wall.foot.y]);
+            let upper = (height - self.height).abs() < 0.5 * self.thickness;
+            sums[usize::from(upper)] += wall.area * (along * traction.x + up * traction.y);
+            areas[usize::from(upper)] += wall.area;
+        }
+        [0, 1].map(|wall| sums[wall] / areas[wall])
+    }
 }
 
 impl Solid for TurnedDucts {

@@ -1,10 +1,9 @@
 //! The explicit part of a scalar's step.
+use crate::Field;
 use crate::field::row_start;
 use crate::grid::GHOSTS;
 use crate::kernels::{for_layers, row_place};
-use crate::metrics::Metrics;
-use crate::operators::{Carried, Carrier, with_kind};
-use crate::{CartesianGrid, Field};
+use crate::operators::{Carried, with_kind};
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
 
@@ -24,11 +23,7 @@ pub(super) struct Step<const D: usize> {
 /// What is read.
 #[derive(Clone, Copy)]
 pub(super) struct Input<'a, const D: usize> {
-    pub(super) grid: &'a CartesianGrid<D>,
-    pub(super) metrics: &'a Metrics<D>,
-    pub(super) carrier: &'a Carrier<D>,
-    pub(super) velocity: &'a [Field<D>; D],
-    pub(super) phi: &'a [f64],
+    pub(super) carried: Carried<'a, D>,
     /// Stored like φ; absent if there is none.
     pub(super) source: Option<&'a [f64]>,
     /// A row of zeros, which stands for it then.
@@ -43,8 +38,8 @@ pub(super) fn advance<const D: usize>(
     next: &mut Field<D>,
     tendency: &mut Field<D>,
 ) {
-    for_layers(input.grid, next, tendency, |rows, start, next, tendency| {
-        with_kind!(input.carrier, KIND => {
+    for_layers(input.carried.grid, next, tendency, |rows, start, next, tendency| {
+        with_kind!(input.carried.carrier, KIND => {
             Arch::new().dispatch(Rows::<KIND, D> { input, step, rows, start, next, tendency });
         });
     });
@@ -65,11 +60,12 @@ impl<const KIND: u8, const D: usize> WithSimd for Rows<'_, KIND, D> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let Self { input, step, rows, start, next, tendency } = self;
-        let n = input.grid.cells()[0];
+        let grid = input.carried.grid;
+        let n = grid.cells()[0];
         for r in rows {
-            let o = row_start(input.grid, r);
+            let o = row_start(grid, r);
             let local = o - start..o - start + n;
-            let at = row_place(input.grid, r);
+            let at = row_place(grid, r);
             advance_row::<KIND, D>(input, step, at, o, &mut next[local.clone()], &mut tendency[local]);
         }
     }
@@ -84,12 +80,11 @@ fn advance_row<const KIND: u8, const D: usize>(
     next: &mut [f64],
     tendency: &mut [f64],
 ) {
-    let Input { grid, metrics, carrier, velocity, phi, .. } = input;
     let n = next.len();
     let tendency = &mut tendency[..n];
-    let row = Carried { carrier, grid, metrics, velocity, phi }.row(at, [o, n]);
+    let row = input.carried.row(at, [o, n]);
     let source = input.source.map_or(&input.zeros[..n], |s| &s[o..][..n]);
-    let axes = &metrics.axes;
+    let axes = &input.carried.metrics.axes;
     let (up, down) = (&axes[0].centres.up[GHOSTS..][..n], &axes[0].centres.down[GHOSTS..][..n]);
     let up_b: [f64; D] = std::array::from_fn(|b| axes[b].centres.up[GHOSTS + at[b]]);
     let down_b: [f64; D] = std::array::from_fn(|b| axes[b].centres.down[GHOSTS + at[b]]);

@@ -5,6 +5,7 @@ use super::mixing::sources;
 use crate::grid::GHOSTS;
 use crate::linear::StencilMatrix;
 use crate::momentum_matrix::{self as momentum, MomentumSolver};
+use crate::operators::Carried;
 use crate::{FlowError, Velocity, kernels};
 
 /// When [`Scalar::settle`] ends.
@@ -156,11 +157,13 @@ impl<const D: usize> Scalar<D> {
     fn rest(&mut self, velocity: &Velocity<D>, out: &mut [f64]) {
         self.stir();
         let input = Input {
-            grid: &self.grid,
-            metrics: &self.metrics,
-            carrier: &self.carrier,
-            velocity: &velocity.components,
-            phi: self.phi.data(),
+            carried: Carried {
+                grid: &self.grid,
+                metrics: &self.metrics,
+                carrier: &self.carrier,
+                velocity: &velocity.components,
+                phi: self.phi.data(),
+            },
             source: sources(&self.mixing, &self.source),
             zeros: &self.zeros,
         };

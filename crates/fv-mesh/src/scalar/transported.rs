@@ -6,7 +6,7 @@ use super::walls::Walls;
 use super::{ScalarBoundaries, ScalarSide};
 use crate::diffusion::{SplitDiffusion, stiffness};
 use crate::metrics::Metrics;
-use crate::operators::{Carrier, integral};
+use crate::operators::{Carried, Carrier, integral};
 use crate::{
     CartesianGrid, Convection, Diffusion, EddyStress, Field, FlowError, Sides, Velocity, kernels, statistics,
 };
@@ -241,11 +241,13 @@ impl<const D: usize> ScalarTransport<D> for Scalar<D> {
         self.diffusion.last = implicit;
         let [explicit_part, implicit_part] = self.diffusion.parts(implicit);
         let input = Input {
-            grid: &self.grid,
-            metrics: &self.metrics,
-            carrier: &self.carrier,
-            velocity: &velocity.components,
-            phi: self.phi.data(),
+            carried: Carried {
+                grid: &self.grid,
+                metrics: &self.metrics,
+                carrier: &self.carrier,
+                velocity: &velocity.components,
+                phi: self.phi.data(),
+            },
             source: mixing::sources(&self.mixing, &self.source),
             zeros: &self.zeros,
         };

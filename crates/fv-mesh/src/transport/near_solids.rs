@@ -1,7 +1,7 @@
 //! Convection near cells without fluid.
 use super::log_slopes::LogSlopes;
 use super::neighbours::{around, neighbour};
-use crate::across_stream::{Stream, across_stream, spared};
+use crate::across_stream::{Stream, across_stream, spare};
 use crate::least_squares::{gradient_weights, norm2};
 use crate::operators::Operators;
 use crate::{CartesianGrid, Velocity};
@@ -218,15 +218,11 @@ impl<const D: usize> NearSolids<D> {
     /// Looks at k \[m²/s²\] of all cells in a fluid of viscosity `nu`: where half a cell is no higher than the buffer layer, what changes across the stream is not
     /// to be damped.
     pub(super) fn see_layers(&mut self, k: &[f64], nu: f64) {
-        self.spared.clear();
-        let of = |near: &Near<D>| {
+        let y_plus = |near: &Near<D>| {
             let half = 0.5 * near.width.iter().sum::<f64>() / D as f64;
-            spared(LawOfTheWall::friction_velocity(k[near.cell]) * half / nu)
+            LawOfTheWall::friction_velocity(k[near.cell]) * half / nu
         };
-        self.spared.extend(self.cells.iter().map(of));
-        if self.spared.iter().all(|share| *share == 0.0) {
-            self.spared.clear();
-        }
+        spare(self.cells.iter().map(y_plus), &mut self.spared);
     }
 
     /// The streams in the cells, and what `carried` jumps by through them.
@@ -290,7 +286,7 @@ impl<const D: usize> NearSolids<D> {
                 })
             };
             let [g, mut more] = on_face(&carried);
-            if let Some(Jump { ends, jump, h }) = face.jump(&carried).filter(|_| spares) {
+            if spares && let Some(Jump { ends, jump, h }) = face.jump(&carried) {
                 let across = across_stream(face.axis, jump, h, ends.map(|place| &self.streams[place]));
                 more -= if from == 0 { 0.5 * across } else { -0.5 * across };
             }

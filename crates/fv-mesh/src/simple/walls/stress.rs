@@ -2,7 +2,7 @@
 use super::gradients::{AtWall, height, to_wall};
 use super::openings::Openings;
 use super::rows::Row;
-use crate::across_stream::spared;
+use crate::across_stream::spare;
 use crate::linear::StencilMatrix;
 use crate::{Field, FlowError};
 use interfaces::{LawOfTheWall, Vector, WallPiece};
@@ -257,15 +257,9 @@ impl<const D: usize> Stresses<D> {
         self.speed(piece) * self.probes[piece].half / nu
     }
 
-    /// How much of what changes across the stream upwind parts spare beside every piece of wall; nothing if it is none.
+    /// How much of what changes across the stream upwind parts [spare] beside every piece of wall.
     pub(super) fn spare(&self, nu: f64, out: &mut Vec<f64>) {
-        out.clear();
-        if nu > 0.0 {
-            out.extend((0..self.probes.len()).map(|piece| spared(self.y_plus(piece, nu))));
-        }
-        if out.iter().all(|share| *share == 0.0) {
-            out.clear();
-        }
+        spare((0..self.probes.len()).map(|piece| self.y_plus(piece, nu)), out);
     }
 
     /// What a wall tells gradients of component `c`: where cells are much larger than the viscous sublayer the nodes around say more of

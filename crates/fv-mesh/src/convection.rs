@@ -1,5 +1,9 @@
 //! Convection schemes: what a carried quantity is worth on the interface between two nodes.
 
+/// κ of van Leer's (1985) upwind values of third order for means over cells: the share of the line between both nodes in what is carried beside walls, the rest goes
+/// on from the nodes by their gradients.
+pub(crate) const KAPPA: f64 = 1.0 / 3.0;
+
 /// Scheme for the value φ_f of a carried quantity on the interface between the upwind node U and the downwind
 /// node D, with the far upwind node UU before them. Chosen once, outside every kernel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,6 +26,11 @@ pub enum Convection {
 impl Convection {
     /// All schemes.
     pub const ALL: [Self; 5] = [Self::Central, Self::Upwind, Self::LinearUpwind, Self::Quick, Self::Limited];
+
+    /// Is what is carried a linear function of the nodes', of second order and from upwind?
+    pub(crate) fn is_linear_upwind(self) -> bool {
+        matches!(self, Self::LinearUpwind | Self::Quick)
+    }
 
     /// Weights a, b, g at an interface at `f` between nodes at `u` (upwind) and `d`, `far` the node before `u`.
     pub(crate) fn weights(self, far: f64, u: f64, d: f64, f: f64) -> [f64; 3] {

@@ -2,6 +2,7 @@
 use super::log_slopes::LogSlopes;
 use super::neighbours::{around, neighbour};
 use crate::across_stream::{Stream, across_stream, spare};
+use crate::convection::KAPPA;
 use crate::least_squares::{gradient_weights, norm2};
 use crate::operators::Operators;
 use crate::{CartesianGrid, Velocity};
@@ -9,8 +10,6 @@ use interfaces::{LawOfTheWall, LogSlope};
 
 /// Faces of cells that are at most as many steps from one without fluid are near it.
 const LAYERS: u8 = 8;
-/// κ: the share of the line between both cells in what is carried; the rest goes on from the upwind one.
-const KAPPA: f64 = 1.0 / 3.0;
 /// Centres nearer to the wall than this share of a cell are taken to be there.
 pub(crate) const NEAREST: f64 = 0.3;
 

@@ -3,6 +3,7 @@ use super::gradients::{Gradients, dot};
 use super::openings::Openings;
 use super::rows::{Flow, coordinate};
 use crate::across_stream::{Stream, across_stream};
+use crate::convection::KAPPA;
 use crate::{Convection, Field};
 
 /// Faces with a smaller open share carry by first order: what is extrapolated from them would not settle.
@@ -51,6 +52,8 @@ pub(super) struct Link<const D: usize> {
     /// How the carriers' velocity changes along the component's axis: their gradients and the step between them.
     pub(super) across: [Option<u32>; 2],
     pub(super) between: [f64; D],
+    /// Along the axes in its plane the variance of the places on its open part \[m²\]: 1/12 of its extent squared.
+    spread: [f64; D],
 }
 
 /// One side of a node's control volume: that of component `c` at `index`, its upper or lower side along `b`.
@@ -165,6 +168,8 @@ impl<const D: usize> VolumeSide<'_, D> {
         let mut slot =
             |c: usize, o: usize| openings.alive(c, o).then(|| gradients[c].slot(openings, c, o, nearest));
         let [v, w] = [openings.node(b, pair[0]), openings.node(b, pair[1])];
+        let whole = 0.5 * (openings.area(b, pair[0]) + openings.area(b, pair[1]));
+        let extent = |t: usize| (open / whole).min(1.0) * metrics.of(Some(c), t).volume[at[t]];
         edge.kind = Kind::Cut(Link {
             other: slot(c, other).unwrap_or_default(),
             to_edge,
@@ -180,6 +185,7 @@ impl<const D: usize> VolumeSide<'_, D> {
                 [slot(b, pair[0]), slot(b, pair[1])]
             },
             between: std::array::from_fn(|a| w[a] - v[a]),
+            spread: std::array::from_fn(|t| if t == b { 0.0 } else { extent(t).powi(2) / 12.0 }),
         });
         edge
     }
@@ -240,7 +246,8 @@ impl<const D: usize> Link<D> {
         if self.step[b] > 0.0 { own - other } else { other - own }
     }
 
-    /// The velocity that is carried through the edge of axis `b`. The upwind part of linear schemes is that along the `streams`, if there are any.
+    /// The velocity that is carried through the edge of axis `b`. The upwind part of linear schemes is that along the `streams`, if there are any; without it they
+    /// are of third order, with [`covariance`](Self::covariance).
     pub(super) fn value(
         &self,
         scheme: Convection,
@@ -260,10 +267,12 @@ impl<const D: usize> Link<D> {
             Convection::Central => mean(),
             // Not QUICK's parabola: beside a law's logarithm it keeps layers on walls that they should leave.
             Convection::LinearUpwind | Convection::Quick => {
-                let across =
-                    streams.map_or(0.0, |s| across_stream(b, self.jump(b, u, g), self.step[b].abs(), s));
+                let jump = self.jump(b, u, g);
+                let across = streams.map_or(0.0, |s| across_stream(b, jump, self.step[b].abs(), s));
                 let from_below = (upwind == 0) == (self.step[b] > 0.0);
-                self.ends(u, g)[upwind] - if from_below { 0.5 * across } else { -0.5 * across }
+                let along = if from_below { 0.5 * (jump - across) } else { 0.5 * (across - jump) };
+                let [own, other] = self.ends(u, g);
+                KAPPA * mean() + (1.0 - KAPPA) * 0.5 * (own + other) + along
             }
             Convection::Limited => {
                 let (sign, share) = if upwind == 0 { (1.0, self.share) } else { (-1.0, 1.0 - self.share) };
@@ -274,6 +283,36 @@ impl<const D: usize> Link<D> {
                 u[upwind] + share * change + dot(g[upwind], &side)
             }
         }
+    }
+
+    /// What passes the edge upwards beside `product`, that of the mean velocities u_b and u_c, because both change along it \[m/s²\]: its area by
+    /// Σ_t w_t²/12 ∂u_b/∂x_t ∂u_c/∂x_t over the axes t in its plane, w_t its extent; no more than a third of the product, which is what both share that grow linearly from 0 at the edge's end. With values of
+    /// second order it is an error that carries momentum across a layer, from walls that rise along the stream to those that recede (docs/results.md, "First cells of any height").
+    pub(super) fn covariance(
+        &self,
+        edge: &Edge<D>,
+        [c, b]: [usize; 2],
+        product: f64,
+        g: [&[f64; D]; 2],
+        flow: &Flow<D>,
+    ) -> f64 {
+        if self.sliver {
+            return 0.0;
+        }
+        let carriers = || self.across.iter().flatten().map(|&slot| &flow.gradients[b].values[slot as usize]);
+        let n = carriers().count().max(1) as f64;
+        let change = |t: usize| {
+            let carried = 0.5 * (g[0][t] + g[1][t]);
+            let carries = match t {
+                _ if b == c => carried,
+                t if t == c => self.cross(edge, [c, b], flow),
+                t => carriers().map(|g| g[t]).sum::<f64>() / n,
+            };
+            carries * carried
+        };
+        let sum: f64 = (0..D).filter(|&t| t != b).map(|t| self.spread[t] * change(t)).sum();
+        let most = product.abs() / 3.0;
+        (edge.area * sum).clamp(-most, most)
     }
 
     /// ∂u/∂x_b on the edge.
@@ -316,6 +355,7 @@ mod tests {
             sliver: false,
             across: [None; 2],
             between: [0.0; 2],
+            spread: [0.0; 2],
         }
     }
 

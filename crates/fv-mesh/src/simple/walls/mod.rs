@@ -168,8 +168,7 @@ impl<const D: usize> SimpleWalls<D> {
     ) {
         let rows = &self.rows[c];
         let u = it.velocity[c].data();
-        let upwind = matches!(it.scheme, Convection::LinearUpwind | Convection::Quick);
-        let streams = (upwind && !self.spared.is_empty()).then(|| {
+        let streams = (it.scheme.is_linear_upwind() && !self.spared.is_empty()).then(|| {
             self.streams.clear();
             self.streams.resize(self.gradients[c].values.len(), Stream::new([0.0; D], 0.0));
             for row in rows {

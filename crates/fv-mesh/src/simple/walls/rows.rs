@@ -231,6 +231,9 @@ impl<const D: usize> Row<D> {
                         stress += nu * link.cross(edge, [c, b], flow);
                     }
                     sum += edge.conduct * link.step[b].abs() * sign * stress - out * value;
+                    if flow.scheme.is_linear_upwind() {
+                        sum -= sign * link.covariance(edge, [c, b], out * value, g, flow);
+                    }
                 }
             }
             let coefficient = total * edge.conduct + (-out).max(0.0);

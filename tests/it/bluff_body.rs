@@ -9,12 +9,12 @@ use siltflow::ibm::{StaticBodies, cut_cells};
 use siltflow::interfaces::Pose;
 use turb::{Inflow, KOmegaSst, Sst};
 
-/// Half of the flow round a cylinder at Re 10⁴, 40 cells per diameter (y+ 1 to 19): wall-resolved body-fitted cells (simpleFoam, SST) have
-/// Cd 0.77, ours 0.82. Where velocities beside walls are reconstructed without the wall it is 0.14, and from a stream that passes through the
-/// cylinder, not freed of its divergence, the iterations diverge.
+/// Half of the flow round a cylinder at Re 10⁴, 80 cells per diameter (y+ 0 to 11): wall-resolved body-fitted cells (simpleFoam, SST) have Cd 0.772, of which friction
+/// 0.022; ours 0.764 and 0.017. Where velocities beside walls are reconstructed without the wall Cd is 0.32, where momentum there is carried with errors of second order
+/// 0.86 and 0.011, and from a stream that passes through the cylinder, not freed of its divergence, the iterations diverge.
 #[test]
 fn the_layer_of_a_cylinder_separates() {
-    let (h, re) = (1.0 / 40.0, 1e4);
+    let (h, re) = (1.0 / 80.0, 1e4);
     let x = gathered(50.0, h, [9.2, 11.5], 1.1, 0.0).unwrap();
     let both = gathered(40.0, h, [19.2, 20.8], 1.1, 0.0).unwrap();
     let y: Vec<_> = both.faces().iter().map(|y| y - 20.0).filter(|y| *y > -1e-9).collect();
@@ -24,7 +24,7 @@ fn the_layer_of_a_cylinder_separates() {
     let params = SimpleParams { velocity_relaxation: 0.9, viscous_share: 0.03, ..SimpleParams::turbulent() };
     let mut flow = Simple::new(grid.clone(), sides, Fluid { density: 1.0, viscosity: 1.0 / re })
         .unwrap()
-        .with_convection(Convection::LinearUpwind)
+        .with_convection(Convection::Quick)
         .with_params(params)
         .unwrap();
     let walls = StaticBodies::new().with(Disc::new(0.5).unwrap(), Pose::at([10.0, 0.0, 0.0]));
@@ -39,9 +39,10 @@ fn the_layer_of_a_cylinder_separates() {
         *distance = ((x - 10.0).hypot(y) - 0.5).max(0.0);
     }
     // Not at rest by then where relaxation counts all of the viscous terms.
-    flow.solve_with(&mut model, 600, 1e-5).unwrap();
-    let drag = flow.wall_pressure_force()[0].force.x + flow.wall_friction()[0].force.x;
+    flow.solve_with(&mut model, 700, 1e-4).unwrap();
     // Of half a cylinder: Cd = F/(½ρU² D/2).
-    let cd = 4.0 * drag;
-    assert!((cd / 0.772 - 1.0).abs() < 0.08, "{cd}");
+    let friction = 4.0 * flow.wall_friction()[0].force.x;
+    let cd = friction + 4.0 * flow.wall_pressure_force()[0].force.x;
+    assert!((cd / 0.772 - 1.0).abs() < 0.04, "{cd} {friction}");
+    assert!((friction / 0.022 - 1.0).abs() < 0.3, "{cd} {friction}");
 }

@@ -9,6 +9,9 @@ use crate::{Convection, Field};
 /// Faces with a smaller open share carry by first order: what is extrapolated from them would not settle.
 const SLIVER: f64 = 0.1;
 
+/// What is left of faces with a smaller open share would not settle with more than values of second order, nor damped less across the stream than along it.
+pub(super) const WIDE: f64 = 0.25;
+
 /// A face of a control volume, or a part of one.
 pub(super) struct Edge<const D: usize> {
     /// Its normal's axis, and whether it is the upper one.
@@ -52,7 +55,7 @@ pub(super) struct Link<const D: usize> {
     /// How the carriers' velocity changes along the component's axis: their gradients and the step between them.
     pub(super) across: [Option<u32>; 2],
     pub(super) between: [f64; D],
-    /// Along the axes in its plane the variance of the places on its open part \[m²\]: 1/12 of its extent squared.
+    /// Along the axes in its plane the variance of the places on its open part \[m²\]: 1/12 of its extent squared; 0 if less than [`WIDE`] of it, or of a node, is open.
     spread: [f64; D],
 }
 
@@ -170,6 +173,8 @@ impl<const D: usize> VolumeSide<'_, D> {
         let [v, w] = [openings.node(b, pair[0]), openings.node(b, pair[1])];
         let whole = 0.5 * (openings.area(b, pair[0]) + openings.area(b, pair[1]));
         let extent = |t: usize| (open / whole).min(1.0) * metrics.of(Some(c), t).volume[at[t]];
+        let least = [index, other].iter().map(|&o| openings.open[c].data()[o]).fold(open / whole, f64::min);
+        let spread = |t: usize| if t == b || least < WIDE { 0.0 } else { extent(t).powi(2) / 12.0 };
         edge.kind = Kind::Cut(Link {
             other: slot(c, other).unwrap_or_default(),
             to_edge,
@@ -185,7 +190,7 @@ impl<const D: usize> VolumeSide<'_, D> {
                 [slot(b, pair[0]), slot(b, pair[1])]
             },
             between: std::array::from_fn(|a| w[a] - v[a]),
-            spread: std::array::from_fn(|t| if t == b { 0.0 } else { extent(t).powi(2) / 12.0 }),
+            spread: std::array::from_fn(spread),
         });
         edge
     }
@@ -296,9 +301,6 @@ impl<const D: usize> Link<D> {
         g: [&[f64; D]; 2],
         flow: &Flow<D>,
     ) -> f64 {
-        if self.sliver {
-            return 0.0;
-        }
         let carriers = || self.across.iter().flatten().map(|&slot| &flow.gradients[b].values[slot as usize]);
         let n = carriers().count().max(1) as f64;
         let change = |t: usize| {

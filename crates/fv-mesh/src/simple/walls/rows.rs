@@ -1,5 +1,5 @@
 //! The momentum equation of control volumes beside walls.
-use super::edges::{Edge, Kind, VolumeSide};
+use super::edges::{Edge, Kind, VolumeSide, WIDE};
 use super::gradients::{Gradients, dot};
 use super::openings::Openings;
 use crate::across_stream::Stream;
@@ -11,8 +11,6 @@ use crate::{CartesianGrid, Convection, Field};
 
 /// So many cells around a node a wall is looked for.
 const REACH: usize = 3;
-/// Nodes with a smaller open share are damped across the stream as along it.
-const WIDE: f64 = 0.25;
 
 /// One control volume: the halves of two cells, or all of one whose other face is shut.
 pub(super) struct Row<const D: usize> {
@@ -130,7 +128,6 @@ impl<const D: usize> Row<D> {
             side.add(kind(b, usize::from(upper)), gradients, &mut edges);
         }
         let cell = openings.grid.cell_at(index).map_or(0, |cell| openings.grid.index(cell));
-        // What is left of a cell that is nearly shut would not settle.
         let wide = openings.open[c].data()[index] >= WIDE;
         let piece = if wide { nearest_piece(openings, c, index) } else { None };
         Some(Self { cell, index, inv_volume, edges, slot, piece })

@@ -13,6 +13,7 @@ mod robust;
 mod shaken;
 mod step;
 mod turned;
+mod warm;
 
 use example_support::{Outcome, run_cases};
 
@@ -30,6 +31,7 @@ fn main() -> Outcome<()> {
         ("tgv", large_eddies::taylor_green),
         ("les", eddies_in_channel::channel),
         ("turned", turned::turned_ducts),
+        ("warm", warm::warm_ducts),
         ("couette", couette::sliding_plate),
         ("shaken", shaken::swinging_cylinder),
     ])

@@ -23,7 +23,9 @@
 mod across_stream;
 pub mod algebra;
 mod axis;
+mod between;
 mod boundary;
+mod cell_gradients;
 mod convection;
 mod cut;
 mod diffusion;
@@ -43,6 +45,7 @@ mod mesh_geometry;
 mod metrics;
 mod modelled;
 mod momentum_matrix;
+mod neighbours;
 pub mod operators;
 mod output;
 mod parts;

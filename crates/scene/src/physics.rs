@@ -118,9 +118,9 @@ impl<const D: usize> Scalars<D> {
         let of = |one: &Carried<D>| Some((one.setup.name.clone(), one.scalar.given_off()?));
         self.list.iter().filter_map(of).collect()
     }
-    /// Tells those walls of the model's k.
-    pub(crate) fn rub(&mut self, k: &[f64], viscosity: f64) {
-        self.list.iter_mut().for_each(|one| one.scalar.rub(k, viscosity));
+    /// Tells those walls of the friction velocity at their pieces.
+    pub(crate) fn rub(&mut self, friction_velocity: &[f64], viscosity: f64) -> Result<(), FlowError> {
+        self.list.iter_mut().try_for_each(|one| one.scalar.rub(friction_velocity, viscosity))
     }
     /// Brings them to their steady state in a steady flow.
     pub(crate) fn settle(&mut self, velocity: &Velocity<D>, time: f64) -> Result<(), FlowError> {

@@ -54,10 +54,10 @@ impl<const D: usize> Steady<D> {
         {
             self.scalars.mix(eddy, viscosity);
         }
-        if let Some(k) = self.model.as_ref().and_then(|model| model.closure.kinetic_energy()) {
-            self.scalars.rub(k, viscosity);
+        match &self.model {
+            Some(_) => self.scalars.rub(&self.flow.wall_friction_velocities(), viscosity),
+            None => Ok(()),
         }
-        Ok(())
     }
     /// Brings the scalars to their steady state.
     pub(crate) fn settle(&mut self) -> Result<(), FlowError> {

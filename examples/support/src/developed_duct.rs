@@ -1,7 +1,10 @@
 //! Developed turbulent flow in ducts that are turned against the grid.
 use crate::Outcome;
 use crate::turned_ducts::TurnedDucts;
-use fv_mesh::{Convection, Fluid, Modelled, Side, Simple, SimpleParams, TransportParams, WallStress};
+use fv_mesh::{
+    Convection, Fluid, Modelled, Scalar, ScalarSide, Settling, Side, Simple, SimpleParams, TransportParams,
+    WallStress,
+};
 use ibm::{StaticBodies, cut_cells};
 use turb::{Inflow, Law, TwoEquation};
 
@@ -62,5 +65,51 @@ impl<L: Law> DevelopedDuct<L> {
         }
         let frictions = ducts.friction_of_each(&flow, &cuts);
         Ok(Self { ducts, flow, model, force, frictions, residual })
+    }
+
+    /// The velocity's image: what gains per time what the force gives the flow, is conducted and mixed as momentum (Pr = Pr_t = 1) and 0 on the walls.
+    ///
+    /// # Errors
+    /// Those of the scalar and the walls.
+    pub fn warmth(&mut self) -> Outcome<Scalar<2>> {
+        let Self { ducts, flow, model, force, .. } = self;
+        let viscosity = flow.fluid().viscosity;
+        let periodic = [ScalarSide::Periodic.both(), ScalarSide::Periodic.both()];
+        let mut warmth = Scalar::new(flow.grid(), periodic, viscosity)?
+            .with_turbulent_prandtl(1.0)?
+            .with_convection(Convection::Quick);
+        let cuts = cut_cells(flow.velocity(), &StaticBodies::new().with(*ducts, ducts.pose()))?;
+        warmth.set_walls(Some((&cuts, 0.0)))?;
+        warmth.source_mut().data_mut().fill(*force);
+        let eddies = model.eddy_stress(viscosity, 0.0)?.ok_or("a model without eddy viscosity")?;
+        warmth.mix(eddies, viscosity);
+        warmth.rub(&flow.wall_friction_velocities(), viscosity)?;
+        let settling = Settling { tolerance: 1e-7, max_iterations: 10_000 };
+        warmth.settle(flow.velocity(), 0.0, settling, &[], |_| ())?;
+        Ok(warmth)
+    }
+
+    /// What the walls take of what [`warmth`](Self::warmth) gains, and its mean over that of the velocity along the ducts, less 1, in cells whose faces are not cut.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn analogy(&mut self) -> Outcome<[f64; 2]> {
+        let warmth = self.warmth()?;
+        let Self { ducts, flow, force, .. } = self;
+        let ([along, up], grid) = (ducts.along(), flow.grid());
+        let ([columns, rows], h) = (grid.cells(), grid.axis(0).width(0));
+        let mut sums = [0.0; 2];
+        for i in 0..grid.n_cells() {
+            let ([a, b], y) = (grid.cell(i), ducts.distance(grid.centre(grid.cell(i))));
+            let mean = |c: usize, ends: [[usize; 2]; 2]| -> f64 {
+                ends.iter().map(|&[i, j]| 0.5 * flow.velocity().field(c).row(j)[i]).sum()
+            };
+            if y > 1.5 * h {
+                let u = [mean(0, [[a, b], [(a + 1) % columns, b]]), mean(1, [[a, b], [a, (b + 1) % rows]])];
+                sums = [sums[0] + along * u[0] + up * u[1], sums[1] + warmth.field().row(b)[a]];
+            }
+        }
+        let taken = -warmth.given_off().unwrap_or_default() / (*force * ducts.area());
+        Ok([taken, sums[1] / sums[0] - 1.0])
     }
 }

@@ -23,6 +23,9 @@ impl<const D: usize> Carrier<D> {
             weights: std::array::from_fn(|a| metrics.weights(scheme, a, Metrics::<D>::family(None, a))),
         }
     }
+    pub(crate) fn scheme(&self) -> Convection {
+        self.scheme
+    }
     /// Which of [`CENTRAL`], [`LINEAR`] and [`LIMITED`] the scheme is.
     pub(crate) fn kind(&self) -> u8 {
         match self.scheme {

@@ -82,12 +82,12 @@ impl<const D: usize> Scalar<D> {
             return Err(FlowError::Boundary { what: what.into() });
         }
         self.begin(time, &mut hold);
-        let shown = self.through(velocity);
-        let velocity = shown.as_ref().unwrap_or(velocity);
-        let mut system = System::new(self, velocity)?;
+        let through = self.through(velocity);
+        let carriers = through.as_ref().map_or([velocity; 2], |[whole, far]| [whole, far]);
+        let mut system = System::new(self, carriers[0])?;
         let mut change = f64::INFINITY;
         for iteration in 1..=max_iterations {
-            change = self.correct(&mut system, velocity, time, held, &mut hold)?;
+            change = self.correct(&mut system, carriers, time, held, &mut hold)?;
             if change <= tolerance {
                 return Ok(iteration);
             }
@@ -107,10 +107,10 @@ impl<const D: usize> Scalar<D> {
         mut hold: impl FnMut(&mut [f64]),
     ) -> Result<f64, FlowError> {
         self.begin(time, &mut hold);
-        let shown = self.through(velocity);
-        let velocity = shown.as_ref().unwrap_or(velocity);
-        let mut system = System::new(self, velocity)?;
-        self.correct(&mut system, velocity, time, held, &mut hold)
+        let through = self.through(velocity);
+        let carriers = through.as_ref().map_or([velocity; 2], |[whole, far]| [whole, far]);
+        let mut system = System::new(self, carriers[0])?;
+        self.correct(&mut system, carriers, time, held, &mut hold)
     }
 
     fn begin(&mut self, time: f64, hold: &mut impl FnMut(&mut [f64])) {
@@ -120,17 +120,17 @@ impl<const D: usize> Scalar<D> {
         self.step = 0;
     }
 
-    /// Solves for δ and takes its part; answers the largest change of φ over the largest |φ|.
+    /// Solves for δ and takes its part, carried by the velocities of [`through`](Self::through); answers the largest change of φ over the largest |φ|.
     fn correct(
         &mut self,
         System { matrix, rest, delta, solver, iterations }: &mut System<D>,
-        velocity: &Velocity<D>,
+        carriers: [&Velocity<D>; 2],
         time: f64,
         held: &[usize],
         hold: &mut impl FnMut(&mut [f64]),
     ) -> Result<f64, FlowError> {
         *iterations += 1;
-        self.rest(velocity, rest);
+        self.rest(carriers, rest);
         for o in held.iter().copied().chain(self.dry()) {
             // Ghosts belong to no cell.
             if let Some(cell) = self.grid.cell_at(o) {
@@ -154,14 +154,14 @@ impl<const D: usize> Scalar<D> {
     }
 
     /// −∇·(uφ) + Γ∇²φ + ∇·(D_t∇φ) + S of every cell.
-    fn rest(&mut self, velocity: &Velocity<D>, out: &mut [f64]) {
+    fn rest(&mut self, [whole, far]: [&Velocity<D>; 2], out: &mut [f64]) {
         self.stir();
         let input = Input {
             carried: Carried {
                 grid: &self.grid,
                 metrics: &self.metrics,
                 carrier: &self.carrier,
-                velocity: &velocity.components,
+                velocity: &far.components,
                 phi: self.phi.data(),
             },
             source: sources(&self.mixing, &self.source),
@@ -170,7 +170,7 @@ impl<const D: usize> Scalar<D> {
         let step = Step { dt: 1.0, weights: [1.0, 0.0], explicit: [self.diffusivity; D], implicit: [0.0; D] };
         advance(input, step, &mut self.next, &mut self.tendency);
         out.iter_mut().zip(self.tendency.values()).for_each(|(out, rest)| *out = rest);
-        self.shut(velocity, out);
+        self.shut(whole, out);
     }
 
     /// u·∇δ − ∇·((Γ + D_t)∇δ) with upwind differences and the homogeneous conditions at the sides.
@@ -210,7 +210,7 @@ impl<const D: usize> Scalar<D> {
                 }
             }
         }
-        self.shut_matrix(&mut matrix);
+        self.shut_matrix(velocity, &mut matrix);
         Ok(matrix)
     }
 }

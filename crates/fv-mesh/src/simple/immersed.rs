@@ -73,6 +73,11 @@ impl<const D: usize> Simple<D> {
         self.walls.as_ref().map_or_else(Vec::new, |walls| walls.tractions().map(|t| density * t).collect())
     }
 
+    /// Of every piece of wall, in the order given, the friction velocity u_τ \[m/s\] by which it had its friction in the last iteration: for [`Scalar::rub`](crate::Scalar::rub).
+    pub fn wall_friction_velocities(&self) -> Vec<f64> {
+        self.walls.as_ref().map_or_else(Vec::new, |walls| walls.friction_velocities().collect())
+    }
+
     /// Takes from a model what holds in cells that walls cut.
     pub(super) fn look_at<C: Closure>(&mut self, model: &mut Modelled<D, C>) {
         let Some(walls) = &mut self.walls else { return };

@@ -1,8 +1,8 @@
 //! Cells without fluid at their centre.
 use super::CellTransport;
 use super::near_solids::NearSolids;
-use super::neighbours::{around, neighbour};
 use crate::kernels::copy_dense;
+use crate::neighbours::{around, neighbour};
 use crate::spans::Spans;
 use crate::{CartesianGrid, Convection, Field, Sampler, Velocity};
 

@@ -4,7 +4,6 @@ mod flow_transport;
 mod kernels;
 mod log_slopes;
 mod near_solids;
-mod neighbours;
 mod params;
 mod sides;
 mod steep;

@@ -1,9 +1,10 @@
 //! Convection near cells without fluid.
 use super::log_slopes::LogSlopes;
-use super::neighbours::{around, neighbour};
 use crate::across_stream::{Stream, across_stream, spare};
+use crate::cell_gradients::{CellGradients, Linear};
 use crate::convection::KAPPA;
-use crate::least_squares::{gradient_weights, norm2};
+use crate::least_squares::norm2;
+use crate::neighbours::neighbour;
 use crate::operators::Operators;
 use crate::{CartesianGrid, Velocity};
 use interfaces::{LawOfTheWall, LogSlope};
@@ -24,18 +25,15 @@ pub(crate) const NEAREST: f64 = 0.3;
 #[derive(Clone, Debug)]
 pub(super) struct NearSolids<const D: usize> {
     faces: Vec<Face>,
-    cells: Vec<Near<D>>,
-    /// Cells around, by their dense numbers, and their weights.
-    terms: Vec<(usize, [f64; D])>,
+    cells: CellGradients<D>,
+    /// Widths of the cells in that list.
+    widths: Vec<[f64; D]>,
     carried: Vec<Linear<D>>,
     distances: Option<Distances<D>>,
     /// Of every cell in the list, how much of what changes across the stream is not to be damped; none if it is nothing anywhere.
     spared: Vec<f64>,
     streams: Vec<Stream<D>>,
 }
-
-/// A value in a cell, and its gradient.
-type Linear<const D: usize> = (f64, [f64; D]);
 
 /// Distances from walls, of which there is none nearer than [`NEAREST`].
 #[derive(Clone, Debug)]
@@ -77,13 +75,9 @@ impl Face {
     }
 }
 
-#[derive(Clone, Debug)]
-struct Near<const D: usize> {
-    /// Dense number.
-    cell: usize,
-    /// End of its terms.
-    end: usize,
-    width: [f64; D],
+fn width<const D: usize>(grid: &CartesianGrid<D>, cell: usize) -> [f64; D] {
+    let at = grid.cell(cell);
+    std::array::from_fn(|a| grid.axis(a).width(at[a]))
 }
 
 /// How many steps cells are from one without fluid, up to one more than counts.
@@ -114,14 +108,13 @@ impl<const D: usize> NearSolids<D> {
         let near = |cell: usize| (1..=LAYERS).contains(&layer[cell]);
         let mut new = Self {
             faces: Vec::new(),
-            cells: Vec::new(),
-            terms: Vec::new(),
+            cells: CellGradients::new(dry.len()),
+            widths: Vec::new(),
             carried: Vec::new(),
             distances: None,
             spared: Vec::new(),
             streams: Vec::new(),
         };
-        let mut places = vec![usize::MAX; dry.len()];
         for upper in 0..dry.len() {
             let at = grid.cell(upper);
             for axis in 0..D {
@@ -131,48 +124,21 @@ impl<const D: usize> NearSolids<D> {
                 }
                 let sides = [lower, upper].map(|cell| {
                     let width = grid.axis(axis).width(grid.cell(cell)[axis]);
-                    (!dry[cell]).then(|| (new.place(ops, dry, &mut places, cell), 0.5 * width))
+                    (!dry[cell]).then(|| (new.cells.place(ops, dry, cell), 0.5 * width))
                 });
                 let across = (0..D).filter(|&b| b != axis).map(|b| grid.axis(b).width(at[b]));
                 let (index, area) = (grid.place(at), across.product());
                 new.faces.push(Face { axis, above: upper, index, area, sides });
             }
         }
+        new.cells.close();
+        new.widths = new.cells.cells().map(|cell| width(grid, cell)).collect();
         new
-    }
-
-    /// The place of a cell in the list.
-    fn place(&mut self, ops: &Operators<D>, dry: &[bool], places: &mut [usize], cell: usize) -> usize {
-        if places[cell] == usize::MAX {
-            places[cell] = self.cells.len();
-            let (found, steps): (Vec<_>, Vec<_>) =
-                around(ops, cell).filter(|&(other, _)| !dry[other]).unzip();
-            self.terms.extend(found.into_iter().zip(gradient_weights(&steps)));
-            let at = ops.grid().cell(cell);
-            let width = std::array::from_fn(|a| ops.grid().axis(a).width(at[a]));
-            self.cells.push(Near { cell, end: self.terms.len(), width });
-        }
-        places[cell]
     }
 
     /// Axes of the faces, and the cells above them.
     pub(super) fn faces(&self) -> impl Iterator<Item = (usize, usize)> {
         self.faces.iter().map(|face| (face.axis, face.above))
-    }
-
-    /// Values and gradients of what has `value` in the cells.
-    fn look(&self, value: impl Fn(usize) -> f64, out: &mut Vec<Linear<D>>) {
-        out.clear();
-        let mut start = 0;
-        for near in &self.cells {
-            let here = value(near.cell);
-            let mut slope = [0.0; D];
-            for &(other, weight) in &self.terms[start..near.end] {
-                (0..D).for_each(|a| slope[a] += weight[a] * (value(other) - here));
-            }
-            out.push((here, slope));
-            start = near.end;
-        }
     }
 
     /// Where a logarithmic layer seems too steep in this flow.
@@ -195,33 +161,34 @@ impl<const D: usize> NearSolids<D> {
 
     /// None where no walls are known of.
     fn measure(&self, grid: &CartesianGrid<D>, distance: &[f64]) -> Option<Distances<D>> {
-        if self.terms.iter().any(|&(cell, _)| !distance[cell].is_finite()) {
+        if self.cells.seen().any(|cell| !distance[cell].is_finite()) {
             return None;
         }
         let (mut dense, mut near) = (distance.to_vec(), Vec::new());
-        self.look(|c| distance[c], &mut near);
-        let cells = self.cells.iter().zip(&near).map(|(cell, &(y, slope))| (cell.cell, cell.width, y, slope));
-        let log_slopes = LogSlopes::new(grid, cells);
-        for (cell, (y, slope)) in self.cells.iter().zip(&near) {
+        self.cells.look(|c| distance[c], &mut near);
+        let cells = || self.cells.cells().zip(&self.widths).zip(&near);
+        let log_slopes =
+            LogSlopes::new(grid, cells().map(|((cell, &width), &(y, slope))| (cell, width, y, slope)));
+        for ((cell, width), (y, slope)) in cells() {
             let norm = norm2(slope).sqrt();
             let extent = match norm > 0.0 {
-                true => (0..D).map(|a| slope[a].abs() / norm * cell.width[a]).sum(),
-                false => cell.width[0],
+                true => (0..D).map(|a| slope[a].abs() / norm * width[a]).sum(),
+                false => width[0],
             };
-            dense[cell.cell] = y.max(NEAREST * extent);
+            dense[cell] = y.max(NEAREST * extent);
         }
-        self.look(|c| dense[c], &mut near);
+        self.cells.look(|c| dense[c], &mut near);
         Some(Distances { dense, near, log_slopes })
     }
 
     /// Looks at k \[m²/s²\] of all cells in a fluid of viscosity `nu`: where half a cell is no higher than the buffer layer, what changes across the stream is not
     /// to be damped.
     pub(super) fn see_layers(&mut self, k: &[f64], nu: f64) {
-        let y_plus = |near: &Near<D>| {
-            let half = 0.5 * near.width.iter().sum::<f64>() / D as f64;
-            LawOfTheWall::friction_velocity(k[near.cell]) * half / nu
+        let y_plus = |(cell, width): (usize, &[f64; D])| {
+            let half = 0.5 * width.iter().sum::<f64>() / D as f64;
+            LawOfTheWall::friction_velocity(k[cell]) * half / nu
         };
-        spare(self.cells.iter().map(y_plus), &mut self.spared);
+        spare(self.cells.cells().zip(&self.widths).map(y_plus), &mut self.spared);
     }
 
     /// The streams in the cells, and what `carried` jumps by through them.
@@ -229,8 +196,8 @@ impl<const D: usize> NearSolids<D> {
         let grid = velocity.components[0].grid();
         let strides = grid.stride();
         self.streams.clear();
-        self.streams.extend(self.cells.iter().zip(&self.spared).map(|(near, &spared)| {
-            let o = grid.place(grid.cell(near.cell));
+        self.streams.extend(self.cells.cells().zip(&self.spared).map(|(cell, &spared)| {
+            let o = grid.place(grid.cell(cell));
             let mean = |a: usize| {
                 let u = velocity.components[a].data();
                 0.5 * (u[o] + u[o + strides[a]])
@@ -258,8 +225,8 @@ impl<const D: usize> NearSolids<D> {
         let mut carried = std::mem::take(&mut self.carried);
         let spares = distance.is_none() && !self.spared.is_empty();
         match self.distances.as_ref().filter(|_| distance.is_some()) {
-            Some(y) => self.look(|c| y.dense[c] * phi[c], &mut carried),
-            None => self.look(|c| phi[c], &mut carried),
+            Some(y) => self.cells.look(|c| y.dense[c] * phi[c], &mut carried),
+            None => self.cells.look(|c| phi[c], &mut carried),
         }
         if spares {
             self.see_streams(velocity, &carried);
@@ -294,7 +261,7 @@ impl<const D: usize> NearSolids<D> {
             let y = distances.map(|y| (&y.near, on_face(&y.near).iter().sum::<f64>()));
             for (end, side) in face.sides.iter().enumerate() {
                 let Some((place, _)) = *side else { continue };
-                let cell = self.cells[place].cell;
+                let cell = self.cells.cell(place);
                 let inflow = if end == 1 { flux } else { -flux };
                 let brought = match y {
                     Some((near, y)) => {
@@ -304,7 +271,7 @@ impl<const D: usize> NearSolids<D> {
                     None => g - phi[cell],
                 };
                 let upwind = match face.sides[1 - end] {
-                    Some((other, _)) if inflow > 0.0 => phi[self.cells[other].cell] - phi[cell],
+                    Some((other, _)) if inflow > 0.0 => phi[self.cells.cell(other)] - phi[cell],
                     _ => 0.0,
                 };
                 out[cell] += inflow * (brought - upwind);

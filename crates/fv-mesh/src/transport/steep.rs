@@ -1,7 +1,7 @@
 //! What goes like 1/y² at distance y from a wall.
 use super::CellTransport;
-use super::neighbours::neighbour;
 use crate::grid::GHOSTS;
+use crate::neighbours::neighbour;
 use interfaces::Equation;
 
 /// 1/√φ changes by no more than this share of itself from a cell's centre to its faces.

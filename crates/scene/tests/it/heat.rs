@@ -145,8 +145,7 @@ images = false
     }
 }
 
-/// A duct at Re 10⁵ with warm walls, k–ε: with bodies as walls, along the grid and turned by 30°, it takes up what it does between sides of the box. A wall that
-/// is one of the box's and one that is a body are the same to the scalar where they are the same to the flow.
+/// A duct at Re 10⁵ with warm walls, k–ε: with bodies as walls it takes up what it does between sides of the box. (Walls across the grid: `heat_in_ducts_across_the_grid_is_the_velocity`.)
 #[test]
 fn warm_walls_that_are_bodies_warm_as_sides_do() {
     let text = r#"
@@ -179,40 +178,20 @@ fields = false
         let of = |value: &serde_json::Value| value.as_f64();
         [of(&result.result["fields"]["heat"]["mean"]), of(&result.result["given_off"]["heat"])]
     };
-    // On 20 cells both are a sixth lower than on 80, and 4 % apart; on 80 and 160 they are 1.2 and 1.3 %.
     let sides = duct("duct-sides", &["grid.cells=[120, 80]"])[0].unwrap();
-    let walls = |lower: &str, upper: &str, angle: f64| {
-        let body = |at: &str| {
-            format!(
-                r#"{{ shape = {{ type = "box", edges = [40.0, 4.0] }}, position = {at}, orientation = {angle:.1}, motion = "fixed" }}"#
-            )
-        };
-        format!("bodies=[{}, {}]", body(lower), body(upper))
+    let body = |y: &str| {
+        format!(
+            r#"{{ shape = {{ type = "box", edges = [40.0, 4.0] }}, position = [3.0, {y}], motion = "fixed" }}"#
+        )
     };
-    let bodies = ["scalars.heat.bodies=1.0", "scalars.heat.sides={}"];
+    let bodies = format!("bodies=[{}, {}]", body("-1.75"), body("3.25"));
+    let set = ["grid.cells=[120, 120]", "grid.size=[6.0, 1.5]", &bodies];
+    let [mean, given_off] =
+        duct("duct-along", &[&set[..], &["scalars.heat.bodies=1.0", "scalars.heat.sides={}"]].concat())
+            .map(Option::unwrap);
     // A third of the box is warm wall.
-    let along = walls("[3.0, -1.75]", "[3.0, 3.25]", 0.0);
-    let along =
-        |cells: &str| duct("duct-along", &[&[cells, "grid.size=[6.0, 1.5]", &along], &bodies[..]].concat());
-    let fluid = 1.5 * (along("grid.cells=[120, 120]")[0].unwrap() - 1.0 / 3.0);
+    let fluid = 1.5 * (mean - 1.0 / 3.0);
     assert!((fluid / sides - 1.0).abs() < 0.015, "{fluid} {sides}");
-    let along = along("grid.cells=[120, 30]");
-    let turned = walls("[3.6, 0.06906]", "[1.6, 4.68786]", 30.0);
-    let turned = duct(
-        "duct-turned",
-        &[
-            &[
-                "grid.cells=[104, 96]",
-                "grid.size=[5.2, 4.8]",
-                "sides.x_min.velocity=[0.8660254, 0.5]",
-                "initial.velocity=[0.8660254, 0.5]",
-                &turned,
-            ],
-            &bodies[..],
-        ]
-        .concat(),
-    );
-    // Both walls are 6 m long. Found: −4.02 % (with values of second order beside walls less than 4); the turned scene does not come to rest with 156 × 144 and 208 × 192 cells.
-    let off = turned[1].unwrap() / along[1].unwrap() - 1.0;
-    assert!(off.abs() < 0.045, "{off}");
+    // What they give off leaves through the end. A straight line from nothing would have half of that as its mean; most is given off at the beginning, where layers are thin.
+    assert!((0.5..0.75).contains(&(fluid / given_off)), "{fluid} {given_off}");
 }

@@ -1,9 +1,9 @@
 //! The edges of control volumes beside walls.
-use super::gradients::{Gradients, dot};
+use super::gradients::Gradients;
 use super::openings::Openings;
 use super::rows::{Flow, coordinate};
 use crate::across_stream::{Stream, across_stream};
-use crate::convection::KAPPA;
+use crate::between::Between;
 use crate::{Convection, Field};
 
 /// Faces with a smaller open share carry by first order: what is extrapolated from them would not settle.
@@ -44,17 +44,12 @@ pub(super) enum Kind<const D: usize> {
 
 pub(super) struct Link<const D: usize> {
     pub(super) other: u32,
-    /// From this node, and from the other one, to the middle of the edge; to the other one.
-    pub(super) to_edge: [f64; D],
-    pub(super) from_other: [f64; D],
-    pub(super) step: [f64; D],
-    /// Where between the nodes, as a share of the step along the axis.
-    pub(super) share: f64,
+    pub(super) between: Between<D>,
     /// One of the nodes has next to no volume: what is carried is the upwind node's.
     pub(super) sliver: bool,
     /// How the carriers' velocity changes along the component's axis: their gradients and the step between them.
     pub(super) across: [Option<u32>; 2],
-    pub(super) between: [f64; D],
+    carriers_step: [f64; D],
     /// Along the axes in its plane the variance of the places on its open part \[m²\]: 1/12 of its extent squared; 0 if less than [`WIDE`] of it, or of a node, is open.
     spread: [f64; D],
 }
@@ -160,14 +155,12 @@ impl<const D: usize> VolumeSide<'_, D> {
         }
         let pair = carriers.map(|(o, _)| o);
         let (x, middle) = (openings.node(c, index), middle(openings, [c, b], number, carriers));
-        let to_edge = std::array::from_fn(|a| middle[a] - x[a]);
         if !openings.alive(c, other) {
-            edge.kind = Kind::Blind { to_edge };
+            edge.kind = Kind::Blind { to_edge: std::array::from_fn(|a| middle[a] - x[a]) };
             return edge;
         }
-        let y = openings.node(c, other);
-        let step: [f64; D] = std::array::from_fn(|a| y[a] - x[a]);
-        edge.conduct = open * inv_volume / step[b].abs();
+        let between = Between::new(x, openings.node(c, other), middle, b);
+        edge.conduct = open * inv_volume / between.step[b].abs();
         let mut slot =
             |c: usize, o: usize| openings.alive(c, o).then(|| gradients[c].slot(openings, c, o, nearest));
         let [v, w] = [openings.node(b, pair[0]), openings.node(b, pair[1])];
@@ -177,10 +170,7 @@ impl<const D: usize> VolumeSide<'_, D> {
         let spread = |t: usize| if t == b || least < WIDE { 0.0 } else { extent(t).powi(2) / 12.0 };
         edge.kind = Kind::Cut(Link {
             other: slot(c, other).unwrap_or_default(),
-            to_edge,
-            from_other: std::array::from_fn(|a| middle[a] - y[a]),
-            step,
-            share: (to_edge[b] / step[b]).clamp(0.0, 1.0),
+            between,
             sliver: [index, other].iter().any(|&o| openings.open[c].data()[o] < SLIVER),
             across: if b == c {
                 [None; 2]
@@ -189,7 +179,7 @@ impl<const D: usize> VolumeSide<'_, D> {
             } else {
                 [slot(b, pair[0]), slot(b, pair[1])]
             },
-            between: std::array::from_fn(|a| w[a] - v[a]),
+            carriers_step: std::array::from_fn(|a| w[a] - v[a]),
             spread: std::array::from_fn(spread),
         });
         edge
@@ -240,17 +230,6 @@ fn middle<const D: usize>(
 }
 
 impl<const D: usize> Link<D> {
-    /// What this node, and the other one, say of the velocity on the edge by their gradients.
-    fn ends(&self, u: [f64; 2], g: [&[f64; D]; 2]) -> [f64; 2] {
-        [u[0] + dot(g[0], &self.to_edge), u[1] + dot(g[1], &self.from_other)]
-    }
-
-    /// What the node below says less what the one above does.
-    pub(super) fn jump(&self, b: usize, u: [f64; 2], g: [&[f64; D]; 2]) -> f64 {
-        let [own, other] = self.ends(u, g);
-        if self.step[b] > 0.0 { own - other } else { other - own }
-    }
-
     /// The velocity that is carried through the edge of axis `b`. The upwind part of linear schemes is that along the `streams`, if there are any; without it they
     /// are of third order, with [`covariance`](Self::covariance).
     pub(super) fn value(
@@ -263,31 +242,16 @@ impl<const D: usize> Link<D> {
         streams: Option<[&Stream<D>; 2]>,
     ) -> f64 {
         let upwind = usize::from(out < 0.0);
-        // From the line through the nodes to the middle of the edge.
-        let side: [f64; D] = std::array::from_fn(|a| self.to_edge[a] - self.share * self.step[a]);
-        let mean = || u[0] + self.share * (u[1] - u[0]) + 0.5 * (dot(g[0], &side) + dot(g[1], &side));
-        match scheme {
-            _ if self.sliver => u[upwind],
-            Convection::Upwind => u[upwind],
-            Convection::Central => mean(),
-            // Not QUICK's parabola: beside a law's logarithm it keeps layers on walls that they should leave.
-            Convection::LinearUpwind | Convection::Quick => {
-                let jump = self.jump(b, u, g);
-                let across = streams.map_or(0.0, |s| across_stream(b, jump, self.step[b].abs(), s));
-                let from_below = (upwind == 0) == (self.step[b] > 0.0);
-                let along = if from_below { 0.5 * (jump - across) } else { 0.5 * (across - jump) };
-                let [own, other] = self.ends(u, g);
-                KAPPA * mean() + (1.0 - KAPPA) * 0.5 * (own + other) + along
-            }
-            Convection::Limited => {
-                let (sign, share) = if upwind == 0 { (1.0, self.share) } else { (-1.0, 1.0 - self.share) };
-                let ahead = sign * (u[1] - u[0]);
-                let behind = 2.0 * sign * dot(g[upwind], &self.step) - ahead;
-                // ψ(r) (φ_D − φ_U) of van Leer.
-                let change = if ahead * behind > 0.0 { 2.0 * ahead * behind / (ahead + behind) } else { 0.0 };
-                u[upwind] + share * change + dot(g[upwind], &side)
-            }
+        if self.sliver {
+            return u[upwind];
         }
+        let across = match streams {
+            Some(streams) if scheme.is_linear_upwind() => {
+                across_stream(b, self.between.jump(b, u, g), self.between.step[b].abs(), streams)
+            }
+            _ => 0.0,
+        };
+        self.between.value(scheme, b, upwind, u, g, across)
     }
 
     /// What passes the edge upwards beside `product`, that of the mean velocities u_b and u_c, because both change along it \[m/s²\]: its area by
@@ -319,7 +283,7 @@ impl<const D: usize> Link<D> {
 
     /// ∂u/∂x_b on the edge.
     pub(super) fn slope(&self, b: usize, u: [f64; 2], g: [&[f64; D]; 2]) -> f64 {
-        directed(b, u, g, &self.step)
+        directed(b, u, g, &self.between.step)
     }
 
     /// ∂u_b/∂x_c on the edge.
@@ -328,7 +292,7 @@ impl<const D: usize> Link<D> {
         match self.across {
             [Some(low), Some(high)] => {
                 let u = edge.carriers.map(|(o, _)| flow.velocity[b].data()[o]);
-                directed(c, u, [gradient(low), gradient(high)], &self.between)
+                directed(c, u, [gradient(low), gradient(high)], &self.carriers_step)
             }
             [Some(one), None] | [None, Some(one)] => gradient(one)[c],
             _ => 0.0,
@@ -340,53 +304,4 @@ impl<const D: usize> Link<D> {
 fn directed<const D: usize>(b: usize, u: [f64; 2], g: [&[f64; D]; 2], step: &[f64; D]) -> f64 {
     let aside: f64 = (0..D).filter(|&a| a != b).map(|a| 0.5 * (g[0][a] + g[1][a]) * step[a]).sum();
     (u[1] - u[0] - aside) / step[b]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Between nodes one apart, the edge half way and `aside` of their line.
-    fn link(aside: f64) -> Link<2> {
-        Link {
-            other: 0,
-            to_edge: [0.5, aside],
-            from_other: [-0.5, aside],
-            step: [1.0, 0.0],
-            share: 0.5,
-            sliver: false,
-            across: [None; 2],
-            between: [0.0; 2],
-            spread: [0.0; 2],
-        }
-    }
-
-    #[test]
-    fn every_scheme_of_second_order_carries_what_is_linear() {
-        let (gradient, aside) = ([0.7, -0.4], 0.2);
-        let schemes = Convection::ALL.into_iter().filter(|scheme| *scheme != Convection::Upwind);
-        for (scheme, out) in schemes.flat_map(|scheme| [(scheme, 1.0), (scheme, -1.0)]) {
-            let value = link(aside).value(scheme, 0, out, [2.0, 2.7], [&gradient; 2], None);
-            assert!((value - (2.0 + 0.35 - 0.08)).abs() < 1e-14, "{scheme:?} {out}: {value}");
-        }
-    }
-
-    /// φ before, at and behind the edge; central gradients.
-    #[test]
-    fn the_limited_scheme_makes_nothing_new() {
-        let value = |before: f64, here: f64, there: f64| {
-            let [own, far] = [[0.5 * (there - before), 0.0], [0.0; 2]];
-            link(0.0).value(Convection::Limited, 0, 1.0, [here, there], [&own, &far], None)
-        };
-        // At the foot and at the head of a step, and at a maximum.
-        assert_eq!(value(0.0, 0.0, 1.0), 0.0);
-        assert_eq!(value(0.0, 1.0, 1.0), 1.0);
-        assert_eq!(value(0.0, 1.0, 0.5), 1.0);
-        // Slopes of 0.2 and 0.8: their harmonic mean.
-        assert!((value(0.0, 0.2, 1.0) - (0.2 + 0.5 * 0.32)).abs() < 1e-14);
-        for there in [0.3, 0.6, 5.0] {
-            let found = value(0.0, 0.2, there);
-            assert!((0.2..=there).contains(&found), "{found} {there}");
-        }
-    }
 }

@@ -338,6 +338,11 @@ impl<const D: usize> SimpleWalls<D> {
     pub(super) fn tractions(&self) -> impl Iterator<Item = Vector> + '_ {
         self.stresses.force.iter().zip(&self.stresses.probes).map(|(force, probe)| force / probe.area)
     }
+
+    /// Per piece of wall u_τ \[m/s\] in the last iteration.
+    pub(super) fn friction_velocities(&self) -> impl Iterator<Item = f64> + '_ {
+        self.stresses.friction_velocities()
+    }
 }
 
 /// Cells without fluid at their centre that have neighbours with, and the weights of those.

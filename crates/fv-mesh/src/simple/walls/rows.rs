@@ -161,8 +161,8 @@ impl<const D: usize> Row<D> {
             if let Kind::Cut(link) = &edge.kind {
                 let b = edge.axis;
                 let far = &gradients.values[link.other as usize];
-                let jump = link.jump(b, [here, u[edge.other]], [gradient, far]);
-                stream.add(b, jump, link.step[b].abs(), edge.area);
+                let jump = link.between.jump(b, [here, u[edge.other]], [gradient, far]);
+                stream.add(b, jump, link.between.step[b].abs(), edge.area);
             }
         }
         streams[self.slot as usize] = stream;
@@ -227,7 +227,7 @@ impl<const D: usize> Row<D> {
                     if b != c && nu > 0.0 {
                         stress += nu * link.cross(edge, [c, b], flow);
                     }
-                    sum += edge.conduct * link.step[b].abs() * sign * stress - out * value;
+                    sum += edge.conduct * link.between.step[b].abs() * sign * stress - out * value;
                     if flow.scheme.is_linear_upwind() {
                         sum -= sign * link.covariance(edge, [c, b], out * value, g, flow);
                     }

@@ -125,6 +125,8 @@ pub(super) struct Stresses<const D: usize> {
     friction: Vec<f64>,
     /// C_μ^¼ √k there, where k is known \[m/s\].
     speeds: Vec<Option<f64>>,
+    /// That which k and the velocity share.
+    shared: Vec<Option<f64>>,
     /// Per probe: the force per density \[m⁴/s²\] on it in the last iteration.
     pub(super) force: Vec<Vector>,
 }
@@ -141,6 +143,7 @@ impl<const D: usize> Stresses<D> {
             traction: vec![Vector::zeros(); n],
             friction: vec![0.0; n],
             speeds: vec![None; n],
+            shared: vec![None; n],
             force: vec![Vector::zeros(); n],
         };
         for wall in openings.walls {
@@ -239,7 +242,14 @@ impl<const D: usize> Stresses<D> {
             let speed = self.speeds[p].map(|k| law.shared_friction_velocity(k, place, nu, velocity_weight));
             self.friction[p] = friction(law, place, speed, nu);
             self.traction[p] = u * self.friction[p];
+            self.shared[p] = speed;
         }
+    }
+
+    /// Of every piece of wall the u_τ by which it has its friction \[m/s\]: that which k and the velocity share, or that of the friction itself where there is no k.
+    pub(super) fn friction_velocities(&self) -> impl Iterator<Item = f64> + '_ {
+        let own = |p: usize| (self.force[p].norm() / self.probes[p].area).sqrt();
+        self.shared.iter().enumerate().map(move |(p, shared)| shared.unwrap_or_else(|| own(p)))
     }
 
     /// u_τ beside a piece of wall \[m/s\].

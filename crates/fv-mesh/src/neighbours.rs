@@ -3,7 +3,7 @@ use crate::grid::GHOSTS;
 use crate::operators::Operators;
 
 /// The neighbour of a cell along an axis, around the end of a periodic one.
-pub(super) fn neighbour<const D: usize>(
+pub(crate) fn neighbour<const D: usize>(
     ops: &Operators<D>,
     mut at: [usize; D],
     axis: usize,
@@ -16,7 +16,7 @@ pub(super) fn neighbour<const D: usize>(
 }
 
 /// The cells that share a corner with a cell, and the way to their centres; the same more than once on periodic axes of one or two cells.
-pub(super) fn around<const D: usize>(
+pub(crate) fn around<const D: usize>(
     ops: &Operators<D>,
     cell: usize,
 ) -> impl Iterator<Item = (usize, [f64; D])> {

@@ -22,6 +22,7 @@ mod scenes;
 mod skipping;
 mod snapshots;
 mod state;
+mod steady_scalars;
 mod steady_walls;
 mod strategies;
 mod stretched;

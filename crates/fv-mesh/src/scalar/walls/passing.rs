@@ -98,16 +98,15 @@ impl<const D: usize> Passing<D> {
                 if !(near || dry[below] || dry[above]) {
                     continue;
                 }
+                if geometry.open(cell, axis, false) == 0.0 {
+                    continue;
+                }
                 let index = geometry.face(cell, axis, false);
                 new.closed.push((axis, index));
                 if cell[axis] == 0 {
                     new.closed.push((axis, index + grid.cells()[axis] * grid.stride()[axis]));
                 }
-                let ([Some(low), Some(high)], true) =
-                    ([owners[below], owners[above]], geometry.open(cell, axis, false) > 0.0)
-                else {
-                    continue;
-                };
+                let [Some(low), Some(high)] = [owners[below], owners[above]] else { continue };
                 if low == high {
                     continue;
                 }

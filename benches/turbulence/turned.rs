@@ -91,7 +91,7 @@ fn of_model<L: Law>(name: &str, law: L, text: &str, angle: f64, cells: usize) ->
     let watch = Stopwatch::start();
     let DevelopedDuct { ducts, flow, model, force, frictions, residual } =
         DevelopedDuct::new(law, angle, cells, 0.3, VISCOSITY, given)?;
-    let ([along, up], grid) = (ducts.along(), flow.grid());
+    let grid = flow.grid();
     let centre = |i: usize| grid.centre(grid.cell(i));
     let at = |y: f64, column: usize| {
         let y = y.min(1.0 - y);
@@ -101,15 +101,11 @@ fn of_model<L: Law>(name: &str, law: L, text: &str, angle: f64, cells: usize) ->
         below[column] + part * (above[column] - below[column])
     };
     let (mut u, mut k, mut nu_t) = (Norms::default(), Norms::default(), Norms::default());
-    let [columns, rows] = grid.cells();
     for i in (0..grid.n_cells()).filter(|&i| ducts.distance(centre(i)) > 0.0) {
-        let (y, [a, b]) = (ducts.height_of(centre(i)), grid.cell(i));
-        let ends = [[(a, b), ((a + 1) % columns, b)], [(a, b), (a, (b + 1) % rows)]];
-        let mean =
-            |c: usize| ends[c].iter().map(|&(i, j)| 0.5 * flow.velocity().field(c).row(j)[i]).sum::<f64>();
+        let y = ducts.height_of(centre(i));
         // The faces of nearer cells are cut.
         if ducts.distance(centre(i)) > 1.5 * h {
-            u.add(along * mean(0) + up * mean(1), u_tau * at(y, 2));
+            u.add(ducts.speed(&flow, grid.cell(i)), u_tau * at(y, 2));
         }
         k.add(model.closure.k()[i] / u_tau.powi(2), at(y, 3));
         nu_t.add(model.closure.nu_t()[i] / VISCOSITY, at(y, 5));

@@ -19,12 +19,9 @@ impl<const D: usize> Between<D> {
     pub(crate) fn new(x: [f64; D], y: [f64; D], middle: [f64; D], b: usize) -> Self {
         let difference = |p: [f64; D], q: [f64; D]| -> [f64; D] { std::array::from_fn(|a| p[a] - q[a]) };
         let (to_face, step) = (difference(middle, x), difference(y, x));
-        Self {
-            to_face,
-            from_other: difference(middle, y),
-            step,
-            share: (to_face[b] / step[b]).clamp(0.0, 1.0),
-        }
+        // In narrow gaps nodes can be beside each other.
+        let share = if step[b] == 0.0 { 0.5 } else { (to_face[b] / step[b]).clamp(0.0, 1.0) };
+        Self { to_face, from_other: difference(middle, y), step, share }
     }
 
     /// What this node, and the other one, say of φ on the face by their gradients.
@@ -38,7 +35,7 @@ impl<const D: usize> Between<D> {
         if self.step[b] > 0.0 { own - other } else { other - own }
     }
 
-    /// φ that is carried over the face of axis `b` from the node `upwind` of both, by a `scheme` other than [`Convection::Upwind`]. Linear schemes are
+    /// φ that is carried over the face of axis `b` from the node `upwind` of both. `LinearUpwind` and `Quick` are
     ///
     /// ```text
     /// κ φ_line + (1 − κ) ½(φ_0 + φ_1) ± ½(J − J_across),   κ = 1/3
@@ -96,6 +93,15 @@ mod tests {
         for (scheme, upwind) in schemes.flat_map(|scheme| [(scheme, 0), (scheme, 1)]) {
             let value = between(aside).value(scheme, 0, upwind, [2.0, 2.7], [&gradient; 2], 0.0);
             assert!((value - (2.0 + 0.35 - 0.08)).abs() < 1e-14, "{scheme:?} {upwind}: {value}");
+        }
+    }
+
+    #[test]
+    fn nodes_beside_each_other_carry_what_is_linear() {
+        let beside = Between::new([0.0; 2], [0.0, 2.0], [0.5, 1.0], 0);
+        for (scheme, upwind) in [(Convection::Central, 0), (Convection::Quick, 0), (Convection::Quick, 1)] {
+            let value = beside.value(scheme, 0, upwind, [2.0, 1.2], [&[0.7, -0.4]; 2], 0.0);
+            assert!((value - (2.0 + 0.35 - 0.4)).abs() < 1e-14, "{scheme:?} {upwind}: {value}");
         }
     }
 

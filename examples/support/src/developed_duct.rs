@@ -96,17 +96,11 @@ impl<L: Law> DevelopedDuct<L> {
     pub fn analogy(&mut self) -> Outcome<[f64; 2]> {
         let warmth = self.warmth()?;
         let Self { ducts, flow, force, .. } = self;
-        let ([along, up], grid) = (ducts.along(), flow.grid());
-        let ([columns, rows], h) = (grid.cells(), grid.axis(0).width(0));
+        let (grid, h) = (flow.grid(), flow.grid().axis(0).width(0));
         let mut sums = [0.0; 2];
-        for i in 0..grid.n_cells() {
-            let ([a, b], y) = (grid.cell(i), ducts.distance(grid.centre(grid.cell(i))));
-            let mean = |c: usize, ends: [[usize; 2]; 2]| -> f64 {
-                ends.iter().map(|&[i, j]| 0.5 * flow.velocity().field(c).row(j)[i]).sum()
-            };
-            if y > 1.5 * h {
-                let u = [mean(0, [[a, b], [(a + 1) % columns, b]]), mean(1, [[a, b], [a, (b + 1) % rows]])];
-                sums = [sums[0] + along * u[0] + up * u[1], sums[1] + warmth.field().row(b)[a]];
+        for cell in (0..grid.n_cells()).map(|i| grid.cell(i)) {
+            if ducts.distance(grid.centre(cell)) > 1.5 * h {
+                sums = [sums[0] + ducts.speed(flow, cell), sums[1] + warmth.field().row(cell[1])[cell[0]]];
             }
         }
         let taken = -warmth.given_off().unwrap_or_default() / (*force * ducts.area());

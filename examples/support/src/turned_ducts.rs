@@ -91,6 +91,14 @@ impl TurnedDucts {
         (along * of(0) + up * of(1)) / self.area()
     }
 
+    /// Velocity along the ducts at a cell's centre \[m/s\], the mean of those on its faces.
+    pub fn speed(&self, flow: &Simple<2>, [i, j]: [usize; 2]) -> f64 {
+        let ([columns, rows], [along, up]) = (flow.grid().cells(), self.along());
+        let [u, v] = [0, 1].map(|c| flow.velocity().field(c));
+        let mean = 0.5 * (u.row(j)[i] + u.row(j)[(i + 1) % columns]);
+        along * mean + up * 0.5 * (v.row(j)[i] + v.row((j + 1) % rows)[i])
+    }
+
     /// What the fluid does to the walls along the ducts, friction and pressure \[N/m\].
     pub fn drag(&self, flow: &Simple<2>) -> f64 {
         let [along, up] = self.along();

@@ -32,6 +32,8 @@ const SWEEPS: usize = 500;
 /// A δ = rest in a steady velocity.
 struct System<const D: usize> {
     matrix: StencilMatrix<D>,
+    /// What carries beside walls ([`Scalar::through`]).
+    through: Option<[Velocity<D>; 2]>,
     rest: Vec<f64>,
     delta: Vec<f64>,
     solver: MomentumSolver,
@@ -42,8 +44,10 @@ struct System<const D: usize> {
 impl<const D: usize> System<D> {
     fn new(scalar: &Scalar<D>, velocity: &Velocity<D>) -> Result<Self, FlowError> {
         let n = scalar.grid.n_cells();
+        let through = scalar.through(velocity);
         Ok(Self {
-            matrix: scalar.steady_matrix(velocity)?,
+            matrix: scalar.steady_matrix(through.as_ref().map_or(velocity, |[whole, _]| whole))?,
+            through,
             rest: vec![0.0; n],
             delta: vec![0.0; n],
             solver: MomentumSolver::new(n, REDUCTION, SWEEPS),
@@ -82,12 +86,10 @@ impl<const D: usize> Scalar<D> {
             return Err(FlowError::Boundary { what: what.into() });
         }
         self.begin(time, &mut hold);
-        let through = self.through(velocity);
-        let carriers = through.as_ref().map_or([velocity; 2], |[whole, far]| [whole, far]);
-        let mut system = System::new(self, carriers[0])?;
+        let mut system = System::new(self, velocity)?;
         let mut change = f64::INFINITY;
         for iteration in 1..=max_iterations {
-            change = self.correct(&mut system, carriers, time, held, &mut hold)?;
+            change = self.correct(&mut system, velocity, time, held, &mut hold)?;
             if change <= tolerance {
                 return Ok(iteration);
             }
@@ -107,10 +109,8 @@ impl<const D: usize> Scalar<D> {
         mut hold: impl FnMut(&mut [f64]),
     ) -> Result<f64, FlowError> {
         self.begin(time, &mut hold);
-        let through = self.through(velocity);
-        let carriers = through.as_ref().map_or([velocity; 2], |[whole, far]| [whole, far]);
-        let mut system = System::new(self, carriers[0])?;
-        self.correct(&mut system, carriers, time, held, &mut hold)
+        let mut system = System::new(self, velocity)?;
+        self.correct(&mut system, velocity, time, held, &mut hold)
     }
 
     fn begin(&mut self, time: f64, hold: &mut impl FnMut(&mut [f64])) {
@@ -120,17 +120,17 @@ impl<const D: usize> Scalar<D> {
         self.step = 0;
     }
 
-    /// Solves for δ and takes its part, carried by the velocities of [`through`](Self::through); answers the largest change of φ over the largest |φ|.
+    /// Solves for δ and takes its part, answers the largest change of φ over the largest |φ|.
     fn correct(
         &mut self,
-        System { matrix, rest, delta, solver, iterations }: &mut System<D>,
-        carriers: [&Velocity<D>; 2],
+        System { matrix, through, rest, delta, solver, iterations }: &mut System<D>,
+        velocity: &Velocity<D>,
         time: f64,
         held: &[usize],
         hold: &mut impl FnMut(&mut [f64]),
     ) -> Result<f64, FlowError> {
         *iterations += 1;
-        self.rest(carriers, rest);
+        self.rest(through.as_ref().map_or([velocity; 2], |[whole, far]| [whole, far]), rest);
         for o in held.iter().copied().chain(self.dry()) {
             // Ghosts belong to no cell.
             if let Some(cell) = self.grid.cell_at(o) {

@@ -192,6 +192,6 @@ fields = false
     // A third of the box is warm wall.
     let fluid = 1.5 * (mean - 1.0 / 3.0);
     assert!((fluid / sides - 1.0).abs() < 0.015, "{fluid} {sides}");
-    // What they give off leaves through the end. A straight line from nothing would have half of that as its mean; most is given off at the beginning, where layers are thin.
-    assert!((0.5..0.75).contains(&(fluid / given_off)), "{fluid} {given_off}");
+    // What they give off, Q, leaves through the end. It grows like x^n, n 0.8 to 0.9, and the layer goes along at 0.8 to 0.85 of the mean velocity: the scalar's mean is Q/0.8/(1 + n).
+    assert!((0.6..0.75).contains(&(fluid / given_off)), "{fluid} {given_off}");
 }

@@ -1,6 +1,8 @@
 //! Where walls are among the cells of a scalar.
 use super::{DISTANCE, NEAREST, Seen};
 use crate::CartesianGrid;
+use crate::neighbours::neighbour;
+use crate::operators::Operators;
 use interfaces::{CutCells, OpenFace, WallPiece};
 use std::collections::HashMap;
 
@@ -8,6 +10,7 @@ use std::collections::HashMap;
 pub(super) struct Geometry<'a, const D: usize> {
     pub(super) grid: &'a CartesianGrid<D>,
     pub(super) periodic: [bool; D],
+    pub(super) ops: Operators<D>,
     faces: [HashMap<usize, &'a OpenFace>; D],
     pieces: HashMap<usize, &'a WallPiece>,
 }
@@ -17,21 +20,14 @@ impl<'a, const D: usize> Geometry<'a, D> {
         Self {
             grid,
             periodic,
+            ops: Operators::new(grid, periodic),
             faces: std::array::from_fn(|a| cuts.faces[a].iter().map(|face| (face.index, face)).collect()),
             pieces: cuts.walls.iter().map(|wall| (wall.cell, wall)).collect(),
         }
     }
     /// The cell below or above this one along `axis`, if there is one.
-    pub(super) fn beside(&self, mut cell: [usize; D], axis: usize, upper: bool) -> Option<[usize; D]> {
-        let n = self.grid.cells()[axis];
-        cell[axis] = match (cell[axis], upper) {
-            (i, true) if i + 1 < n => i + 1,
-            (i, false) if i > 0 => i - 1,
-            (_, true) if self.periodic[axis] => 0,
-            (_, false) if self.periodic[axis] => n - 1,
-            _ => return None,
-        };
-        Some(cell)
+    pub(super) fn beside(&self, cell: [usize; D], axis: usize, upper: bool) -> Option<[usize; D]> {
+        neighbour(&self.ops, cell, axis, upper).map(|other| self.grid.cell(other))
     }
     /// How much of a face of the cell is open.
     pub(super) fn open(&self, cell: [usize; D], axis: usize, upper: bool) -> f64 {

@@ -3,7 +3,6 @@ use super::Shut;
 use super::geometry::Geometry;
 use crate::between::Between;
 use crate::cell_gradients::{CellGradients, Linear};
-use crate::operators::Operators;
 use crate::{CartesianGrid, Convection, Field, Velocity};
 
 /// Convection through the faces within two cells of one without fluid at its centre. All that passes through such a cell belongs to its owner, the cell before it. So it leaves one owner and
@@ -77,7 +76,6 @@ fn volume<const D: usize>(grid: &CartesianGrid<D>, cell: usize) -> f64 {
 impl<const D: usize> Passing<D> {
     pub(super) fn new(geometry: &Geometry<D>, wet: &[bool], owners: &[Option<usize>], shut: &[Shut]) -> Self {
         let grid = geometry.grid;
-        let ops = Operators::new(grid, geometry.periodic);
         let dry: Vec<bool> = wet.iter().map(|wet| !wet).collect();
         let mut new = Self {
             gradients: CellGradients::new(wet.len()),
@@ -113,7 +111,7 @@ impl<const D: usize> Passing<D> {
                 let area = geometry.area(cell, axis);
                 let mut owner = |owner: usize, of: usize| Owner {
                     cell: owner,
-                    place: new.gradients.place(&ops, &dry, owner),
+                    place: new.gradients.place(&geometry.ops, &dry, owner),
                     area: area / volume(grid, owner),
                     by_member: owner != of,
                 };

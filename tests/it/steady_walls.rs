@@ -284,12 +284,8 @@ fn friction_of_developed_ducts_does_not_depend_on_where_their_walls_are() {
     run(Wilcox::openfoam(), include_str!("../data/turbulence/channel_kOmega_c.csv"));
 }
 
-/// Walls across the grid have friction in the buffer layer, too, where the upwind part of what carries momentum and k acts along the stream only. (With upwind parts
-/// along the axes it was 11 and 26 % too low, with that of k alone along them 17 % at 45°.) Walls that rise along the stream and that recede have it alike: momentum
-/// is not carried from the one to the other. (With values of second order and products of mid values one had 18 % too little, the other 21 % too much.)
-#[test]
-fn friction_of_walls_across_the_grid_in_the_buffer_layer() {
-    let viscosity = 1e-4;
+/// Of ducts with these viscosity, angles, cells and largest deviations: the force for what drives the resolved flow, and by how much more its receding wall rubs than the rising one.
+fn friction_against_resolved(viscosity: f64, cases: &[(f64, usize, f64)]) -> Vec<f64> {
     let fine = developed_channel(
         Sst::default(),
         WallFunctions::default(),
@@ -300,13 +296,29 @@ fn friction_of_walls_across_the_grid_in_the_buffer_layer() {
     )
     .unwrap();
     let given = 2.0 * fine.u_tau * fine.u_tau;
-    for (angle, cells, most) in [(15.0, 20, 0.05), (45.0, 20, 0.15)] {
+    let more = cases.iter().map(|&(angle, cells, most)| {
         let duct = DevelopedDuct::new(Sst::default(), angle, cells, 0.3, viscosity, given).unwrap();
         let off = duct.force / given - 1.0;
         assert!(off.abs() < most && duct.residual < 1e-5, "{angle} {cells}: {off} {}", duct.residual);
         let [rising, receding] = duct.frictions;
-        assert!((receding / rising - 1.0).abs() < 0.15, "{angle} {cells}: {rising} {receding}");
-    }
+        receding / rising - 1.0
+    });
+    more.collect()
+}
+
+/// Walls across the grid have friction in the buffer layer, too, where the upwind part of what carries momentum and k acts along the stream only. (With upwind parts
+/// along the axes it was 11 and 26 % too low, with that of k alone along them 17 % at 45°.) Walls that rise along the stream and that recede have it alike: momentum
+/// is not carried from the one to the other. (With values of second order and products of mid values one had 18 % too little, the other 21 % too much.)
+#[test]
+fn friction_of_walls_across_the_grid_in_the_buffer_layer() {
+    let more = friction_against_resolved(1e-4, &[(15.0, 20, 0.05), (45.0, 20, 0.1)]);
+    assert!(more.iter().all(|more| more.abs() < 0.15), "{more:?}");
+}
+
+/// And where the logarithmic layer begins, if it is several cells thick: y+ 33 and 25. (With the upwind part along the axes there −13 and −12 %.)
+#[test]
+fn friction_of_walls_across_the_grid_beyond_the_buffer_layer() {
+    friction_against_resolved(1e-4, &[(15.0, 10, 0.08), (45.0, 10, 0.09)]);
 }
 
 /// Walls that leave a tenth of a cell: with values of third order there it went to and fro (a residual of 0.1).

@@ -3,21 +3,13 @@ use crate::least_squares::{dot, norm2};
 use interfaces::LawOfTheWall;
 
 /// A smaller share of what is across the stream is damped as the rest.
-const LEAST: f64 = 1e-3;
+pub(crate) const LEAST: f64 = 1e-3;
 
-/// How much of what changes across the stream upwind parts spare, from 0 to 1, at places where half a cell has these y+: where cells resolve the layer on a wall.
-/// Beside a logarithmic layer less damping costs more than it saves (docs/results.md, "First cells of any height"). Nothing in `out` if it is none anywhere.
-pub(crate) fn spare(y_plus: impl Iterator<Item = f64>, out: &mut Vec<f64>) {
-    let share = |y_plus| {
-        let share = 1.0 - LawOfTheWall::logarithmic(y_plus);
-        // Nor where y+ is not a number, in a fluid at rest without viscosity.
-        if share >= LEAST { share } else { 0.0 }
-    };
-    out.clear();
-    out.extend(y_plus.map(share));
-    if out.iter().all(|share| *share == 0.0) {
-        out.clear();
-    }
+/// How much of what changes across the stream upwind parts spare, from 0 to 1, where half a cell has this y+: where cells resolve the sublayer on a wall.
+pub(crate) fn spared(y_plus: f64) -> f64 {
+    let share = 1.0 - LawOfTheWall::logarithmic(y_plus);
+    // Nor where y+ is not a number, in a fluid at rest without viscosity.
+    if share >= LEAST { share } else { 0.0 }
 }
 
 /// What a node sees of the stream and of what it carries.
@@ -133,16 +125,9 @@ mod tests {
     }
 
     #[test]
-    fn cells_that_resolve_a_layer_are_spared() {
-        let spared = |y_plus: &[f64]| {
-            let mut out = vec![9.0];
-            spare(y_plus.iter().copied(), &mut out);
-            out
-        };
-        let found = spared(&[0.0, 30.0, 60.0, f64::INFINITY, f64::NAN]);
-        assert!(found[0] == 1.0 && (found[1] - (-1.0_f64).exp()).abs() < 1e-12, "{found:?}");
-        assert_eq!(found[2..], [0.0; 3]);
-        assert!(spared(&[60.0, f64::NAN]).is_empty());
+    fn cells_that_resolve_a_sublayer_are_spared() {
+        assert!(spared(0.0) == 1.0 && (spared(30.0) - (-1.0_f64).exp()).abs() < 1e-12);
+        assert_eq!([60.0, f64::INFINITY, f64::NAN].map(spared), [0.0; 3]);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Convection near cells without fluid.
 use super::log_slopes::LogSlopes;
-use crate::across_stream::{Stream, across_stream, spare};
+use crate::across_stream::{Stream, across_stream, spared};
 use crate::cell_gradients::{CellGradients, Linear};
 use crate::convection::KAPPA;
 use crate::least_squares::norm2;
@@ -188,7 +188,11 @@ impl<const D: usize> NearSolids<D> {
             let half = 0.5 * width.iter().sum::<f64>() / D as f64;
             LawOfTheWall::friction_velocity(k[cell]) * half / nu
         };
-        spare(self.cells.cells().zip(&self.widths).map(y_plus), &mut self.spared);
+        self.spared.clear();
+        self.spared.extend(self.cells.cells().zip(&self.widths).map(y_plus).map(spared));
+        if self.spared.iter().all(|share| *share == 0.0) {
+            self.spared.clear();
+        }
     }
 
     /// The streams in the cells, and what `carried` jumps by through them.

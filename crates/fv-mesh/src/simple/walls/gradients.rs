@@ -159,3 +159,39 @@ pub(super) fn around<const D: usize>(
         (node as isize + offset) as usize
     })
 }
+
+/// The nodes around a place that are `seen`, and their weights; the one beside which it is if none is.
+pub(super) fn corners<const D: usize>(
+    openings: &Openings<D>,
+    c: Option<usize>,
+    x: [f64; D],
+    near: usize,
+    seen: impl Fn(usize) -> bool,
+) -> Vec<(usize, f64)> {
+    let s = openings.grid.stride();
+    let (mut base, mut part) = (0, [0.0; D]);
+    for a in 0..D {
+        let places = &openings.metrics.of(c, a).x;
+        let i = places.partition_point(|&p| p <= x[a]).clamp(1, places.len() - 1) - 1;
+        part[a] = ((x[a] - places[i]) / (places[i + 1] - places[i])).clamp(0.0, 1.0);
+        base += i * s[a];
+    }
+    let mut out = Vec::new();
+    for k in 0..1_usize << D {
+        let (mut node, mut weight) = (base, 1.0);
+        for a in 0..D {
+            let up = k >> a & 1;
+            node += up * s[a];
+            weight *= if up == 1 { part[a] } else { 1.0 - part[a] };
+        }
+        if weight > 1e-3 && seen(node) {
+            out.push((node, weight));
+        }
+    }
+    if out.is_empty() {
+        out.extend(around(openings, near).find(|&o| seen(o)).map(|o| (o, 1.0)));
+    }
+    let sum: f64 = out.iter().map(|o| o.1).sum();
+    out.iter_mut().for_each(|o| o.1 /= sum);
+    out
+}

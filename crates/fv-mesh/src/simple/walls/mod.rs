@@ -2,6 +2,8 @@
 mod beside;
 mod edges;
 mod gradients;
+mod layers;
+mod nearest;
 mod openings;
 mod rows;
 mod stress;
@@ -20,7 +22,9 @@ use crate::{CartesianGrid, Convection, Field, FlowError};
 use beside::{Beside, Ghost};
 use gradients::Gradients;
 use interfaces::{CutCells, Vector, WallRow, Wrench};
-use openings::Openings;
+use layers::Layers;
+use nearest::nearest_pieces;
+use openings::{LAYERS, Openings};
 use rows::{Flow, Row};
 use std::collections::HashSet;
 use stress::Stresses;
@@ -50,8 +54,7 @@ pub(crate) struct SimpleWalls<const D: usize> {
     rates: Vec<f64>,
     /// At the nodes of one component that have a gradient.
     streams: Vec<Stream<D>>,
-    /// How much of what changes across the stream every piece of wall has spared; nothing if none has.
-    spared: Vec<f64>,
+    layers: Layers,
     n_bodies: usize,
     /// Of cells with fluid and their neighbours.
     pub(super) spans: Spans,
@@ -87,6 +90,7 @@ impl<const D: usize> SimpleWalls<D> {
         law.check()?;
         let openings = Openings::new(cuts, grid, metrics, outlets, matches!(law, WallStress::Law { .. }))?;
         let spans = openings.spans();
+        let nearest = nearest_pieces(&openings, LAYERS + 1);
         let mut gradients = std::array::from_fn(|_| Gradients::default());
         let (mut shut, mut partly) =
             (std::array::from_fn(|_| Vec::new()), std::array::from_fn(|_| Vec::new()));
@@ -118,10 +122,11 @@ impl<const D: usize> SimpleWalls<D> {
                         sides[c].push((index + grid.cells()[c] * grid.stride()[c], open));
                     }
                 }
-                rows[c].extend(Row::new(&openings, c, index, law.nearest(), &mut gradients));
+                rows[c].extend(Row::new(&openings, c, index, &nearest, law.nearest(), &mut gradients));
             }
         }
         let stresses = Stresses::new(&openings, law, &rows);
+        let layers = Layers::new(&openings, &stresses);
         let beside = Beside::new(&openings);
         let ghosts = std::array::from_fn(|c| beside::ghosts(&openings, c, law.nearest(), &mut gradients[c]));
         let n_bodies = cuts.walls.iter().map(|w| w.body + 1).max().unwrap_or(0);
@@ -135,7 +140,7 @@ impl<const D: usize> SimpleWalls<D> {
             sums: vec![0.0; longest],
             rates: vec![0.0; longest],
             streams: Vec::new(),
-            spared: Vec::new(),
+            layers,
             rows,
             gradients,
             stresses,
@@ -153,7 +158,7 @@ impl<const D: usize> SimpleWalls<D> {
         for (c, (gradients, u)) in self.gradients.iter_mut().zip(velocity).enumerate() {
             gradients.update(u, |piece| self.stresses.at_wall(piece, c, viscosity));
         }
-        self.stresses.spare(viscosity, &mut self.spared);
+        self.layers.update(velocity, &self.stresses, viscosity);
     }
 
     /// Puts the rows beside walls into the equation of component `c`. `terms` gets the sizes of the terms of rows that are
@@ -168,11 +173,11 @@ impl<const D: usize> SimpleWalls<D> {
     ) {
         let rows = &self.rows[c];
         let u = it.velocity[c].data();
-        let streams = (it.scheme.is_linear_upwind() && !self.spared.is_empty()).then(|| {
+        let streams = (it.scheme.is_linear_upwind() && self.layers.any()).then(|| {
             self.streams.clear();
             self.streams.resize(self.gradients[c].values.len(), Stream::new([0.0; D], 0.0));
             for row in rows {
-                row.see_stream(c, it.velocity, &self.gradients[c], &self.spared, &mut self.streams);
+                row.see_stream(c, it.velocity, &self.gradients[c], &self.layers.resolved, &mut self.streams);
             }
             self.streams.as_slice()
         });

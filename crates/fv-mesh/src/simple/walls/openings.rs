@@ -7,7 +7,7 @@ use interfaces::{CutCells, WallPiece};
 use std::collections::{HashMap, HashSet};
 
 /// Cells at most as many steps from one that a wall cuts are near it.
-const LAYERS: usize = 3;
+pub(super) const LAYERS: usize = 3;
 
 /// What walls leave of the cells, by storage index.
 pub(super) struct Openings<'a, const D: usize> {

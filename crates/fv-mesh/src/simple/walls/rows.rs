@@ -1,16 +1,13 @@
 //! The momentum equation of control volumes beside walls.
 use super::edges::{Edge, Kind, VolumeSide, WIDE};
 use super::gradients::{Gradients, dot};
+use super::nearest::{Pieces, away};
 use super::openings::Openings;
 use crate::across_stream::Stream;
-use crate::grid::GHOSTS;
 use crate::linear::StencilMatrix;
 use crate::metrics::Metrics;
 use crate::momentum_matrix::MomentumEquations;
 use crate::{CartesianGrid, Convection, Field};
-
-/// So many cells around a node a wall is looked for.
-const REACH: usize = 3;
 
 /// One control volume: the halves of two cells, or all of one whose other face is shut.
 pub(super) struct Row<const D: usize> {
@@ -72,24 +69,19 @@ fn is_side<const D: usize>(openings: &Openings<D>, [c, b]: [usize; 2], number: u
 }
 
 /// The piece of wall nearest to a node, if there is one near it.
-fn nearest_piece<const D: usize>(openings: &Openings<D>, c: usize, index: usize) -> Option<usize> {
-    let (grid, x, at) = (openings.grid, openings.node(c, index), openings.at(index));
-    let width = 2 * REACH + 1;
-    let found = (0..width.pow(D as u32)).filter_map(|k| {
-        let (mut cell, mut rest) = (0, k);
-        for a in 0..D {
-            let i = (at[a] + rest % width).checked_sub(REACH)?;
-            if i >= grid.cells()[a] + 2 * GHOSTS {
-                return None;
-            }
-            cell += i * grid.stride()[a];
-            rest /= width;
-        }
-        let (piece, wall) = openings.piece(cell)?;
-        let distance: f64 = (0..D).map(|a| (x[a] - wall.foot[a]).powi(2)).sum();
-        Some((piece, distance))
+fn nearest_piece<const D: usize>(
+    openings: &Openings<D>,
+    c: usize,
+    index: usize,
+    nearest: &Pieces,
+) -> Option<usize> {
+    let (grid, x) = (openings.grid, openings.node(c, index));
+    let cells = [index, index - grid.stride()[c]];
+    let pieces = cells.into_iter().filter_map(|o| {
+        let cell = grid.cell_at(openings.wrap(o))?;
+        nearest.get(&grid.index(cell)).copied()
     });
-    found.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(piece, _)| piece)
+    pieces.min_by(|&p, &q| away(openings, x, p).total_cmp(&away(openings, x, q)))
 }
 
 impl<const D: usize> Row<D> {
@@ -98,6 +90,7 @@ impl<const D: usize> Row<D> {
         openings: &Openings<D>,
         c: usize,
         index: usize,
+        pieces: &Pieces,
         nearest: Option<f64>,
         gradients: &mut [Gradients<D>; D],
     ) -> Option<Self> {
@@ -129,20 +122,20 @@ impl<const D: usize> Row<D> {
         }
         let cell = openings.grid.cell_at(index).map_or(0, |cell| openings.grid.index(cell));
         let wide = openings.open[c].data()[index] >= WIDE;
-        let piece = if wide { nearest_piece(openings, c, index) } else { None };
+        let piece = if wide { nearest_piece(openings, c, index, pieces) } else { None };
         Some(Self { cell, index, inv_volume, edges, slot, piece })
     }
 
-    /// Looks at the stream at the node; `spared`: how much of what changes across it every piece of wall has spared.
+    /// Looks at the stream at the node; `resolved`: how well cells resolve the layer on every piece of wall.
     pub(super) fn see_stream(
         &self,
         c: usize,
         velocity: &[Field<D>; D],
         gradients: &Gradients<D>,
-        spared: &[f64],
+        resolved: &[f64],
         streams: &mut [Stream<D>],
     ) {
-        let Some(spared) = self.piece.map(|piece| spared[piece]).filter(|spared| *spared > 0.0) else {
+        let Some(spared) = self.piece.map(|piece| resolved[piece]).filter(|spared| *spared > 0.0) else {
             return;
         };
         let u = velocity[c].data();

@@ -1,8 +1,7 @@
 //! The stress of walls on the fluid.
-use super::gradients::{AtWall, height, to_wall};
+use super::gradients::{AtWall, corners, height, to_wall};
 use super::openings::Openings;
 use super::rows::Row;
-use crate::across_stream::spare;
 use crate::linear::StencilMatrix;
 use crate::{Field, FlowError};
 use interfaces::{LawOfTheWall, Vector, WallPiece};
@@ -78,7 +77,7 @@ fn friction(law: LawOfTheWall, [y, u]: [f64; 2], u_tau: Option<f64>, nu: f64) ->
 pub(super) struct Probe {
     y: f64,
     /// Half of the cell's extent along the normal \[m\].
-    half: f64,
+    pub(super) half: f64,
     /// Per component, range in `terms`.
     ranges: [(usize, usize); 3],
     /// Range in `cells`.
@@ -86,7 +85,7 @@ pub(super) struct Probe {
     /// Storage index of its cell.
     pub(super) cell: usize,
     pub(super) normal: Vector,
-    velocity: Vector,
+    pub(super) velocity: Vector,
     pub(super) area: f64,
     pub(super) body: usize,
     pub(super) arm: Vector,
@@ -263,13 +262,8 @@ impl<const D: usize> Stresses<D> {
     }
 
     /// y+ of half a cell.
-    fn y_plus(&self, piece: usize, nu: f64) -> f64 {
+    pub(super) fn y_plus(&self, piece: usize, nu: f64) -> f64 {
         self.speed(piece) * self.probes[piece].half / nu
-    }
-
-    /// How much of what changes across the stream upwind parts [spare] beside every piece of wall.
-    pub(super) fn spare(&self, nu: f64, out: &mut Vec<f64>) {
-        spare((0..self.probes.len()).map(|piece| self.y_plus(piece, nu)), out);
     }
 
     /// What a wall tells gradients of component `c`: where cells are much larger than the viscous sublayer the nodes around say more of
@@ -331,40 +325,4 @@ impl<const D: usize> Stresses<D> {
             self.force[share.probe][c] += share.whole * stress;
         }
     }
-}
-
-/// The nodes around a place that are `seen`, and their weights; the one beside which it is if none is.
-fn corners<const D: usize>(
-    openings: &Openings<D>,
-    c: Option<usize>,
-    x: [f64; D],
-    near: usize,
-    seen: impl Fn(usize) -> bool,
-) -> Vec<(usize, f64)> {
-    let s = openings.grid.stride();
-    let (mut base, mut part) = (0, [0.0; D]);
-    for a in 0..D {
-        let places = &openings.metrics.of(c, a).x;
-        let i = places.partition_point(|&p| p <= x[a]).clamp(1, places.len() - 1) - 1;
-        part[a] = ((x[a] - places[i]) / (places[i + 1] - places[i])).clamp(0.0, 1.0);
-        base += i * s[a];
-    }
-    let mut out = Vec::new();
-    for k in 0..1_usize << D {
-        let (mut node, mut weight) = (base, 1.0);
-        for a in 0..D {
-            let up = k >> a & 1;
-            node += up * s[a];
-            weight *= if up == 1 { part[a] } else { 1.0 - part[a] };
-        }
-        if weight > 1e-3 && seen(node) {
-            out.push((node, weight));
-        }
-    }
-    if out.is_empty() {
-        out.extend(super::gradients::around(openings, near).find(|&o| seen(o)).map(|o| (o, 1.0)));
-    }
-    let sum: f64 = out.iter().map(|o| o.1).sum();
-    out.iter_mut().for_each(|o| o.1 /= sum);
-    out
 }

@@ -12,8 +12,8 @@ const PLACES: [f64; 3] = [1.0, 2.0, 3.0];
 /// A logarithmic one has ln 1.5/ln 2 = 0.58, a straight one 1.
 const THIN: f64 = 0.3;
 
-/// Up to so many times the y+ at which sublayers are, layers that are several cells thick are resolved: as far as gradients hear the wall's own velocity, which is
-/// none of a logarithmic layer. Beyond it, sparing brings little and layers in bends keep to walls (docs/results.md, "First cells of any height").
+/// Layers that are several cells thick are resolved up to so many times the y+ up to which sublayers are: as far as gradients hear the wall's own velocity, of which a
+/// logarithmic layer knows nothing. Sparing beyond that brings little, and layers in bends keep to walls (docs/results.md, "Where logarithmic layers begin").
 const HEARD: f64 = 4.0;
 
 /// How well cells resolve the layers on pieces of wall: those whose sublayer they resolve, and those that are several cells thick.

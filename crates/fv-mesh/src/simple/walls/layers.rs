@@ -1,10 +1,9 @@
 //! How well cells resolve layers on walls.
 use super::gradients::corners;
 use super::openings::Openings;
-use super::stress::Stresses;
+use super::stress::{Probe, Stresses};
 use crate::Field;
 use crate::across_stream::{LEAST, spared};
-use interfaces::Vector;
 
 /// Places at which a layer is seen: so many times the cell's extent along the normal from the wall.
 const PLACES: [f64; 3] = [1.0, 2.0, 3.0];
@@ -17,12 +16,11 @@ const THIN: f64 = 0.3;
 const HEARD: f64 = 4.0;
 
 /// How well cells resolve the layers on pieces of wall: those whose sublayer they resolve, and those that are several cells thick.
-#[derive(Default)]
 pub(super) struct Layers {
     /// The nodes around the places, and their weights.
     terms: Vec<(usize, f64)>,
-    /// Per piece, place and component, where its terms end.
-    ends: Vec<usize>,
+    /// Where the terms of a component begin, by piece and place; at last where all end.
+    starts: Vec<usize>,
     /// Per piece from 0, thinner than cells resolve, to 1.
     pub(super) resolved: Vec<f64>,
 }
@@ -30,17 +28,17 @@ pub(super) struct Layers {
 impl Layers {
     pub(super) fn new<const D: usize>(openings: &Openings<D>, stresses: &Stresses<D>) -> Self {
         let probes = &stresses.probes;
-        let mut new = Self { resolved: vec![0.0; probes.len()], ..Self::default() };
+        let (mut terms, mut starts) = (Vec::new(), vec![0]);
         for (probe, wall) in probes.iter().zip(openings.walls) {
             for times in PLACES {
                 let x = std::array::from_fn(|a| wall.foot[a] + 2.0 * times * probe.half * wall.normal[a]);
                 for c in 0..D {
-                    new.terms.extend(corners(openings, Some(c), x, probe.cell, |o| openings.alive(c, o)));
-                    new.ends.push(new.terms.len());
+                    terms.extend(corners(openings, Some(c), x, probe.cell, |o| openings.alive(c, o)));
+                    starts.push(terms.len());
                 }
             }
         }
-        new
+        Self { terms, starts, resolved: vec![0.0; probes.len()] }
     }
 
     /// Do cells resolve any?
@@ -48,27 +46,34 @@ impl Layers {
         self.resolved.iter().any(|share| *share > 0.0)
     }
 
-    /// Looks at the flow.
+    /// Looks at the flow, but not where y+ alone decides.
     pub(super) fn update<const D: usize>(
         &mut self,
         velocity: &[Field<D>; D],
         stresses: &Stresses<D>,
         nu: f64,
     ) {
-        let Self { terms, ends, resolved } = self;
-        let (mut first, mut ends) = (0, ends.iter());
-        for (piece, (resolved, probe)) in resolved.iter_mut().zip(&stresses.probes).enumerate() {
-            let speeds = PLACES.map(|_| {
-                let mut u = Vector::zeros();
-                for (c, &last) in ends.by_ref().take(D).enumerate() {
-                    let sum: f64 = terms[first..last].iter().map(|&(o, w)| w * velocity[c].data()[o]).sum();
-                    (u[c], first) = (sum - probe.velocity[c], last);
-                }
-                (u - probe.normal * probe.normal.dot(&u)).norm()
-            });
+        for piece in 0..self.resolved.len() {
             let y_plus = stresses.y_plus(piece, nu);
-            *resolved = f64::max(spared(y_plus), share(speeds) * spared(y_plus / HEARD));
+            let (sublayer, most) = (spared(y_plus), spared(y_plus / HEARD));
+            self.resolved[piece] = match sublayer < most {
+                true => sublayer.max(most * share(self.speeds(piece, velocity, &stresses.probes[piece]))),
+                false => sublayer,
+            };
         }
+    }
+
+    /// Along the wall, against it, at the three places \[m/s\].
+    fn speeds<const D: usize>(&self, piece: usize, velocity: &[Field<D>; D], probe: &Probe) -> [f64; 3] {
+        std::array::from_fn(|place| {
+            let mut u = -probe.velocity;
+            for (c, velocity) in velocity.iter().enumerate() {
+                let start = (PLACES.len() * piece + place) * D + c;
+                let terms = &self.terms[self.starts[start]..self.starts[start + 1]];
+                u[c] += terms.iter().map(|&(o, w)| w * velocity.data()[o]).sum::<f64>();
+            }
+            (u - probe.normal * probe.normal.dot(&u)).norm()
+        })
     }
 }
 

@@ -90,6 +90,7 @@ impl<const D: usize> SimpleWalls<D> {
         law.check()?;
         let openings = Openings::new(cuts, grid, metrics, outlets, matches!(law, WallStress::Law { .. }))?;
         let spans = openings.spans();
+        // Cells of rows and those beside them.
         let nearest = nearest_pieces(&openings, LAYERS + 1);
         let mut gradients = std::array::from_fn(|_| Gradients::default());
         let (mut shut, mut partly) =

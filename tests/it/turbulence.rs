@@ -294,3 +294,22 @@ fn a_channel_with_little_turbulence_at_its_inlet_comes_to_rest() {
     let info = flow.solve_with(&mut model, 600, 1e-5).unwrap();
     assert!(info.iterations < 400, "{info:?}");
 }
+
+/// In a fluid at rest turbulence dies out: what was set to the least value in every iteration had a residual that stayed.
+#[test]
+fn turbulence_that_dies_out_comes_to_rest() {
+    fn run<L: Law>(law: L) {
+        let axis = || Axis::uniform(8, 0.0, 1.0).unwrap();
+        let grid = CartesianGrid::from_axes([axis(), axis()]).unwrap();
+        let fluid = Fluid { density: 1.0, viscosity: 1e-6 };
+        let mut flow = Simple::new(grid.clone(), [Side::WALL.both(), Side::WALL.both()], fluid).unwrap();
+        let model = TwoEquation::new(law, grid.n_cells(), Inflow { k: 1e-3, omega: 1.0 }).unwrap();
+        let mut model = Modelled::new(model, &grid, flow.sides(), TransportParams::steady()).unwrap();
+        let (info, rests) = iterate(&mut flow, &mut model, 2000, 1e-5).unwrap();
+        assert!(rests, "{info:?}");
+    }
+    run(StandardKEpsilon::default());
+    run(Realizable::default());
+    run(Wilcox::default());
+    run(Sst::default());
+}

@@ -1,4 +1,5 @@
 //! What makes one model of two equations differ from another.
+use super::NOTHING;
 use crate::{Inflow, TurbulenceError};
 
 /// The second unknown.
@@ -89,8 +90,10 @@ pub struct Terms {
 }
 
 impl Terms {
+    /// What dies out ends at next to nothing, not below the least value: set to that in every iteration it would never be at rest.
     pub(super) fn put(self, [diffusivity, source, sink]: &mut [Vec<f64>; 3], i: usize) {
-        (diffusivity[i], source[i], sink[i]) = (self.diffusivity, self.source, self.sink);
+        (diffusivity[i], source[i], sink[i]) =
+            (self.diffusivity, self.source + NOTHING * self.sink, self.sink);
     }
 }
 

@@ -5,7 +5,7 @@ mod channel;
 mod couette;
 mod eddies_in_channel;
 mod first_cells;
-mod hindered;
+mod forced;
 mod large_eddies;
 mod places;
 mod plate;
@@ -22,7 +22,7 @@ fn main() -> Outcome<()> {
         ("channel", channel::against_simple_foam),
         ("dns", channel::against_dns),
         ("first_cells", first_cells::first_cells),
-        ("hindered", hindered::hindered),
+        ("forced", forced::forced),
         ("plate", plate::flat_plate),
         ("step", step::backward_facing_step),
         ("cost", robust::cost),

@@ -50,6 +50,13 @@ impl<const D: usize> EddyStress<D> {
         Self { eddy, friction: std::array::from_fn(|_| Vec::new()), rate: 0.0, walls: Vec::new() }
     }
 
+    /// Which sides have walls where the model gives ν_t, by axis and end.
+    pub(crate) fn law(&self) -> [[bool; 2]; D] {
+        let mut law = [[false; 2]; D];
+        self.walls.iter().for_each(|wall| law[wall.axis][wall.end] = true);
+        law
+    }
+
     /// Adds the acceleration of component `c` to `source`.
     pub(crate) fn add(&self, c: usize, state: &FlowState<D>, source: &mut Field<D>) {
         let FlowState { grid, metrics, velocity, .. } = state;

@@ -28,7 +28,7 @@ impl LawOfTheWall {
     /// y+ above which a layer is logarithmic.
     pub const LOGARITHMIC: f64 = 30.0;
     /// The usual weight of the velocity in the [friction velocity](Self::shared_friction_velocity): between what bends and what ducts past a force would have
-    /// (0.3 and 1; docs/results.md, "Friction where the flow speeds up").
+    /// (0.3 and 1; docs/results.md, "Friction where the flow speeds up or slows down").
     pub const VELOCITY_WEIGHT: f64 = 0.4;
 
     /// u_τ \[m/s\] of a layer in equilibrium with k \[m²/s²\]: C_μ^¼ √k with C_μ = 0.09, 0 where k is not positive (Launder & Spalding 1974,

@@ -1,7 +1,16 @@
 //! Files that are written again and again.
+use crate::Outcome;
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::Path;
+
+/// Makes a folder for what is written, if it is not there.
+///
+/// # Errors
+/// What the file system answers, and of which folder.
+pub fn make_folder(path: &Path) -> Outcome<()> {
+    std::fs::create_dir_all(path).map_err(|e| format!("making the folder {}: {e}", path.display()).into())
+}
 
 /// Writes a file: over the one that is there, if any, which costs less than to empty it first (ext4 then waits for the disk) or to make another one.
 ///

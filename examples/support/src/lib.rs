@@ -2,6 +2,8 @@
 //! and move where they are told, flows with them; pictures, progress, tables, time and memory of the process; the start-up theory the
 //! runs are held against.
 
+use std::process::ExitCode;
+
 pub mod axes;
 pub mod channel_cylinder;
 pub mod coupled;
@@ -11,10 +13,10 @@ pub mod duct_cylinder;
 pub mod eccentric_cylinders;
 pub mod files;
 pub mod film;
+pub mod forced_duct;
 pub mod free_body;
 pub mod free_stream;
 pub mod granular;
-pub mod hindered_duct;
 pub mod moved_body;
 pub mod periodic_cube;
 pub mod picture;
@@ -41,6 +43,17 @@ pub mod walled_flows;
 
 /// What may go wrong in an example or a bench.
 pub type Outcome<T> = Result<T, Box<dyn std::error::Error + Send + Sync>>;
+
+/// What an example's `main` answers; errors are told.
+pub fn told(outcome: Outcome<()>) -> ExitCode {
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
 
 /// A case of a bench and its name.
 pub type Case<'a> = (&'a str, fn() -> Outcome<()>);

@@ -32,6 +32,9 @@ pub(crate) struct Momentum<const D: usize> {
     kind: Kind,
     /// Interface weights of component c along axis b; empty for the central scheme.
     weights: [[InterfaceWeights; D]; D],
+    scheme: Convection,
+    /// Per axis and end: does the side follow a law of the wall?
+    law: [[bool; 2]; D],
     pub(crate) spans: Spans,
 }
 
@@ -52,6 +55,16 @@ pub(crate) const LIMITED: u8 = 2;
 
 impl<const D: usize> Momentum<D> {
     pub(crate) fn new(grid: &CartesianGrid<D>, metrics: &Metrics<D>, scheme: Convection) -> Self {
+        Self::beside(grid, metrics, scheme, [[false; 2]; D])
+    }
+
+    /// Between sides of which some follow a law of the wall.
+    fn beside(
+        grid: &CartesianGrid<D>,
+        metrics: &Metrics<D>,
+        scheme: Convection,
+        law: [[bool; 2]; D],
+    ) -> Self {
         let kind = match scheme {
             Convection::Central => Kind::Mean,
             Convection::Upwind | Convection::LinearUpwind | Convection::Quick => Kind::Linear,
@@ -60,10 +73,19 @@ impl<const D: usize> Momentum<D> {
         let weights = std::array::from_fn(|c| {
             std::array::from_fn(|b| match kind {
                 Kind::Mean => InterfaceWeights::default(),
-                _ => metrics.weights(scheme, b, Metrics::<D>::family(Some(c), b)),
+                _ => metrics.weights(scheme, b, Metrics::<D>::family(Some(c), b), law[b]),
             })
         });
-        Self { grid: grid.clone(), metrics: metrics.clone(), kind, weights, spans: Spans::default() }
+        let (grid, metrics, spans) = (grid.clone(), metrics.clone(), Spans::default());
+        Self { grid, metrics, kind, weights, scheme, law, spans }
+    }
+
+    /// Which sides follow a law of the wall, by axis and end.
+    pub(crate) fn set_law(&mut self, law: [[bool; 2]; D]) {
+        if self.law != law {
+            let spans = std::mem::take(&mut self.spans);
+            *self = Self { spans, ..Self::beside(&self.grid, &self.metrics, self.scheme, law) };
+        }
     }
 
     /// One component of

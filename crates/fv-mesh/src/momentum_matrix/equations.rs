@@ -97,6 +97,11 @@ impl<const D: usize> MomentumEquations<D> {
         self.tendency.data()[index]
     }
 
+    /// Which sides follow a law of the wall, by axis and end.
+    pub(crate) fn set_law(&mut self, law: [[bool; 2]; D]) {
+        self.convection.set_law(law);
+    }
+
     pub(crate) fn set_convection(&mut self, scheme: Convection) {
         let spans = std::mem::take(&mut self.convection.spans);
         self.convection = Momentum::new(&self.grid, &self.metrics, scheme);

@@ -20,7 +20,9 @@ impl<const D: usize> Carrier<D> {
     pub(crate) fn new(metrics: &Metrics<D>, scheme: Convection) -> Self {
         Self {
             scheme,
-            weights: std::array::from_fn(|a| metrics.weights(scheme, a, Metrics::<D>::family(None, a))),
+            weights: std::array::from_fn(|a| {
+                metrics.weights(scheme, a, Metrics::<D>::family(None, a), [false; 2])
+            }),
         }
     }
     pub(crate) fn scheme(&self) -> Convection {

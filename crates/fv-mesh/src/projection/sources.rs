@@ -162,6 +162,7 @@ impl<const D: usize> Projection<D> {
     pub(crate) fn add_eddy_stress(&mut self, stress: &EddyStress<D>, dt: f64) -> Result<(), FlowError> {
         stress.eddy.check(&self.state.grid)?;
         self.sources.eddy_rate = stress.rate;
+        self.momentum.set_law(stress.law());
         self.choose_implicit(dt)?;
         self.gather(1, |flow, sources| {
             sources.iter_mut().enumerate().for_each(|(c, source)| stress.add(c, &flow.state, source));

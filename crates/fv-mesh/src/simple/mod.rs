@@ -197,6 +197,7 @@ impl<const D: usize> Simple<D> {
             let FlowState { velocity, fluid, .. } = &self.state;
             walls.update(&velocity.components, self.energy.as_ref(), fluid.viscosity);
         }
+        self.equations.set_law(self.stress.as_ref().map_or([[false; 2]; D], EddyStress::law));
         for c in 0..D {
             let FlowState { grid, metrics, boundaries, velocity, pressure, .. } = &self.state;
             let u = &velocity.components;

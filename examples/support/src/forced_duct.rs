@@ -1,4 +1,4 @@
-//! A duct with a force in its middle, past which the flow along the walls speeds up and slows down again.
+//! A duct with a force in its middle, past which the flow along the walls speeds up and slows down again, or the other way round.
 use crate::Outcome;
 use crate::plane_duct::PlaneDuct;
 use crate::turbulent_flows::{between_walls, growing, iterate};
@@ -12,8 +12,7 @@ use turb::{Inflow, Law, TwoEquation};
 
 /// Kinematic viscosity \[m²/s\].
 const VISCOSITY: f64 = 1e-6;
-/// The force on the fluid \[m/s²\] in the middle of the duct, and the distance at which it is 1/e of that \[m\].
-const FORCE: f64 = 1.5;
+/// The distance from the middle of the duct at which the force is 1/e of what it is there \[m\].
 const RADIUS: f64 = 0.2;
 /// Where cells are even along the duct, and the cells before and behind that.
 const EVEN: [f64; 2] = [-1.2, 2.4];
@@ -30,16 +29,16 @@ pub enum DuctWalls {
 
 /// Friction of the lower wall over the density \[m²/s²\] at places along it \[m\].
 #[derive(Clone, Debug)]
-pub struct HinderedDuct {
+pub struct ForcedDuct {
     friction: Vec<[f64; 2]>,
 }
 
-impl HinderedDuct {
-    /// Of a duct of height 1 with so many cells across, at Re 10⁶.
+impl ForcedDuct {
+    /// Of a duct of height 1 with so many cells across, at Re 10⁶, with this force on the fluid in its middle \[m/s²\].
     ///
     /// # Errors
     /// Those of the flow, the walls and the model, and if the flow does not come to rest.
-    pub fn new<L: Law>(law: L, walls: DuctWalls, cells: usize) -> Outcome<Self> {
+    pub fn new<L: Law>(law: L, walls: DuctWalls, cells: usize, force: f64) -> Outcome<Self> {
         let h = 1.0 / cells as f64;
         let (y, side) = match walls {
             DuctWalls::Sides(Some(first)) => (between_walls(cells, 1.0, first)?, Side::WALL),
@@ -66,7 +65,7 @@ impl HinderedDuct {
         }
         flow.set_velocity(|_| [1.0, 0.0]);
         flow.source_mut()[0]
-            .set(|[x, y]| -FORCE * (-(x * x + (y - 0.5) * (y - 0.5)) / (RADIUS * RADIUS)).exp());
+            .set(|[x, y]| force * (-(x * x + (y - 0.5) * (y - 0.5)) / (RADIUS * RADIUS)).exp());
         let (info, rests) = iterate(&mut flow, &mut model, 2000, 1e-5)?;
         if !rests {
             return Err(format!("the flow is not at rest: {info:?}").into());
@@ -94,10 +93,14 @@ impl HinderedDuct {
         f0 + (f1 - f0) * (x - x0) / (x1 - x0)
     }
 
-    /// Least and largest of what friction is off that of `other` from 0.9 before the middle of the force to 1.8 behind it.
-    pub fn off(&self, other: &Self) -> [f64; 2] {
-        let off = (-18..=36).map(|k| 0.05 * f64::from(k)).map(|x| self.friction(x) / other.friction(x) - 1.0);
-        off.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], o| [low.min(o), high.max(o)])
+    /// Friction before the force, 0.9 before its middle, over that of `other`, less 1; and least and largest of what it is off that of `other` from there to 1.8 behind
+    /// the middle, both over what they are before.
+    pub fn off(&self, other: &Self) -> [f64; 3] {
+        let ratio = |x: f64| self.friction(x) / other.friction(x);
+        let before = ratio(-0.9);
+        let off = (-18..=36).map(|k| ratio(0.05 * f64::from(k)) / before - 1.0);
+        let [low, high] = off.fold([0.0_f64; 2], |[low, high], o| [low.min(o), high.max(o)]);
+        [before - 1.0, low, high]
     }
 }
 

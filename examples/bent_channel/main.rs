@@ -9,9 +9,10 @@ mod duct;
 
 use clap::{Parser, ValueEnum};
 use duct::Duct;
-use example_support::Outcome;
 use example_support::axes::{even, widening};
+use example_support::files::make_folder;
 use example_support::steadily::steadily;
+use example_support::{Outcome, told};
 use siltflow::flow::{
     Axis, CartesianGrid, CellWriter, Convection, Fluid, Modelled, Patch, Profile, Side, Simple, SimpleParams,
     TransportParams, WallStress,
@@ -19,6 +20,7 @@ use siltflow::flow::{
 use siltflow::ibm::{StaticBodies, cut_cells};
 use siltflow::interfaces::{Closure, CutCells, Pose};
 use std::path::PathBuf;
+use std::process::ExitCode;
 use turb::{
     Inflow, KEpsilon, KOmega, KOmegaSst, Realizable, RealizableKEpsilon, Sst, StandardKEpsilon,
     TurbulenceError, Wilcox,
@@ -66,8 +68,12 @@ struct Cli {
     out: PathBuf,
 }
 
-fn main() -> Outcome<()> {
-    let cli = Cli::parse();
+fn main() -> ExitCode {
+    told(chosen(&Cli::parse()))
+}
+
+/// The channel with the model that was asked for.
+fn chosen(cli: &Cli) -> Outcome<()> {
     let known = [0.0, 90.0, 180.0].contains(&cli.bend) && (0.0..=45.0).contains(&cli.turn);
     let grows = (1.0..=2.0).contains(&cli.growth);
     if !known || cli.turn > 0.0 && cli.bend > 0.0 || cli.cells < 8 || !grows {
@@ -75,20 +81,21 @@ fn main() -> Outcome<()> {
             "--bend 0, 90 or 180, --turn 0 to 45 for a straight duct, at least 8 cells and --growth 1 to 2";
         return Err(format!("give {asked}").into());
     }
+    make_folder(&cli.out)?;
     let duct = Duct { bend: cli.bend.to_radians(), turn: cli.turn.to_radians() };
     let inflow = Inflow::from_length(1.0, 0.05, 0.07)?;
     match cli.model {
-        Model::Sst => run(&cli, duct, "kOmegaSST", |n| KOmegaSst::new(Sst::default(), n, inflow)),
+        Model::Sst => run(cli, duct, "kOmegaSST", |n| KOmegaSst::new(Sst::default(), n, inflow)),
         Model::KOmega => {
             // The constants of the reference runs: Wilcox 1998 without its corrections.
             let law = Wilcox { beta: 0.072, gamma: 0.52, ..Wilcox::default() };
-            run(&cli, duct, "kOmega", |n| KOmega::new(law, n, inflow))
+            run(cli, duct, "kOmega", |n| KOmega::new(law, n, inflow))
         }
         Model::KEpsilon => {
-            run(&cli, duct, "kEpsilon", |n| KEpsilon::new(StandardKEpsilon::default(), n, inflow))
+            run(cli, duct, "kEpsilon", |n| KEpsilon::new(StandardKEpsilon::default(), n, inflow))
         }
         Model::Realizable => {
-            run(&cli, duct, "realizableKE", |n| RealizableKEpsilon::new(Realizable::default(), n, inflow))
+            run(cli, duct, "realizableKE", |n| RealizableKEpsilon::new(Realizable::default(), n, inflow))
         }
     }
 }
@@ -198,7 +205,6 @@ fn run<C: Closure>(
         "{iterations} iterations, {before:.1} s before, {seconds:.1} s, {cost:.2} µs per cell in the fluid and iteration"
     );
     let eddy = model.closure.eddy_viscosity().unwrap_or_default();
-    std::fs::create_dir_all(&cli.out)?;
     compare::report(&flow, eddy, &cuts.walls, duct, name, &cli.out)?;
     let centred = |c: usize| -> Vec<f64> {
         let (u, [_, rows]) = (flow.velocity().field(c), grid.cells());

@@ -6,9 +6,9 @@
 //!
 //! Sample run: `cargo run --release --example bluff_body --features turb -- --half`, half a minute.
 use clap::{Parser, ValueEnum};
-use example_support::Outcome;
 use example_support::axes::{even, widening};
 use example_support::steadily::steadily;
+use example_support::{Outcome, told};
 use siltflow::dem::{Disc, Sphere};
 use siltflow::flow::{
     Axis, CartesianGrid, Convection, Fluid, Modelled, Profile, Side, Simple, SimpleParams, TransportParams,
@@ -16,6 +16,7 @@ use siltflow::flow::{
 };
 use siltflow::ibm::{StaticBodies, cut_cells};
 use siltflow::interfaces::{Pose, Solid};
+use std::process::ExitCode;
 use turb::{Inflow, KOmegaSst, Sst};
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -77,7 +78,12 @@ const TRUSTED: f64 = 7.0;
 /// Where the stream begins and ends along its way, from the body's centre, and how far to either side it goes \[m\].
 const ENDS: [f64; 3] = [-10.0, 40.0, 20.0];
 
-fn main() -> Outcome<()> {
+fn main() -> ExitCode {
+    told(chosen())
+}
+
+/// The body that was asked for.
+fn chosen() -> Outcome<()> {
     let cli = Cli::parse();
     if !(cli.re.is_finite() && cli.re > 0.0) || cli.cells() < 8 || !(0.0..=3.0).contains(&cli.margin) {
         return Err(

@@ -11,12 +11,18 @@ mod contact;
 mod report;
 
 use contact::{Contact, Way};
-use example_support::Outcome;
+use example_support::files::make_folder;
+use example_support::{Outcome, told};
 use std::path::PathBuf;
+use std::process::ExitCode;
 
-fn main() -> Outcome<()> {
+fn main() -> ExitCode {
+    told(run())
+}
+
+fn run() -> Outcome<()> {
     let out = folder()?;
-    std::fs::create_dir_all(&out)?;
+    make_folder(&out)?;
     let mut runs = Vec::new();
     for way in
         [Way::Formula, Way::Tolerance].into_iter().chain((1..=6).map(Way::Tree)).chain((0..=3).map(Way::Mesh))

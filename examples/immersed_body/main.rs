@@ -5,9 +5,10 @@
 //!
 //! Sample run: `cargo run --release --example immersed_body -- --out pictures`, a second or two; without `--out` the pictures
 //! go to `target/immersed_body`.
-use example_support::Outcome;
+use example_support::files::make_folder;
 use example_support::picture::sketch::{Drawing, Paint, draw};
 use example_support::prescribed_bodies::{PrescribedBodies, forced_step};
+use example_support::{Outcome, told};
 use siltflow::flow::{CartesianGrid, Fluid, Profile, Projection, Side};
 use siltflow::ibm::{
     FractionRule, Given, Hfdib, Profile as Along, Reconstruction, SolidFraction, SurfaceCell,
@@ -15,6 +16,7 @@ use siltflow::ibm::{
 };
 use siltflow::interfaces::{Aabb, Bodies, BodyId, Kinematics, Lattice, Point, Solid, Vector, VelocityField};
 use std::path::PathBuf;
+use std::process::ExitCode;
 
 /// All points within `radius` of a line of length 2 `half` along x \[m\].
 struct Capsule {
@@ -39,9 +41,13 @@ const SOLID: Paint = Paint::Share(0.8);
 const SURFACE: Paint = Paint::Kind(4, 0.35);
 const MARK: Paint = Paint::Kind(1, 0.0);
 
-fn main() -> Outcome<()> {
+fn main() -> ExitCode {
+    told(run())
+}
+
+fn run() -> Outcome<()> {
     let out = folder()?;
-    std::fs::create_dir_all(&out)?;
+    make_folder(&out)?;
     let grid = CartesianGrid::new(CELLS, [CELLS[0] as f64 * H, CELLS[1] as f64 * H])?;
     let inlet = Side::Inlet(Profile::Parabolic { peak: 1.0 });
     let sides = [[inlet, Side::PressureOutlet(0.0)], Side::WALL.both()];

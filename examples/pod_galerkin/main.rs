@@ -16,6 +16,7 @@ mod diffusion;
 use clap::Parser;
 use cylinder::{Galerkin, Wake};
 use example_support::Outcome;
+use example_support::files::make_folder;
 use example_support::granular::{Ending, main_of};
 use example_support::picture::Domain;
 use example_support::picture::Scalar;
@@ -59,7 +60,7 @@ fn run(cli: &Cli, stop: &AtomicBool) -> Outcome<Ending> {
     if !(4..=100).contains(&cli.cells_per_diameter) {
         return Err(format!("{} cells across the cylinder; give 4 to 100", cli.cells_per_diameter).into());
     }
-    std::fs::create_dir_all(&cli.out)?;
+    make_folder(&cli.out)?;
     let Some(mut wake) = Wake::run(cli.reynolds, cli.cells_per_diameter, cli.settle, stop)? else {
         return Ok(Ending::Stopped);
     };

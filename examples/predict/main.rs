@@ -10,7 +10,8 @@
 mod files;
 
 use clap::{Parser, ValueEnum};
-use example_support::Outcome;
+use example_support::files::make_folder;
+use example_support::{Outcome, told};
 use mor::interpolation::Record;
 use mor::models::{ModelError, Podiann, Spodiann};
 use mor::shifted::Grid;
@@ -131,16 +132,11 @@ fn point(text: &str, inputs: usize) -> Outcome<Vec<f64>> {
 }
 
 fn main() -> ExitCode {
-    match run(&Cli::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(why) => {
-            eprintln!("{why}");
-            ExitCode::FAILURE
-        }
-    }
+    told(run(&Cli::parse()))
 }
 
 fn run(cli: &Cli) -> Outcome<()> {
+    make_folder(&cli.out)?;
     let model = Model::load(cli)?;
     let grid = model.grid(cli)?;
     let points: Vec<Vec<f64>> = cli.at.iter().map(|at| point(at, model.inputs())).collect::<Outcome<_>>()?;
@@ -150,7 +146,6 @@ fn run(cli: &Cli) -> Outcome<()> {
         let beyond = if model.covers(x) { "" } else { "; outside of what the model has seen" };
         println!("at {at}: relative error about {error:.1e}{beyond}");
     }
-    std::fs::create_dir_all(&cli.out)?;
     let named: Vec<(&str, &[f64])> =
         cli.at.iter().map(String::as_str).zip(fields.iter().map(|f| &f[..])).collect();
     for kind in &cli.write {

@@ -16,6 +16,7 @@ mod study;
 
 use clap::Parser;
 use example_support::Outcome;
+use example_support::files::make_folder;
 use example_support::granular::{Ending, main_of};
 use example_support::scene::Scene;
 use example_support::table::{Table, number, write_json};
@@ -64,7 +65,7 @@ fn run(cli: &Cli, stop: &AtomicBool) -> Outcome<Ending> {
             format!("{:?} modes; give numbers from 2 to below that of the snapshots", cli.modes).into()
         );
     }
-    std::fs::create_dir_all(&cli.out)?;
+    make_folder(&cli.out)?;
     let scene = Scene { cells_per_diameter: cli.cells_per_diameter, ..Scene::default() };
     let Some(fallen) = fall::run(&scene, cli.end, 2 * (cli.snapshots - 1), stop)? else {
         return Ok(Ending::Stopped);

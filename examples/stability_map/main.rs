@@ -11,9 +11,10 @@ mod map;
 mod report;
 
 use clap::Parser;
-use example_support::Outcome;
+use example_support::{Outcome, told};
 use map::{Kind, Map, Viscous};
 use std::path::PathBuf;
+use std::process::ExitCode;
 
 #[derive(Debug, Parser)]
 #[command(about = "Bodies from far lighter to far heavier than the fluid, at several Courant numbers")]
@@ -56,7 +57,11 @@ pub(crate) struct Options {
     no_runs: bool,
 }
 
-fn main() -> Outcome<()> {
+fn main() -> ExitCode {
+    told(run())
+}
+
+fn run() -> Outcome<()> {
     let options = Options::parse();
     rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(|| {
         let map = Map::run(&options)?;

@@ -7,12 +7,14 @@
 //! Sample run: `cargo run --release --example virtual_mesh`, a second; the pictures go to `out/virtual_mesh`, or where
 //! `--out FOLDER` says.
 
-use example_support::Outcome;
+use example_support::files::make_folder;
 use example_support::picture::sketch::{Drawing, Paint, draw};
 use example_support::rock::Rock;
+use example_support::{Outcome, told};
 use siltflow::dem::{BoxKind, Implicit, Normal, Overlap, OverlapSolver, Refinement, Route, SubBox};
 use siltflow::interfaces::{Point, Pose, Rotation, Solid, Vector};
 use std::path::PathBuf;
+use std::process::ExitCode;
 
 const INSIDE: Paint = Paint::Share(0.75);
 const CUT: Paint = Paint::Kind(4, 0.45);
@@ -21,9 +23,13 @@ const PLANE: Paint = Paint::Kind(1, 0.0);
 const ROCKS: [Paint; 2] = [Paint::Kind(2, 0.0), Paint::Kind(0, 0.0)];
 const LEVELS: u8 = 5;
 
-fn main() -> Outcome<()> {
+fn main() -> ExitCode {
+    told(run())
+}
+
+fn run() -> Outcome<()> {
     let out = folder()?;
-    std::fs::create_dir_all(&out)?;
+    make_folder(&out)?;
     let rocks = [Implicit::new("rock", Rock::new(3), 1e-3)?, Implicit::new("rock", Rock::new(8), 1e-3)?];
     let turn = Rotation::from_euler_angles(0.4, 0.2, 0.9);
     let poses = [

@@ -284,8 +284,8 @@ fn friction_of_developed_ducts_does_not_depend_on_where_their_walls_are() {
     run(Wilcox::openfoam(), include_str!("../data/turbulence/channel_kOmega_c.csv"));
 }
 
-/// Where a flow slows down beside a wall something leaves the first cell. With what upwind schemes make of the wall's own velocity there it took 1.4 times the first node's velocity with it
-/// from cells beside sides of the box, which so had 30 % less friction than bodies in the same place.
+/// Where a flow slows down beside a wall something leaves the first cell. By what upwind schemes make of the wall's own velocity it took 1.4 times the first
+/// node's velocity with it beside sides of the box, which had up to 23 % less friction than bodies in the same place.
 #[test]
 fn sides_of_the_box_rub_as_bodies_do_where_the_flow_slows_down() {
     let duct = |walls| ForcedDuct::new(Sst::default(), walls, 40, 1.6).unwrap();

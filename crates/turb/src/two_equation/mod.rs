@@ -97,7 +97,7 @@ struct Work {
 /// The least value of k \[m²/s²\] and of ω or ε.
 const FLOOR: f64 = 1e-30;
 /// So little that it is none, and enough not to be counted as set after a solve: k in solids, and where k, ω or ε die out.
-const NOTHING: f64 = 2.0 * FLOOR;
+pub(crate) const NOTHING: f64 = 2.0 * FLOOR;
 
 impl<L: Law> TwoEquation<L> {
     /// The model `law` on `cells` cells, all as `inflow`, which is also what enters.

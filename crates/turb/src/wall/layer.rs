@@ -1,5 +1,6 @@
 //! Wall functions on rows.
 use super::functions::share;
+use crate::two_equation::NOTHING;
 use crate::{Scale, WallFunctions, WallShear, YPlus};
 use interfaces::{SolveError, WallRow};
 
@@ -142,6 +143,8 @@ impl WallLayer {
                 w.shear = w.shear.zip(shear).map(|(sum, shear)| sum + part * shear);
                 w.free += part * row.free;
             }
+            // Where k has died out ε would be below the least value, and draw that of cells behind it there.
+            let value = value.max(NOTHING);
             if w.free > 0.0 {
                 blends.push((w.cell, 1.0 - w.free.min(1.0), value));
             } else {

@@ -3,6 +3,7 @@ use crate::Options;
 use clap::ValueEnum;
 use example_support::Outcome;
 use example_support::cpu::Stopwatch;
+use example_support::files::make_folder;
 use example_support::free_body::{FreeBody, Speeds};
 use example_support::rock::{Rock, stl};
 use siltflow::coupling::{OneSolve, Schedule, run};
@@ -127,7 +128,7 @@ impl Map {
     /// Makes those that are not in `map.csv` yet.
     pub(crate) fn run(options: &Options) -> Outcome<Self> {
         let Options { ratios, courants, shapes, cells, finest, out, .. } = options;
-        fs::create_dir_all(out)?;
+        make_folder(out)?;
         let path = out.join("map.csv");
         let mut runs = if options.anew || !path.exists() { Vec::new() } else { read(&path)? };
         if runs.is_empty() {

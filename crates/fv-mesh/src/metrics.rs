@@ -201,8 +201,7 @@ impl<const D: usize> Metrics<D> {
         law: [bool; 2],
     ) -> InterfaceWeights {
         let n = (self.axes[a].width.len() - 2 * GHOSTS) as isize;
-        let bounded = !self.periodic[a];
-        let beside = bounded && nodes == Nodes::Centres;
+        let beside = !self.periodic[a] && nodes == Nodes::Centres;
         let metrics = self.axes[a].nodes(nodes);
         let mut weights = metrics.weights(scheme, |i| beside && (i == 0 || i == n));
         if beside && n > 1 && scheme.is_linear_upwind() {
@@ -232,7 +231,7 @@ mod tests {
     use super::*;
     use crate::Axis;
 
-    /// u+ at y+ 110, 220 and 330: the velocity that leaves the first cell of a side that follows a law of the wall is that of the law within 2 %.
+    /// u+ at y+ 110, 220 and 330: the velocity that leaves the first cell of a side that follows a law of the wall is that of the law, within 2 % (3 % where cells grow).
     #[test]
     fn first_cells_let_out_what_a_logarithmic_layer_has() {
         let u_plus = |y_plus: f64| (9.8 * y_plus).ln() / 0.41;

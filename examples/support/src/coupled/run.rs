@@ -5,6 +5,7 @@ use super::options::RunOptions;
 use super::save::{Save, load};
 use crate::Outcome;
 use crate::cpu::{Elapsed, Stopwatch};
+use crate::files::make_folder;
 use crate::granular::{Ending, fingerprint};
 use crate::progress::{Progress, Status};
 use coupling::{
@@ -106,7 +107,7 @@ pub fn run<const D: usize, L: ContactLaw, M: Diary<D, L>>(
         ..Schedule::default()
     };
     schedule.check()?;
-    std::fs::create_dir_all(out).map_err(|e| format!("making {}: {e}", out.display()))?;
+    make_folder(out)?;
     let setup = fingerprint(&format!("{setup} {} {end:?}", options.setup()));
     let mut files = if options.resume {
         load(&out.join("state.bin"), fall, &mut motion, setup).map_err(|e| {

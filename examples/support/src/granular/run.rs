@@ -5,8 +5,8 @@ use super::measures::{Totals, totals};
 use super::options::RunOptions;
 use super::record::History;
 use super::scene::Scene;
-use crate::Outcome;
 use crate::progress::Progress;
+use crate::{Outcome, told};
 use coupling::CheckpointError;
 use dem::placing::{BodyRow, write_bodies};
 use interfaces::{Checkpoint, Dynamics, Kinematics, RestartError};
@@ -51,10 +51,7 @@ pub fn main_of(threads: usize, run: impl FnOnce(&AtomicBool) -> Outcome<Ending> 
     match result() {
         Ok(Ending::Whole) => ExitCode::SUCCESS,
         Ok(Ending::Stopped) => ExitCode::from(INTERRUPTED),
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::FAILURE
-        }
+        Err(error) => told(Err(error)),
     }
 }
 

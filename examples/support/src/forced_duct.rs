@@ -3,11 +3,11 @@ use crate::Outcome;
 use crate::plane_duct::PlaneDuct;
 use crate::turbulent_flows::{between_walls, growing, iterate};
 use fv_mesh::{
-    Axis, CartesianGrid, Convection, Fluid, Modelled, Profile, Side, Simple, SimpleParams, TransportParams,
-    WallStress,
+    Axis, CartesianGrid, Convection, Fluid, Modelled, Profile, Scalar, ScalarSide, Settling, Side, Simple,
+    SimpleParams, TransportParams, WallStress,
 };
 use ibm::{StaticBodies, cut_cells};
-use interfaces::{Closure, Pose};
+use interfaces::{Closure, CutCells, Pose};
 use turb::{Inflow, Law, TwoEquation};
 
 /// Kinematic viscosity \[m²/s\].
@@ -27,18 +27,21 @@ pub enum DuctWalls {
     Immersed(f64, WallStress),
 }
 
-/// Friction of the lower wall over the density \[m²/s²\] at places along it \[m\].
-#[derive(Clone, Debug)]
-pub struct ForcedDuct {
+/// The flow at rest.
+pub struct ForcedDuct<L: Law> {
+    flow: Simple<2>,
+    model: Modelled<2, TwoEquation<L>>,
+    cuts: Option<CutCells>,
+    /// Places along the lower wall \[m\], and its friction over the density there \[m²/s²\].
     friction: Vec<[f64; 2]>,
 }
 
-impl ForcedDuct {
+impl<L: Law> ForcedDuct<L> {
     /// Of a duct of height 1 with so many cells across, at Re 10⁶, with this force on the fluid in its middle \[m/s²\].
     ///
     /// # Errors
     /// Those of the flow, the walls and the model, and if the flow does not come to rest.
-    pub fn new<L: Law>(law: L, walls: DuctWalls, cells: usize, force: f64) -> Outcome<Self> {
+    pub fn new(law: L, walls: DuctWalls, cells: usize, force: f64) -> Outcome<Self> {
         let h = 1.0 / cells as f64;
         let (y, side) = match walls {
             DuctWalls::Sides(Some(first)) => (between_walls(cells, 1.0, first)?, Side::WALL),
@@ -53,12 +56,12 @@ impl ForcedDuct {
             .with_params(SimpleParams { velocity_relaxation: 0.9, ..SimpleParams::turbulent() })?;
         let model = TwoEquation::new(law, grid.n_cells(), Inflow::from_length(1.0, 0.05, 0.07)?)?;
         let mut model = Modelled::new(model, &grid, flow.sides(), TransportParams::steady())?;
-        let mut pieces = Vec::new();
+        let mut immersed = None;
         if let DuctWalls::Immersed(behind, stress) = walls {
             let duct = PlaneDuct { half: 0.5 + behind * h, angle: 0.0, at: [0.0, 0.5] };
             let cuts = cut_cells(flow.velocity(), &StaticBodies::new().with(duct, Pose::at([0.0; 3])))?;
             flow.set_walls(Some((&cuts, stress)))?;
-            pieces = cuts.walls;
+            immersed = Some(cuts);
             for (cell, distance) in model.transport_mut().wall_distance_mut().iter_mut().enumerate() {
                 *distance = duct.distance(grid.centre(grid.cell(cell))).max(0.0);
             }
@@ -70,12 +73,12 @@ impl ForcedDuct {
         if !rests {
             return Err(format!("the flow is not at rest: {info:?}").into());
         }
-        let mut friction: Vec<[f64; 2]> = match walls {
-            DuctWalls::Immersed(..) => {
-                let all = pieces.iter().zip(flow.wall_tractions()).filter(|(wall, _)| wall.foot.y < 0.5);
+        let mut friction: Vec<[f64; 2]> = match &immersed {
+            Some(cuts) => {
+                let all = cuts.walls.iter().zip(flow.wall_tractions()).filter(|(wall, _)| wall.foot.y < 0.5);
                 all.map(|(wall, traction)| [wall.foot.x, traction.x]).collect()
             }
-            DuctWalls::Sides(_) => {
+            None => {
                 let all = model.wall_rows().iter().zip(model.closure.wall_viscosity());
                 let all = all.map(|(row, nu_t)| (grid.centre(grid.cell(row.cell)), row, nu_t));
                 let lower = all.filter(|(x, ..)| x[1] < 0.5);
@@ -83,7 +86,7 @@ impl ForcedDuct {
             }
         };
         friction.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        Ok(Self { friction })
+        Ok(Self { flow, model, cuts: immersed, friction })
     }
 
     /// At `x` along the wall \[m²/s²\].
@@ -91,6 +94,35 @@ impl ForcedDuct {
         let k = self.friction.partition_point(|at| at[0] < x).clamp(1, self.friction.len() - 1);
         let [[x0, f0], [x1, f1]] = [self.friction[k - 1], self.friction[k]];
         f0 + (f1 - f0) * (x - x0) / (x1 - x0)
+    }
+
+    /// Flux of warmth through sections of the duct at `x`, which enters at 1 and is 0 on the walls (Pr 0.7) \[m²/s\].
+    ///
+    /// # Errors
+    /// Those of the scalar and the walls.
+    pub fn warmth<const N: usize>(&mut self, x: [f64; N]) -> Outcome<[f64; N]> {
+        let Self { flow, model, cuts, .. } = self;
+        let grid = flow.grid();
+        let ends = [ScalarSide::value(1.0), ScalarSide::NO_GRADIENT];
+        let sides = if cuts.is_some() { ScalarSide::NO_GRADIENT } else { ScalarSide::value(0.0) };
+        let mut warmth =
+            Scalar::new(grid, [ends, sides.both()], VISCOSITY / 0.7)?.with_convection(Convection::Quick);
+        warmth.set_walls(cuts.as_ref().map(|cuts| (cuts, 0.0)))?;
+        warmth.mix(model.eddy_stress(VISCOSITY, 0.0)?.ok_or("a model without eddy viscosity")?, VISCOSITY);
+        if cuts.is_some() {
+            warmth.rub(&flow.wall_friction_velocities(), VISCOSITY)?;
+        }
+        let settling = Settling { tolerance: 1e-7, max_iterations: 10_000 };
+        warmth.settle(flow.velocity(), 0.0, settling, &[], |_| ())?;
+        let (u, phi) = (flow.velocity().field(0), warmth.field());
+        Ok(x.map(|x| {
+            let i = (0..grid.cells()[0] - 1).find(|&i| grid.axis(0).centre(i) > x).unwrap_or_default();
+            let of = |j: usize| {
+                let [u, t] = [u.row(j), phi.row(j)];
+                u[i] * 0.5 * (t[i - 1] + t[i]) * grid.axis(1).width(j)
+            };
+            (0..grid.cells()[1]).map(of).sum()
+        }))
     }
 
     /// Friction before the force, 0.9 before its middle, over that of `other`, less 1; and least and largest of what it is off that of `other` from there to 1.8 behind

@@ -12,17 +12,24 @@ pub(crate) const CENTRAL: u8 = LIMITED + 1;
 #[derive(Clone, Debug)]
 pub(crate) struct Carrier<const D: usize> {
     scheme: Convection,
+    law: [[bool; 2]; D],
     /// Per axis.
     weights: [InterfaceWeights; D],
 }
 
 impl<const D: usize> Carrier<D> {
     pub(crate) fn new(metrics: &Metrics<D>, scheme: Convection) -> Self {
-        Self {
-            scheme,
-            weights: std::array::from_fn(|a| {
-                metrics.weights(scheme, a, Metrics::<D>::family(None, a), [false; 2])
-            }),
+        Self::beside(metrics, scheme, [[false; 2]; D])
+    }
+    /// In a box whose sides follow a law of the wall where `law` says so, by axis and end.
+    pub(crate) fn beside(metrics: &Metrics<D>, scheme: Convection, law: [[bool; 2]; D]) -> Self {
+        let of = |a: usize| metrics.weights(scheme, a, Metrics::<D>::family(None, a), law[a]);
+        Self { scheme, law, weights: std::array::from_fn(of) }
+    }
+    /// Takes these sides for those that follow a law of the wall.
+    pub(crate) fn set_law(&mut self, metrics: &Metrics<D>, law: [[bool; 2]; D]) {
+        if self.law != law {
+            *self = Self::beside(metrics, self.scheme, law);
         }
     }
     pub(crate) fn scheme(&self) -> Convection {

@@ -81,18 +81,21 @@ impl<const D: usize> Scalar<D> {
             })
         });
         mixing.rate = eddy.rate / number;
-        let diffusivity = mixing.diffusivity.data_mut();
+        let (diffusivity, mut law) = (mixing.diffusivity.data_mut(), [[false; 2]; D]);
         diffusivity.iter_mut().zip(eddy.eddy.data()).for_each(|(d, nu)| *d = nu / number);
         for wall in &eddy.walls {
             // What lies behind the wall is as much above the value as what lies before it is below.
             let factor = self.boundaries.ends(wall.axis).map_or(0.0, |e| e.factor[wall.end][wall.line]);
-            let on_wall = match factor < -1.0 + 1e-12 {
+            let given = factor < -1.0 + 1e-12;
+            law[wall.axis][wall.end] |= given;
+            let on_wall = match given {
                 true if viscosity > 0.0 => viscosity * mixing.law.ratio(1.0 + wall.eddy / viscosity) - gamma,
                 true => wall.eddy / number,
                 false => 0.0,
             };
             diffusivity[wall.ghost] = 2.0 * on_wall - diffusivity[wall.inside];
         }
+        self.carrier.set_law(&self.metrics, law);
     }
 
     /// Brings S + ∇·(D_t∇φ) up to date.

@@ -29,7 +29,6 @@ pub(crate) struct Advance<const D: usize> {
 pub(crate) struct Momentum<const D: usize> {
     grid: CartesianGrid<D>,
     metrics: Metrics<D>,
-    kind: Kind,
     /// Interface weights of component c along axis b; empty for the central scheme.
     weights: [[InterfaceWeights; D]; D],
     scheme: Convection,
@@ -49,6 +48,16 @@ enum Kind {
     Limited,
 }
 
+impl Kind {
+    fn of(scheme: Convection) -> Self {
+        match scheme {
+            Convection::Central => Self::Mean,
+            Convection::Upwind | Convection::LinearUpwind | Convection::Quick => Self::Linear,
+            Convection::Limited => Self::Limited,
+        }
+    }
+}
+
 const MEAN: u8 = 0;
 pub(crate) const LINEAR: u8 = 1;
 pub(crate) const LIMITED: u8 = 2;
@@ -65,19 +74,14 @@ impl<const D: usize> Momentum<D> {
         scheme: Convection,
         law: [[bool; 2]; D],
     ) -> Self {
-        let kind = match scheme {
-            Convection::Central => Kind::Mean,
-            Convection::Upwind | Convection::LinearUpwind | Convection::Quick => Kind::Linear,
-            Convection::Limited => Kind::Limited,
-        };
         let weights = std::array::from_fn(|c| {
-            std::array::from_fn(|b| match kind {
+            std::array::from_fn(|b| match Kind::of(scheme) {
                 Kind::Mean => InterfaceWeights::default(),
                 _ => metrics.weights(scheme, b, Metrics::<D>::family(Some(c), b), law[b]),
             })
         });
         let (grid, metrics, spans) = (grid.clone(), metrics.clone(), Spans::default());
-        Self { grid, metrics, kind, weights, scheme, law, spans }
+        Self { grid, metrics, weights, scheme, law, spans }
     }
 
     /// Which sides follow a law of the wall, by axis and end.
@@ -111,9 +115,9 @@ impl<const D: usize> Momentum<D> {
         for_layers(&self.grid, next, tendency, |rows, start, next, tendency| {
             let job = Rows { momentum: self, rows, start, k, u, p, next, tendency };
             match c {
-                0 => job.of_component::<0>(self.kind),
-                1 => job.of_component::<1>(self.kind),
-                _ => job.of_component::<2>(self.kind),
+                0 => job.of_component::<0>(),
+                1 => job.of_component::<1>(),
+                _ => job.of_component::<2>(),
             }
         });
     }
@@ -133,8 +137,8 @@ struct Rows<'a, const D: usize> {
 }
 
 impl<const D: usize> Rows<'_, D> {
-    fn of_component<const C: usize>(self, kind: Kind) {
-        match kind {
+    fn of_component<const C: usize>(self) {
+        match Kind::of(self.momentum.scheme) {
             Kind::Mean => Arch::new().dispatch(Typed::<D, C, MEAN>(self)),
             Kind::Linear => Arch::new().dispatch(Typed::<D, C, LINEAR>(self)),
             Kind::Limited => Arch::new().dispatch(Typed::<D, C, LIMITED>(self)),
@@ -297,7 +301,7 @@ pub(crate) fn flux<const D: usize>(
         let at = |k: usize| u.get(k).copied().unwrap_or(0.0);
         [at(o.wrapping_sub(2 * s[b])), u[o - s[b]], u[o], at(o + s[b])]
     };
-    let value = match momentum.kind {
+    let value = match Kind::of(momentum.scheme) {
         Kind::Mean => 0.5 * (u[o] + u[o - s[b]]),
         Kind::Linear => interface::<LINEAR>(&momentum.weights[c][b], j, carry, line()),
         Kind::Limited => interface::<LIMITED>(&momentum.weights[c][b], j, carry, line()),

@@ -22,7 +22,7 @@ impl<const D: usize> Carrier<D> {
         Self::beside(metrics, scheme, [[false; 2]; D])
     }
     /// In a box whose sides follow a law of the wall where `law` says so, by axis and end.
-    pub(crate) fn beside(metrics: &Metrics<D>, scheme: Convection, law: [[bool; 2]; D]) -> Self {
+    fn beside(metrics: &Metrics<D>, scheme: Convection, law: [[bool; 2]; D]) -> Self {
         let of = |a: usize| metrics.weights(scheme, a, Metrics::<D>::family(None, a), law[a]);
         Self { scheme, law, weights: std::array::from_fn(of) }
     }

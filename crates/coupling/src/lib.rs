@@ -56,7 +56,7 @@ pub use grains::Grains;
 pub use ledger::{Ledger, LedgerReport};
 pub use moving_window::MovingWindow;
 pub use output::FileOutput;
-pub use particles::{BodyReport, Particles};
+pub use particles::{BodyReport, Particles, check_places};
 pub use preset::{HfdibDem, hfdib_dem};
 pub use run::{Evolving, Observer, RunSummary, Schedule, StepInfo, run};
 pub use simulation::{Immersed, Module, Simulation, Timings, WeightBalance};

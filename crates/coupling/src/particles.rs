@@ -2,9 +2,10 @@
 use crate::serials::Serials;
 use crate::strategy::{Exchange, OneSolve, Strategy};
 use crate::{CouplingError, FlowSolver, Immersed, Module, Timings};
+use fv_mesh::CartesianGrid;
 use ibm::{Forcing, Layer};
 use interfaces::{
-    BodyId, Checkpoint, Dynamics, Renumbering, RestartError, Twist, Vector, VelocityField, Wrench,
+    Bodies, BodyId, Checkpoint, Dynamics, Renumbering, RestartError, Twist, Vector, VelocityField, Wrench,
 };
 use nalgebra::{Matrix6, Vector6};
 
@@ -228,37 +229,14 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
         [impulse, internal]
     }
 
-    /// Bodies have to fit into the box, and be there.
+    /// Requires that all bodies fit into the flow's box, and are inside.
     fn fit<const D: usize, A: FlowSolver<D>>(&self, flow: &A) -> Result<(), CouplingError> {
-        let grid = flow.grid();
-        for body in (0..self.bodies.n_bodies()).map(BodyId) {
-            let bounds = self.bodies.aabb(body);
-            for axis in 0..D {
-                let (size, length) = (bounds.extent()[axis], grid.lengths()[axis]);
-                if size >= length {
-                    return Err(CouplingError::TooLarge { body, axis, size, length });
-                }
-            }
-        }
-        match self.outside(flow) {
-            Some((body, axis, centre, box_)) => Err(CouplingError::Outside { body, axis, centre, box_ }),
-            None => Ok(()),
-        }
+        check_places(flow.grid(), |a| flow.sides().periodic(a), &self.bodies)
     }
 
     /// The first body whose centre is beyond a bounded side: axis, where it is, where the box begins and ends \[m\].
     fn outside<const D: usize, A: FlowSolver<D>>(&self, flow: &A) -> Option<(BodyId, usize, f64, [f64; 2])> {
-        let grid = flow.grid();
-        for axis in (0..D).filter(|&a| !flow.sides().periodic(a)) {
-            let box_ = [grid.origin()[axis], grid.origin()[axis] + grid.lengths()[axis]];
-            for body in (0..self.bodies.n_bodies()).map(BodyId) {
-                let centre = self.bodies.pose(body).position[axis];
-                if !(box_[0]..=box_[1]).contains(&centre) {
-                    return Some((body, axis, centre, box_));
-                }
-            }
-        }
-        None
+        outside(flow.grid(), |a| flow.sides().periodic(a), &self.bodies)
     }
 
     /// Fluid and contact loads of the last step on body `b`.
@@ -433,6 +411,48 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Checkpoint for Particles<F, B, S> {
         }
         Ok(())
     }
+}
+
+/// Requires that bodies which a forcing puts into a flow fit into its box and have their centres inside; `periodic` axes have no outside.
+///
+/// # Errors
+/// [`CouplingError::TooLarge`] and [`CouplingError::Outside`].
+pub fn check_places<const D: usize, B: Bodies + ?Sized>(
+    grid: &CartesianGrid<D>,
+    periodic: impl Fn(usize) -> bool,
+    bodies: &B,
+) -> Result<(), CouplingError> {
+    for body in (0..bodies.n_bodies()).map(BodyId) {
+        let bounds = bodies.aabb(body);
+        for axis in 0..D {
+            let (size, length) = (bounds.extent()[axis], grid.lengths()[axis]);
+            if size >= length {
+                return Err(CouplingError::TooLarge { body, axis, size, length });
+            }
+        }
+    }
+    match outside(grid, periodic, bodies) {
+        Some((body, axis, centre, box_)) => Err(CouplingError::Outside { body, axis, centre, box_ }),
+        None => Ok(()),
+    }
+}
+
+/// The first body whose centre is beyond a bounded side: axis, where it is, where the box begins and ends \[m\].
+fn outside<const D: usize, B: Bodies + ?Sized>(
+    grid: &CartesianGrid<D>,
+    periodic: impl Fn(usize) -> bool,
+    bodies: &B,
+) -> Option<(BodyId, usize, f64, [f64; 2])> {
+    for axis in (0..D).filter(|&a| !periodic(a)) {
+        let box_ = [grid.origin()[axis], grid.origin()[axis] + grid.lengths()[axis]];
+        for body in (0..bodies.n_bodies()).map(BodyId) {
+            let centre = bodies.pose(body).position[axis];
+            if !(box_[0]..=box_[1]).contains(&centre) {
+                return Some((body, axis, centre, box_));
+            }
+        }
+    }
+    None
 }
 
 /// Loads are held over a step at most so many times longer than the last.

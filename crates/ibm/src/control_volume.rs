@@ -202,7 +202,7 @@ mod tests {
         let h = 0.1;
         let sides: Vec<f64> = (0..=20).map(|i| h * f64::from(i)).collect();
         let cells = Lattice::new([(); 2].map(|()| Nodes::centres(&sides, false)), 0, [1, 20]);
-        let mut stream = Staggered::between(&sides);
+        let mut stream = Staggered::between([&sides[..]; 2]);
         stream.set(|_| [0.6, -0.8, 0.0]);
         let pressure = vec![0.7; 400];
         let corners = [Point::new(2.0 * h, 2.0 * h, 0.0), Point::new(18.0 * h, 18.0 * h, 0.0)];

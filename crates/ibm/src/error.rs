@@ -1,5 +1,5 @@
 //! What can go wrong.
-use interfaces::BodyId;
+use interfaces::{BodyId, ThinPart};
 
 /// Why bodies could not be put on a grid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -65,8 +65,8 @@ pub enum IbmError {
     },
     /// No velocity node is inside the body.
     #[error(
-        "body {} is {size:.3e} m across and no node of some velocity component is inside it (the nodes are about {spacing:.3e} m \
-         apart): refine the grid there or make the body thicker than a cell", body.0
+        "body {} is too thin for the grid: it is {size:.3e} m across and no node of some velocity component is inside it (the nodes are \
+         about {spacing:.3e} m apart): refine the grid there or make the body thicker than a cell", body.0
     )]
     Unseen {
         /// The body.
@@ -75,6 +75,33 @@ pub enum IbmError {
         size: f64,
         /// Mean distance of the nodes \[m\].
         spacing: f64,
+    },
+    /// A body at rest reaches beyond a bounded side, and no node is in what is left of it inside the box.
+    #[error(
+        "body {} reaches from {low:.6e} to {high:.6e} m along axis {axis}, the box from {:.6e} to {:.6e} m, and no node of some velocity \
+         component is in the part of the body inside the box: move it inside, or leave it out", body.0, box_[0], box_[1]
+    )]
+    Outside {
+        /// The body.
+        body: BodyId,
+        /// Axis, 0 for x.
+        axis: usize,
+        /// Lower end of the body \[m\].
+        low: f64,
+        /// Upper end of the body \[m\].
+        high: f64,
+        /// Both ends of the box \[m\].
+        box_: [f64; 2],
+    },
+    /// Most of a body is thinner than a cell, so fluid leaks through.
+    #[error(
+        "body {} is too thin for the grid: {:.3e} m thick at ({}), where walls need {:.3e} m, and thinner than they need on {:.0} % of its \
+         surface, so fluid would leak through: refine the grid there or make the body thicker",
+        part.body, part.thickness, part.place_text(), part.needed, 100.0 * part.share
+    )]
+    Thin {
+        /// Where, and how thin.
+        part: ThinPart,
     },
     /// A control volume holds no cells, or reaches the sides of the flow.
     #[error(

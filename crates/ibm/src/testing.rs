@@ -183,16 +183,20 @@ impl Staggered {
         };
         Self { lattices: (0..D).map(lattice).collect(), values: vec![vec![0.0; cells.iter().product()]; D] }
     }
-    /// Of the plane, between bounded sides: component c on the faces inside, between the cells that these `sides` bound along
-    /// both axes.
-    pub(crate) fn between(sides: &[f64]) -> Self {
+    /// Between bounded sides: component c on the faces inside, between the cells that these `sides` bound along each axis.
+    pub(crate) fn between<const D: usize>(sides: [&[f64]; D]) -> Self {
         let lattice = |c: usize| {
-            let axes = [0, 1]
-                .map(|a| if a == c { Nodes::faces(sides, false) } else { Nodes::centres(sides, false) });
-            let along_x = axes[0].len();
-            Lattice::new(axes, 0, [1, along_x])
+            let axes: [Nodes; D] = std::array::from_fn(|a| match a == c {
+                true => Nodes::faces(sides[a], false),
+                false => Nodes::centres(sides[a], false),
+            });
+            let mut stride = [1; D];
+            for a in 1..D {
+                stride[a] = stride[a - 1] * axes[a - 1].len();
+            }
+            Lattice::new(axes, 0, stride)
         };
-        let lattices: Vec<Lattice> = [0, 1].map(lattice).into();
+        let lattices: Vec<Lattice> = (0..D).map(lattice).collect();
         let values = lattices.iter().map(|l| vec![0.0; l.shape().iter().product()]).collect();
         Self { lattices, values }
     }

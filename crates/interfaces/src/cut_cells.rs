@@ -1,5 +1,5 @@
 //! What walls leave of the cells of a staggered grid.
-use crate::{Point, Vector};
+use crate::{Point, ThinPart, Vector};
 
 /// The part of the cells and their faces that walls at rest leave to the fluid: what who knows the walls' shape tells who
 /// balances fluxes over it.
@@ -16,6 +16,8 @@ pub struct CutCells {
     pub faces: [Vec<OpenFace>; 3],
     /// The wall in the cells that it goes through.
     pub walls: Vec<WallPiece>,
+    /// Parts of bodies that are too thin for the grid, so fluid leaks through them: one entry per body that has such parts.
+    pub thin: Vec<ThinPart>,
 }
 
 /// The open part of a face between two cells.

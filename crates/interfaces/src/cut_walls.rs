@@ -1,4 +1,5 @@
 //! How walls cut the cells of a staggered grid.
+use crate::ThinPart;
 use crate::Vector;
 
 /// Walls that cut the control volumes of a staggered grid: what who knows the walls' shape tells who computes the flow.
@@ -10,6 +11,8 @@ pub struct CutWalls {
     pub components: [CutComponent; 3],
     /// How many bodies the walls belong to.
     pub n_bodies: usize,
+    /// Parts of bodies that are too thin for the grid, so fluid leaks through them: one entry per body that has such parts.
+    pub thin: Vec<ThinPart>,
 }
 
 /// The walls as one velocity component meets them.

@@ -80,6 +80,18 @@ impl Setup {
         }
     }
 
+    /// Whether bodies act on the flow by a forcing, not as walls.
+    pub(crate) fn is_forced(&self) -> bool {
+        let any = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
+        self.fluid.is_some()
+            && any
+            && match self.flow.algorithm {
+                Algorithm::Simple => false,
+                Algorithm::Piso => true,
+                Algorithm::Projection => self.bodies.forcing() != ForcingChoice::CutLinks,
+            }
+    }
+
     /// Bodies that the smooth forcing cannot resolve, whatever the cells around them are.
     pub(crate) fn check_sizes(&self) -> Result<(), BuildError> {
         let least = SmoothForcing::LEAST_CELLS;

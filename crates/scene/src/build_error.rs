@@ -67,7 +67,9 @@ impl BuildError {
             Self::Immersed(error) | Self::Coupling(CouplingError::Immersed(error)) => match error {
                 IbmError::TooCoarse { body: b, .. }
                 | IbmError::TooLarge { body: b, .. }
+                | IbmError::Outside { body: b, .. }
                 | IbmError::Unseen { body: b, .. } => body(b),
+                IbmError::Thin { part } => body(&BodyId(part.body)),
                 _ => None,
             },
             Self::Coupling(

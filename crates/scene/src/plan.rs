@@ -1,9 +1,10 @@
 //! What a scene would do.
 use crate::build_error::BuildError;
-use crate::setup::{Algorithm, ForcingChoice, Setup};
+use crate::setup::{Algorithm, ContactLawChoice, ForcingChoice, Setup};
 use crate::steady::Steady;
-use coupling::{Evolving, Grains};
+use coupling::{Evolving, Grains, check_places};
 use fv_mesh::Axis;
+use ibm::cut_walls;
 use std::fmt;
 
 /// What running a scene would mean: told before it is run.
@@ -55,10 +56,18 @@ impl Setup {
     fn plan_in<const D: usize>(&self) -> Result<Plan, BuildError> {
         let cells = self.cells() as f64;
         let moved = self.bodies.any_moves();
+        let mut thin = Vec::new();
         // Bodies are put together without a flow, which they do not need for that.
-        if moved && self.fluid.is_some() {
-            self.cast(self.chen())?;
-            if self.bodies.forcing() == ForcingChoice::Smooth {
+        if self.is_forced() {
+            let (grid, periodic) = (self.grid::<D>()?, |a| self.periodic(a));
+            match (self.flow.algorithm, self.bodies.law) {
+                (Algorithm::Projection, ContactLawChoice::None) => {
+                    check_places(&grid, periodic, &self.cast(())?)?;
+                }
+                _ => check_places(&grid, periodic, &self.cast(self.chen())?)?,
+            }
+            if self.flow.algorithm == Algorithm::Projection && self.bodies.forcing() == ForcingChoice::Smooth
+            {
                 self.check_sizes()?;
             }
         }
@@ -68,12 +77,17 @@ impl Setup {
                 (Some(self.dt.unwrap_or(contact).min(self.end)), "no fluid".to_owned())
             }
             Algorithm::Simple => {
-                let _: Steady<D> = self.steady()?;
+                let steady: Steady<D> = self.steady()?;
+                thin = steady.thin;
                 (None, "multigrid".to_owned())
             }
             Algorithm::Piso => (self.dt, "multigrid".to_owned()),
             Algorithm::Projection => {
-                let flow = self.physics(self.projection::<D>()?)?;
+                let flow = self.projection::<D>()?;
+                if !self.is_forced() {
+                    thin = cut_walls(flow.velocity(), &self.still())?.thin;
+                }
+                let flow = self.physics(flow)?;
                 let speed = self.speed();
                 let rate: f64 = self.axes.iter().map(|axis| speed / axis.narrowest()).sum();
                 let stable = flow.stable_dt(self.courant);
@@ -101,6 +115,16 @@ impl Setup {
                 Algorithm::Simple => cells * COST_OF_ITERATION,
             };
         let mut warnings = self.warnings();
+        warnings.extend(thin.iter().map(|part| {
+            format!(
+                "body {} is thin at ({}): {:.3e} m thick, where the grid needs {:.3e} m; through parts that thin, {:.0} % of its surface, fluid leaks, and about that share of its loads is lost: take more cells there",
+                self.bodies.list[part.body].name,
+                part.place_text(),
+                part.thickness,
+                part.needed,
+                (100.0 * part.share).max(1.0)
+            )
+        }));
         if steps > MANY_STEPS {
             warnings.push(format!(
                 "{} steps to time.end, {} on one core: is everything in metres and seconds, and no cell far narrower than the others?",

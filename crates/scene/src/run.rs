@@ -80,7 +80,7 @@ impl Setup {
             }
             Algorithm::Projection => {}
         }
-        if !bodies || self.bodies.forcing() == ForcingChoice::CutLinks {
+        if !self.is_forced() {
             let (flow, still) = self.walled::<D>()?;
             return stage.march(self.simulation(flow, still)?, ());
         }

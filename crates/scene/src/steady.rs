@@ -13,7 +13,7 @@ use example_support::cpu::Stopwatch;
 use example_support::progress::Progress;
 use fv_mesh::{FlowError, ScalarTransport, Simple, SimpleInfo, SimpleParams, TransportParams, WallStress};
 use ibm::cut_cells;
-use interfaces::{Kinematics, Wrench};
+use interfaces::{Kinematics, ThinPart, Wrench};
 use std::sync::atomic::Ordering;
 
 /// The steady algorithm, its turbulence model, and the loads of its walls.
@@ -25,6 +25,8 @@ pub(crate) struct Steady<const D: usize> {
     pub(crate) lift: Option<Lift>,
     /// Of every body at rest \[N, N m\]: pressure and friction.
     pub(crate) loads: Vec<Wrench>,
+    /// Parts of bodies that are too thin for the grid.
+    pub(crate) thin: Vec<ThinPart>,
     /// When the flow is said to be \[s\].
     pub(crate) time: f64,
 }
@@ -83,10 +85,12 @@ impl Setup {
             .with_params(params)?;
         let mut scalars = self.scalars(flow.grid(), flow.sides())?;
         let bodies = self.still();
+        let mut thin = Vec::new();
         if bodies.n_bodies() > 0 {
             let cuts = cut_cells(flow.velocity(), &bodies)?;
             let walls = self.turbulence.as_ref().map(|t| t.walls).unwrap_or_default();
             flow.set_walls(Some((&cuts, walls)))?;
+            thin.clone_from(&cuts.thin);
             if matches!(walls, WallStress::Law { .. }) {
                 scalars.stand_beside(&cuts, self.end)?;
             }
@@ -101,7 +105,7 @@ impl Setup {
         if let Some(model) = &mut model {
             self.stand_beside(model, flow.sides())?;
         }
-        Ok(Steady { flow, model, scalars, lift: self.lift(), loads: Vec::new(), time: self.end })
+        Ok(Steady { flow, model, scalars, lift: self.lift(), loads: Vec::new(), thin, time: self.end })
     }
 }
 

@@ -2,13 +2,12 @@
 mod face;
 
 use crate::IbmError;
-use crate::cut_link::distances::{Distances, Near, Ticks};
+use crate::cut_link::distances::{Distances, Near, ON};
+use crate::cut_link::resolution;
 use face::Open;
 use interfaces::{Bodies, BodyId, CutCells, OpenFace, Point, Vector, VelocityField, WallPiece};
 
-/// Places nearer to a surface than this share of the narrowest spacing are on it, which is inside.
-const ON: f64 = 1e-6;
-/// The same for vertices: walls along the lines of the grid leave no slivers.
+/// Vertices nearer to a surface than this share of the narrowest spacing are on it, as other places are within [`ON`]: walls along the lines of the grid leave no slivers.
 const SLIVER: f64 = 0.01;
 /// Faces and walls below this share of a face are none.
 const LEAST: f64 = 1e-6;
@@ -22,26 +21,26 @@ const LEAST: f64 = 1e-6;
 /// ([`WallPiece::foot`]), and a duct of n cells across lacks at most 0.02/n of its area.
 ///
 /// # Errors
-/// [`IbmError::Lost`] and [`IbmError::TooLarge`].
+/// [`IbmError::Lost`] and [`IbmError::TooLarge`]; [`IbmError::Outside`] and [`IbmError::Unseen`] for a body without a corner of a
+/// cell inside; [`IbmError::Thin`] for a body that leaks. Thin parts of other bodies are in [`CutCells::thin`].
 pub fn cut_cells<B: Bodies + ?Sized>(velocity: &dyn VelocityField, bodies: &B) -> Result<CutCells, IbmError> {
     let dim = velocity.dim();
     for b in 0..bodies.n_bodies() {
         crate::solid_fraction::check(velocity.lattice(0), bodies, BodyId(b))?;
     }
-    let ticks = [0, 1, 2].map(|a| match a < dim {
-        true => Ticks::faces(&velocity.lattice(a).axes[a]),
-        false => Ticks::nodes(&velocity.lattice(0).axes[a]),
-    });
+    let corners = resolution::vertices(velocity);
     let mut shape = [1; 3];
     for a in 0..dim {
         let nodes = &velocity.lattice(a).axes[a];
         shape[a] = nodes.len() + usize::from(!nodes.is_periodic());
     }
-    let vertices = Distances::new(ticks, dim, bodies);
+    let vertices = Distances::new(corners.clone(), dim, bodies);
+    resolution::require_seen(bodies, &vertices.unseen, &corners[..dim])?;
+    let thin = resolution::thin_parts(velocity, bodies, &corners, &vertices)?;
     let mut cutter = Cutter { velocity, bodies, dim, shape, vertices, open: [const { Vec::new() }; 3] };
     cutter.open();
     cutter.close_dead_ends();
-    Ok(CutCells { walls: cutter.walls(), faces: cutter.into_faces() })
+    Ok(CutCells { walls: cutter.walls(), faces: cutter.into_faces(), thin })
 }
 
 struct Cutter<'a, B: ?Sized> {

@@ -24,15 +24,27 @@ impl Ticks {
         self.places.len()
     }
     /// Largest distance of neighbours.
-    fn widest(&self) -> f64 {
-        let gaps = self.places.windows(2).map(|w| w[1] - w[0]);
-        let wrap = self.period.map(|period| self.places[0] + period - self.places[self.len() - 1]);
-        gaps.chain(wrap).fold(0.0, f64::max)
+    pub(crate) fn widest(&self) -> f64 {
+        (0..self.len()).map(|i| self.gap(i)).fold(0.0, f64::max)
     }
-    /// Does [low, high] reach between the nodes?
-    fn reaches(&self, low: f64, high: f64) -> bool {
+    /// Smallest distance of neighbours; infinite without neighbours.
+    fn narrowest(&self) -> f64 {
+        let wrap = self.period.map(|period| self.places[0] + period - self.places[self.len() - 1]);
+        let gaps = self.places.windows(2).map(|w| w[1] - w[0]);
+        gaps.chain(wrap).filter(|&gap| gap > 0.0).fold(f64::INFINITY, f64::min)
+    }
+    /// Distance of node `i` from the farther of its neighbours; 0 without neighbours.
+    pub(crate) fn gap(&self, i: usize) -> f64 {
+        let last = self.len() - 1;
+        let wrap = |period: f64| self.places[0] + period - self.places[last];
+        let above = if i < last { Some(self.places[i + 1] - self.places[i]) } else { self.period.map(wrap) };
+        let below = if i > 0 { Some(self.places[i] - self.places[i - 1]) } else { self.period.map(wrap) };
+        above.into_iter().chain(below).fold(0.0, f64::max)
+    }
+    /// First and last node of a bounded axis.
+    pub(crate) fn ends(&self) -> Option<[f64; 2]> {
         let ends = self.places.first().zip(self.places.last());
-        self.period.is_some() || ends.is_some_and(|(&first, &last)| low < last && high > first)
+        ends.filter(|_| self.period.is_none()).map(|(&first, &last)| [first, last])
     }
     /// The nodes that lie in [low, high], wrapped, and their places, not wrapped.
     fn within(&self, low: f64, high: f64) -> Vec<(usize, f64)> {
@@ -59,7 +71,7 @@ impl Ticks {
 pub(crate) struct Near {
     /// Its number along each axis.
     pub(crate) node: [u32; 3],
-    /// Signed distance to the nearest body (only its sign is exact beyond the band).
+    /// Signed distance to the nearest body (only its sign is exact beyond the band); 0 for a node on its surface.
     pub(crate) distance: f64,
     /// That body.
     pub(crate) body: u32,
@@ -79,11 +91,16 @@ pub(crate) struct Distances {
     pub(crate) band: f64,
     /// Largest distance of neighbours along an axis \[m\].
     pub(crate) widest: f64,
-    /// Bodies that reach into the box but hold no node.
+    /// Bodies without a node inside.
     pub(crate) unseen: Vec<BodyId>,
 }
 
 const FAR: u32 = u32::MAX;
+
+/// Nodes nearer to a surface than this share of the narrowest spacing are on it, which is inside: far above the round-off of signed
+/// distances, so bodies that are symmetric to the grid are cut symmetrically. Cuts are continuous where a node comes to lie on a
+/// surface, so loads change by no more than this share times their change over a cell.
+pub(crate) const ON: f64 = 1e-6;
 
 impl Near {
     pub(crate) fn body(&self) -> BodyId {
@@ -97,6 +114,7 @@ impl Distances {
         let widest = Vector::from_fn(|a, _| if a < dim { axes[a].widest() } else { 0.0 });
         // What is cut, its corners and its neighbours are no farther from the surface than a diagonal.
         let band = 1.01 * widest.norm();
+        let tie = ON * axes[..dim].iter().map(Ticks::narrowest).fold(f64::INFINITY, f64::min);
         let mut slots = vec![FAR; shape.iter().product()];
         let mut near: Vec<Near> = Vec::new();
         let (mut points, mut found, mut unseen) = (Vec::new(), Vec::new(), Vec::new());
@@ -107,8 +125,11 @@ impl Distances {
                 true => axes[a].within(bounds.min[a] - band, bounds.max[a] + band),
                 false => vec![(0, pose.position[a])],
             });
-            let reaches = (0..dim).all(|a| axes[a].reaches(bounds.min[a], bounds.max[a]));
-            let mut seen = !reaches;
+            if columns.iter().any(Vec::is_empty) {
+                unseen.push(BodyId(b));
+                continue;
+            }
+            let mut seen = false;
             let arms =
                 [0, 1, 2].map(|a| columns[a].iter().map(|&(_, x)| x - pose.position[a]).collect::<Vec<_>>());
             let to_body = pose.orientation.inverse().to_rotation_matrix();
@@ -128,7 +149,8 @@ impl Distances {
                         if distance >= band {
                             continue;
                         }
-                        seen |= distance <= 0.0;
+                        let distance = if distance.abs() <= tie { 0.0 } else { distance };
+                        seen |= distance < 0.0;
                         let arm = Vector::new(*x, *y, *z);
                         let this = Near { node: [i, j, k].map(|i| i as u32), distance, body: b as u32, arm };
                         let slot = &mut slots[i + shape[0] * (j + shape[1] * k)];

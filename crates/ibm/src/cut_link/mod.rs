@@ -3,6 +3,7 @@ pub(crate) mod distances;
 mod faces;
 mod links;
 mod plane;
+pub(crate) mod resolution;
 
 use crate::IbmError;
 use distances::{Distances, Near, Ticks};
@@ -16,8 +17,8 @@ use interfaces::{Bodies, BodyId, CutComponent, CutWalls, Point, SolidPoint, Vect
 /// profile is added. That makes the fluxes second order.
 ///
 /// # Errors
-/// [`IbmError::Lost`], [`IbmError::TooLarge`] and [`IbmError::Unseen`] for a body in the box that no node of some velocity
-/// component is inside of.
+/// [`IbmError::Lost`] and [`IbmError::TooLarge`]; [`IbmError::Outside`] and [`IbmError::Unseen`] for a body without a node of some
+/// velocity component inside; [`IbmError::Thin`] for a body that leaks. Thin parts of other bodies are in [`CutWalls::thin`].
 pub fn cut_walls<B: Bodies + ?Sized>(velocity: &dyn VelocityField, bodies: &B) -> Result<CutWalls, IbmError> {
     let dim = velocity.dim();
     for c in 0..dim {
@@ -25,29 +26,19 @@ pub fn cut_walls<B: Bodies + ?Sized>(velocity: &dyn VelocityField, bodies: &B) -
             crate::solid_fraction::check(velocity.lattice(c), bodies, BodyId(b))?;
         }
     }
-    let vertices = Distances::new([0, 1, 2].map(|a| vertices(velocity, a)), dim, bodies);
+    let corners = resolution::vertices(velocity);
+    let vertices = Distances::new(corners.clone(), dim, bodies);
     let mut walls = CutWalls { n_bodies: bodies.n_bodies(), ..CutWalls::default() };
     for c in 0..dim {
         let lattice = velocity.lattice(c);
         let nodes = Distances::new([0, 1, 2].map(|a| Ticks::nodes(&lattice.axes[a])), dim, bodies);
-        if let Some(&body) = nodes.unseen.first() {
-            let extent = bodies.solid(body).aabb().extent();
-            let size = extent.iter().take(dim).fold(f64::INFINITY, |m, &e| m.min(e));
-            return Err(IbmError::Unseen { body, size, spacing: lattice.axes[0].mean_spacing() });
-        }
+        resolution::require_seen(bodies, &nodes.unseen, &corners[..dim])?;
         let component = Cutter { velocity, bodies, c, dim, nodes: &nodes, vertices: &vertices };
         let (solid, links, faces) = (component.solid(), component.links(), component.faces());
         walls.components[c] = CutComponent { solid, links, faces };
     }
+    walls.thin = resolution::thin_parts(velocity, bodies, &corners, &vertices)?;
     Ok(walls)
-}
-
-/// All faces of the cells along axis `a`.
-fn vertices(velocity: &dyn VelocityField, a: usize) -> Ticks {
-    match a < velocity.dim() {
-        true => Ticks::faces(&velocity.lattice(a).axes[a]),
-        false => Ticks::nodes(&velocity.lattice(0).axes[a]),
-    }
 }
 
 /// What the cuts of one velocity component are found from.

@@ -123,3 +123,70 @@ fn what_looks_doubtful_is_told() {
     assert!(warnings(&periodic).contains("along y the period is 2.5 times"), "{}", warnings(&periodic));
     assert!(problems(STREAM, "sides.x_min.velocity=[1.0]").contains("sides.x_min.velocity"));
 }
+
+/// Bodies outside the box, by every forcing and motion, in the plan as in a run; along a periodic axis there is no outside.
+#[test]
+fn bodies_outside_the_box_are_errors_of_the_plan() {
+    let body = |x: f64, y: f64, motion: &str| {
+        format!(
+            "bodies=[{{ shape = {{ type = \"disc\", radius = 0.3 }}, position = [{x}, {y}], density = 2.0, motion = {motion} }}]"
+        )
+    };
+    let swing = "{ type = \"prescribed\", shift = [\"0.01*sin(t)\", 0.0] }";
+    let simple = ["flow.algorithm=\"simple\""];
+    for (x, y) in [(-1.0, 0.5), (1.4, 0.5), (0.5, -0.31), (0.5, 9.0), (-0.25, -0.25)] {
+        for (motion, more) in [
+            ("\"fixed\"", &[][..]),
+            ("\"fixed\"", &["coupling.forcing=\"cut-links\""]),
+            ("\"fixed\"", &["coupling.forcing=\"smooth\""]),
+            ("\"fixed\"", &["coupling.forcing=\"hfdib\""]),
+            ("\"fixed\"", &["flow.algorithm=\"piso\"", "time.dt=1e-3", "coupling.forcing=\"hfdib\""]),
+            ("\"fixed\"", &simple),
+            (swing, &[]),
+            (swing, &["coupling.forcing=\"hfdib\""]),
+            ("\"free\"", &["sides.y=\"periodic\""]),
+        ] {
+            if motion == "\"free\"" && (0.0..=1.0).contains(&x) {
+                continue;
+            }
+            let body = body(x, y, motion);
+            let more: Vec<&str> = more.iter().copied().chain([body.as_str()]).collect();
+            let planned = scene(STREAM, &more).plan().unwrap_err().to_string();
+            assert!(
+                planned.contains("bodies.0: ") && planned.contains("the box from 0.0"),
+                "{more:?}: {planned}"
+            );
+            assert_eq!(planned, ends_with(STREAM, &more));
+        }
+    }
+    let around = ["sides.y=\"periodic\"", "time.end=0.01", &body(0.5, -7.3, "\"fixed\"")];
+    for forcing in ["cut-links", "smooth", "hfdib"] {
+        let forcing = format!("coupling.forcing=\"{forcing}\"");
+        scene(STREAM, &[&around[..], &[forcing.as_str()]].concat()).plan().unwrap();
+    }
+}
+
+/// Plates thinner than a cell at any angle, by cut links and cut cells; thin parts of thick bodies are warnings.
+#[test]
+fn thin_walls_are_found_by_the_plan() {
+    let plate = |angle: f64| {
+        format!(
+            "bodies=[{{ shape = {{ type = \"box\", edges = [0.006, 0.3] }}, position = [0.5, 0.5], orientation = {angle}, motion = \"fixed\" }}]"
+        )
+    };
+    let simple = ["flow.algorithm=\"simple\""];
+    for angle in [0.0, 10.0, 30.0, 45.0, 60.0, 90.0] {
+        for more in [&[][..], &simple] {
+            let plate = plate(angle);
+            let more: Vec<&str> = more.iter().copied().chain([plate.as_str()]).collect();
+            let planned = scene(STREAM, &more).plan().unwrap_err().to_string();
+            assert!(planned.contains("bodies.0: ") && planned.contains("thin"), "{angle}: {planned}");
+        }
+    }
+    let slender = "bodies=[{ name = \"blade\", shape = { type = \"ellipse\", semi_axes = [0.35, 0.04] }, position = [0.5, 0.5], orientation = 20.0, motion = \"fixed\" }]";
+    for more in [&[][..], &simple] {
+        let more: Vec<&str> = more.iter().copied().chain([slender]).collect();
+        let warnings = scene(STREAM, &more).plan().unwrap().warnings.join("\n");
+        assert!(warnings.contains("body blade is thin at ("), "{warnings}");
+    }
+}

@@ -78,7 +78,7 @@ mod tests {
                 velocity: Vector::zeros(),
             }
         });
-        let cuts = CutCells { faces: std::array::from_fn(|_| Vec::new()), walls: walls.collect() };
+        let cuts = CutCells { walls: walls.collect(), ..CutCells::default() };
         let openings = Openings::new(&cuts, &grid, &metrics, &HashSet::new(), true).unwrap();
         let found = nearest_pieces(&openings, 4);
         assert!(found.len() > 24 * 8, "{}", found.len());

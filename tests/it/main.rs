@@ -17,6 +17,7 @@ mod plane_shapes;
 mod population;
 mod preset;
 mod removal;
+mod repeats;
 mod restart;
 mod scenes;
 mod skipping;

@@ -90,7 +90,7 @@ fn forces_on_a_swinging_cylinder_are_smooth() {
 }
 
 /// A light disc in a turbulent flow.
-fn drifting() -> Simulation<2, Particles<SmoothForcing, RigidBodies>, TurbulentFlow<Sst>> {
+pub(crate) fn drifting() -> Simulation<2, Particles<SmoothForcing, RigidBodies>, TurbulentFlow<Sst>> {
     let flow = with_model(flow(true), Sst::default(), start()).unwrap();
     let mut bodies = RigidBodies::new(Periods::new([Some(4.0), None, None]));
     let disc = Arc::new(Disc::new(0.3).unwrap());

@@ -9,10 +9,10 @@ use siltflow::interfaces::{Aabb, Freedom, Kinematics, Point, Twist, Vector};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-type Rain = Simulation<2, Particles<SmoothForcing, Population>>;
+pub(crate) type Rain = Simulation<2, Particles<SmoothForcing, Population>>;
 
 /// Discs of 0.8 to 1 mm come in at the top of a closed box; one fell there before. Below 8 mm they are gone.
-fn rain() -> Rain {
+pub(crate) fn rain() -> Rain {
     let scene = Scene { cells_per_diameter: 8, floor: true, bodies: 1, ..Scene::default() };
     let at = Aabb { min: Point::new(1e-3, 17e-3, 0.0), max: Point::new(9e-3, 19e-3, 0.0) };
     let recipe = |serial: u64| Entrant {

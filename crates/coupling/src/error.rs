@@ -1,7 +1,7 @@
 //! What can go wrong.
 use fv_mesh::FlowError;
 use ibm::IbmError;
-use interfaces::BodyId;
+use interfaces::{BodyId, RestartError};
 
 /// Why a coupled step could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -130,6 +130,9 @@ pub enum CouplingError {
         /// When \[s\].
         time: f64,
     },
+    /// A step that exceeded the Courant number could not be taken back.
+    #[error("the state before a step that went too far could not be restored: {0}")]
+    TakeBack(#[from] RestartError),
     /// An observer could not do its work.
     #[error("{what}: {source}")]
     Output {

@@ -65,7 +65,6 @@ impl<B: Dynamics> Evolving for Grains<B> {
         Ok(())
     }
     fn step(&mut self, dt: f64) -> Result<(), CouplingError> {
-        self.begin()?;
         let Self { bodies, timings, time, .. } = self;
         timings.measure(Module::Contact, || bodies.advance(dt)).map_err(Self::failed(*time))?;
         self.time += dt;
@@ -87,6 +86,9 @@ impl<B: Dynamics> Evolving for Grains<B> {
     }
     fn courant(&self, _: f64) -> f64 {
         0.0
+    }
+    fn convects(&self) -> bool {
+        false
     }
     fn stable_dt(&self, _: f64) -> f64 {
         self.longest_dt()

@@ -44,6 +44,7 @@ mod run;
 mod serials;
 mod simulation;
 mod snapshots;
+mod state_copy;
 mod strategy;
 mod walled;
 mod with_scalars;

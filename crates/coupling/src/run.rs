@@ -1,10 +1,13 @@
 //! The run loop.
 use crate::CouplingError;
+use crate::state_copy::StateCopy;
+use fv_mesh::FlowError;
+use interfaces::Checkpoint;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What a run moves on in time: a [`Simulation`](crate::Simulation) of flow and bodies, or [`Grains`](crate::Grains) without a fluid.
-pub trait Evolving {
-    /// Before the first step of a run.
+pub trait Evolving: Checkpoint {
+    /// Before every step: bodies that are due come and go. A second call in a row does nothing.
     ///
     /// # Errors
     /// [`CouplingError`] when it cannot begin.
@@ -24,7 +27,11 @@ pub trait Evolving {
     fn last_dt(&self) -> f64;
     /// Courant number of a step of `dt`.
     fn courant(&self, dt: f64) -> f64;
-    /// The longest step \[s\] with Courant number ≤ `courant` that is stable; infinite if any is.
+    /// Whether the Courant number may be other than zero.
+    fn convects(&self) -> bool {
+        true
+    }
+    /// The longest step \[s\] that is stable and ends with a Courant number ≤ `courant`, as far as is known before it; infinite if any is.
     fn stable_dt(&self, courant: f64) -> f64;
     /// The longest step \[s\] that is stable however slow everything is; infinite if any is.
     fn longest_dt(&self) -> f64;
@@ -39,7 +46,7 @@ pub struct Schedule {
     pub intervals: usize,
     /// The time step \[s\]; `None` takes the largest that `courant` and stability allow.
     pub dt: Option<f64>,
-    /// Courant number that an automatic step may reach.
+    /// Courant number that no automatic step exceeds: one that would is taken back and repeated with a shorter step.
     pub courant: f64,
     /// First step of a start from rest as a share of the time step, and by which factor steps may
     /// then grow: a body set free in a fluid at rest accelerates like √t.
@@ -185,7 +192,7 @@ const COLLAPSED: f64 = 1e-6;
 /// Beyond this Courant number no explicit step is to be trusted.
 const MOST_COURANT: f64 = 1.5;
 
-/// Share of a step or an interval below which a rest of time is round-off.
+/// Share of a step, an interval or a Courant number below which a rest is round-off.
 const ROUND_OFF: f64 = 1e-6;
 
 /// How a run went.
@@ -197,8 +204,26 @@ pub struct RunSummary {
     pub dt: [f64; 2],
     /// Largest Courant number.
     pub courant: f64,
+    /// Steps that were taken back because they exceeded the Courant number of the schedule.
+    pub repeats: u64,
     /// Did `stop` end it?
     pub stopped: bool,
+}
+
+/// Makes a step of `dt` \[s\]. Returns its Courant number if that exceeds the `limit`, the state then being that after the step or, when the flow has diverged, within it.
+fn went_too_far<S: Evolving>(
+    simulation: &mut S,
+    dt: f64,
+    limit: Option<f64>,
+) -> Result<Option<f64>, CouplingError> {
+    let courant = match (simulation.step(dt), limit) {
+        (Ok(()), _) => simulation.courant(dt),
+        (Err(CouplingError::Flow(FlowError::Diverged { courant, .. })), Some(_)) if courant.is_finite() => {
+            courant
+        }
+        (Err(error), _) => return Err(error),
+    };
+    Ok(limit.filter(|limit| courant > (1.0 + ROUND_OFF) * limit).map(|_| courant))
 }
 
 /// Runs to the schedule's end, or until `stop` is set. Call it inside a rayon pool
@@ -225,6 +250,8 @@ pub fn run<S: Evolving>(
     // Ends of intervals that are behind, up to round-off: other schedules cut time otherwise.
     let behind = info.time + ROUND_OFF * schedule.end / schedule.intervals as f64;
     let mut index = (0..=schedule.intervals).take_while(|&i| schedule.time(i) <= behind).count().max(1) - 1;
+    let automatic = schedule.dt.is_none() && simulation.convects();
+    let mut before = StateCopy::default();
     // Gone on from its end, a run has no step to make ready for: no body comes in.
     if index < schedule.intervals {
         simulation.begin()?;
@@ -241,18 +268,35 @@ pub fn run<S: Evolving>(
                 summary.stopped = true;
                 return Ok(summary);
             }
-            let full = schedule.dt.unwrap_or_else(|| simulation.stable_dt(schedule.courant));
-            if full < COLLAPSED * simulation.longest_dt().min(schedule.end) {
-                let time = simulation.time();
-                return Err(CouplingError::Collapsed { dt: full, time, courant: schedule.courant });
-            }
             let [first, growth] = schedule.ramp;
             let share = (first * growth.powf(info.step as f64)).min(1.0);
-            // Equal steps to the end of the interval, up to round-off in the number of steps.
+            let mut full = schedule.dt.unwrap_or_else(|| simulation.stable_dt(schedule.courant));
+            simulation.begin()?;
+            if automatic {
+                before.take(simulation);
+            }
             let left = target - simulation.time();
-            let steps = (left / (full * share) - ROUND_OFF).ceil().max(1.0);
-            let dt = left / steps;
-            simulation.step(dt)?;
+            let mut tried = 0;
+            let (dt, steps) = loop {
+                if full < COLLAPSED * simulation.longest_dt().min(schedule.end) {
+                    let time = simulation.time();
+                    return Err(CouplingError::Collapsed { dt: full, time, courant: schedule.courant });
+                }
+                // Equal steps to the end of the interval, up to round-off in the number of steps.
+                let steps = (left / (full * share) - ROUND_OFF).ceil().max(1.0);
+                let dt = left / steps;
+                let Some(courant) = went_too_far(simulation, dt, automatic.then_some(schedule.courant))?
+                else {
+                    break (dt, steps);
+                };
+                before.give_back(simulation)?;
+                simulation.begin()?;
+                // What starts at once has the same velocity after any step; where it has more after a shorter one, the steps are halved.
+                let shorter = dt * schedule.courant / courant;
+                full = if tried == 0 { shorter } else { shorter.min(0.5 * dt) } / share;
+                tried += 1;
+            };
+            summary.repeats += tried;
             if steps == 1.0 {
                 simulation.set_time(target);
             }

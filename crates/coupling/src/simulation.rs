@@ -122,6 +122,8 @@ pub struct Simulation<const D: usize, P = (), A = Projection<D>> {
     balance: WeightBalance,
     drive: Option<Drive>,
     force: Vector,
+    /// Increase of the Courant number per step length, per time, over the last step and the one before it \[1/s²\].
+    slopes: [f64; 2],
     timings: Timings,
 }
 
@@ -132,8 +134,8 @@ impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Simulation<D, P, A> {
     /// [`CouplingError`] when the two do not fit ([`Immersed::check`]).
     pub fn new(flow: A, particles: P, balance: WeightBalance) -> Result<Self, CouplingError> {
         particles.check(&flow)?;
-        let (drive, force) = (None, Vector::zeros());
-        Ok(Self { flow, particles, balance, drive, force, timings: Timings::default() })
+        let (drive, force, slopes) = (None, Vector::zeros(), [0.0; 2]);
+        Ok(Self { flow, particles, balance, drive, force, slopes, timings: Timings::default() })
     }
 
     /// The same driven by a body force per mass \[m/s²\] besides, the same everywhere: `force(t)` of the time \[s\], in the middle of each step. Bodies feel it as they feel
@@ -149,8 +151,14 @@ impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Simulation<D, P, A> {
     /// # Errors
     /// [`CouplingError`] when flow or bodies cannot go on.
     pub fn step(&mut self, dt: f64) -> Result<(), CouplingError> {
+        self.particles.begin(&mut self.flow)?;
+        self.advance(dt)
+    }
+
+    /// The same after [`Immersed::begin`].
+    fn advance(&mut self, dt: f64) -> Result<(), CouplingError> {
         let Self { flow, particles, drive, timings, .. } = self;
-        particles.begin(flow)?;
+        let rate = flow.courant(1.0);
         self.force = match self.balance {
             WeightBalance::None => Vector::zeros(),
             WeightBalance::NetWeight => {
@@ -170,7 +178,16 @@ impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Simulation<D, P, A> {
         timings.measure(Module::Advance, || flow.predict(dt, force))?;
         particles.couple(flow, dt, timings)?;
         timings.measure(Module::Finish, || flow.finish(dt))?;
+        self.slopes = [(flow.courant(1.0) - rate) / dt, self.slopes[0]];
         Ok(())
+    }
+
+    /// The longest step \[s\] that ends with a Courant number ≤ `courant` if its rate r = Σ max|u_a|/h_a grows by no more than over the last step and by what this differs from the
+    /// step before: the root of dt (r + s dt) = C, s = max(s₁, 0) + |s₁ − s₂|. (A linear extrapolation s = s₁ alone is exceeded wherever r has a minimum.)
+    fn convective_dt(&self, courant: f64) -> f64 {
+        let [last, before] = self.slopes;
+        let (rate, growth) = (self.flow.courant(1.0), last.max(0.0) + (last - before).abs());
+        2.0 * courant / (rate + (rate * rate + 4.0 * growth * courant).sqrt())
     }
 }
 
@@ -179,7 +196,7 @@ impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Evolving for Simulatio
         self.particles.begin(&mut self.flow)
     }
     fn step(&mut self, dt: f64) -> Result<(), CouplingError> {
-        Simulation::step(self, dt)
+        self.advance(dt)
     }
     fn time(&self) -> f64 {
         self.flow.time()
@@ -197,7 +214,7 @@ impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Evolving for Simulatio
         self.flow.courant(dt)
     }
     fn stable_dt(&self, courant: f64) -> f64 {
-        self.flow.stable_dt(courant)
+        self.flow.stable_dt(courant).min(self.convective_dt(courant))
     }
     fn longest_dt(&self) -> f64 {
         self.flow.viscous_limit()
@@ -219,9 +236,11 @@ impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Checkpoint for Simulat
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         self.flow.save(&mut |name, values| sink(&format!("flow.{name}"), values));
         self.particles.save(&mut |name, values| sink(&format!("particles.{name}"), values));
+        sink("slopes", &self.slopes);
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         self.flow.restore(&|name| source(&format!("flow.{name}")))?;
-        self.particles.restore(&|name| source(&format!("particles.{name}")))
+        self.particles.restore(&|name| source(&format!("particles.{name}")))?;
+        RestartError::fill(source, "slopes", &mut self.slopes)
     }
 }

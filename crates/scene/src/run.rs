@@ -343,6 +343,12 @@ impl Stage<'_> {
         }
         let stopped = summary.stopped || self.stop.load(Ordering::Relaxed);
         let ending = if stopped { Ending::Stopped } else { Ending::Done };
+        if summary.repeats > 0 {
+            log.line(&format!(
+                "steps repeated with a shorter one, to keep to the Courant number: {}",
+                summary.repeats
+            ))?;
+        }
         log.line(if stopped { "stopped; --resume goes on" } else { "done" })?;
         let seconds = [audience.seconds + output, ledger];
         let result =

@@ -19,7 +19,7 @@ pub(super) static TIME_TABLE: Table = Table {
             "courant",
             Kind::Number(Range::Above(0.0, 1.5), "1"),
             "0.1 with bodies that move, else 0.4",
-            "Largest Courant number of an automatic step.",
+            "Largest Courant number of an automatic step: one that exceeds it is repeated with a shorter one.",
             "0.25",
         ),
         optional(

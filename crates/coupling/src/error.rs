@@ -56,7 +56,7 @@ pub enum CouplingError {
     },
     /// A body stands outside the box.
     #[error(
-        "the centre of body {} is at {centre:.3e} m along axis {axis}, outside the box from {:.3e} to {:.3e} m: move it inside", body.0, box_[0], box_[1]
+        "the centre of body {} is at {centre:.3e} m along axis {axis}, outside the box from {:.3e} to {:.3e} m: move it inside; a body that an inflow puts beyond an open side has to move inwards", body.0, box_[0], box_[1]
     )]
     Outside {
         /// The body.
@@ -70,7 +70,7 @@ pub enum CouplingError {
     },
     /// A body went out through a bounded side.
     #[error(
-        "body {} went out of the box along axis {axis} at {speed:.3e} m/s, up to t = {time:.6} s: its centre is at {centre:.3e} m, and the box reaches from {:.3e} to {:.3e} m; where there is a wall its contact was too soft to stop the body: give a larger Young's modulus, less load or less speed; where there is none, an exit", body.0, box_[0], box_[1]
+        "body {} went out of the box along axis {axis} at {speed:.3e} m/s, up to t = {time:.6} s: its centre is at {centre:.3e} m, and the box reaches from {:.3e} to {:.3e} m; {by}", body.0, box_[0], box_[1]
     )]
     Escaped {
         /// The body.
@@ -85,6 +85,8 @@ pub enum CouplingError {
         speed: f64,
         /// When \[s\].
         time: f64,
+        /// Through what.
+        by: Escape,
     },
     /// Flow and particles were told different densities.
     #[error(
@@ -141,4 +143,26 @@ pub enum CouplingError {
         /// Why it failed.
         source: std::io::Error,
     },
+}
+
+/// How a body went out of the box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Escape {
+    /// Through a wall or a plane of symmetry.
+    Wall,
+    /// Through an open side, all of it, with no exit ahead.
+    NoExit,
+}
+
+impl std::fmt::Display for Escape {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Wall => {
+                "there is a wall, whose contact was too soft to stop it or which its prescribed motion leads through: give a larger Young's modulus, less load, less speed, or an exit in front of the wall"
+            }
+            Self::NoExit => {
+                "the side is open, and no exit is ahead of the body: give one at the side or beyond it (`exits` of a scene, `dem::Population::with_exit`)"
+            }
+        })
+    }
 }

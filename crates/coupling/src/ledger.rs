@@ -60,7 +60,8 @@ struct Books {
 pub struct LedgerReport {
     /// Largest |∇·u| of any step \[1/s\], times the step's length.
     pub divergence: f64,
-    /// Largest momentum residual of a step, relative to that step's Σ|impulse|.
+    /// Largest momentum residual of a step, relative to that step's Σ|impulse|, or to 1.5e-8 (half of the digits) of the momentum where impulses on a fluid that
+    /// moves cancel.
     pub momentum_step: f64,
     /// Momentum gained − impulses over all steps, relative to Σ|impulse| of all steps.
     pub momentum_total: f64,
@@ -95,6 +96,9 @@ pub struct LedgerReport {
     pub energy_residual: f64,
     residual: Vector,
 }
+
+/// Half of the digits of a number, √ε.
+const HALF_DIGITS: f64 = 1.5e-8;
 
 /// The volume of the fluid whose velocity along each axis is an unknown \[m³\]: the nodes on bounded sides are not.
 fn moved<const D: usize>(flow: &impl FlowSolver<D>) -> Vector {
@@ -230,8 +234,9 @@ where
         r.forcing_loss += lost;
         r.residual += residual;
         r.impulses += sum;
-        if sum > 0.0 {
-            r.momentum_step = r.momentum_step.max(residual.norm() / sum);
+        let scale = sum.max(HALF_DIGITS * books.momentum.norm());
+        if scale > 0.0 {
+            r.momentum_step = r.momentum_step.max(residual.norm() / scale);
         }
         r.momentum_total = r.residual.norm() / r.impulses.max(f64::MIN_POSITIVE);
         r.divergence = r.divergence.max(now.divergence * dt);

@@ -51,7 +51,7 @@ mod with_scalars;
 
 pub use accounts::{Account, Accounts};
 pub use checkpoint::{CheckpointError, load, previous, save};
-pub use error::CouplingError;
+pub use error::{CouplingError, Escape};
 pub use flow_solver::FlowSolver;
 pub use grains::Grains;
 pub use ledger::{Ledger, LedgerReport};

@@ -1,4 +1,5 @@
 //! Bodies in a flow.
+use crate::error::Escape;
 use crate::serials::Serials;
 use crate::strategy::{Exchange, OneSolve, Strategy};
 use crate::{CouplingError, FlowSolver, Immersed, Module, Timings};
@@ -21,6 +22,10 @@ use nalgebra::{Matrix6, Vector6};
 /// I being the momentum of the fluid inside a body: the load includes its inertia. (Flows that look back further, [`FlowSolver::weights`], have
 /// w₀Iⁿ⁺¹ + w₁Iⁿ + w₂Iⁿ⁻¹ for the difference and w₀ times the forcing's momentum.) What a strategy hands the bodies of J too late
 /// or too early is kept (`δ`) and handed on in the next step, so every impulse that the fluid loses reaches a body.
+///
+/// A body may be partly outside an open side. Forces act on it where there is fluid; fluid inside that passes the side along with the body does not act on it: in its load Iⁿ is that of the part
+/// that is in the box at the end of the step, Iⁿ + R(xⁿ⁺¹, vⁿ) − R(xⁿ, vⁿ) with R the momentum of rigid motion there. The ledger has the difference among what
+/// [holds](Self::constraint_impulse) bodies.
 pub struct Particles<F, B, S = OneSolve> {
     /// The bodies.
     pub bodies: B,
@@ -55,6 +60,10 @@ pub struct State {
     pub hydrodynamic: Vector6<f64>,
     /// Impulse of what holds the components that are not free, over the last step.
     pub constraint: Vector6<f64>,
+    /// Rⁿ: momentum of the fluid inside if it moved with the body, where the body is at an open side.
+    pub rigid: Option<Vector6<f64>>,
+    /// Rⁿ − R of the body where it is now, both with vⁿ: momentum of the fluid inside that left the box with the body in the last step.
+    pub crossing: Vector6<f64>,
     /// Momentum M_s vⁿ and velocity vⁿ before the step under way.
     pub momentum: Vector6<f64>,
     pub before: Vector6<f64>,
@@ -90,6 +99,27 @@ pub struct BodyReport {
     pub hydrodynamic: Wrench,
     /// Mean contact load over the last step.
     pub contact: Wrench,
+}
+
+/// A body whose centre is beyond the lower (`end` 0) or upper side of `axis`, at `centre`; the box reaches from and to `box_` \[m\].
+#[derive(Clone, Copy)]
+struct Outside {
+    body: BodyId,
+    axis: usize,
+    end: usize,
+    centre: f64,
+    box_: [f64; 2],
+}
+
+impl Outside {
+    fn outwards(&self) -> Vector {
+        let sign = if self.end == 0 { -1.0 } else { 1.0 };
+        Vector::from_fn(|a, _| if a == self.axis { sign } else { 0.0 })
+    }
+    fn error(self) -> CouplingError {
+        let Self { body, axis, centre, box_, .. } = self;
+        CouplingError::Outside { body, axis, centre, box_ }
+    }
 }
 
 pub(crate) fn six(w: Wrench) -> Vector6<f64> {
@@ -204,6 +234,11 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
         self.serials.of(b)
     }
 
+    /// The number under which files and users know body `b`: its serial number.
+    pub(crate) fn known_as(&self, b: BodyId) -> BodyId {
+        self.serial(b).map_or(b, |serial| BodyId(serial as usize))
+    }
+
     /// Makes the fluid follow the bodies and free of divergence, as often as forcing and flow ask for.
     pub(crate) fn force<const D: usize, A: FlowSolver<D>>(
         &mut self,
@@ -229,14 +264,93 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
         [impulse, internal]
     }
 
-    /// Requires that all bodies fit into the flow's box, and are inside.
-    fn fit<const D: usize, A: FlowSolver<D>>(&self, flow: &A) -> Result<(), CouplingError> {
-        check_places(flow.grid(), |a| flow.sides().periodic(a), &self.bodies)
+    /// Whether body `b` reaches beyond an open side, or to less than so many cells from it.
+    fn at_opening<const D: usize, A: FlowSolver<D>>(&self, flow: &A, b: BodyId, cells: f64) -> bool {
+        let (grid, bounds) = (flow.grid(), self.bodies.aabb(b));
+        (0..D).filter(|&a| !flow.sides().periodic(a)).any(|axis| {
+            let along = grid.axis(axis);
+            let near = [
+                bounds.min[axis] < along.lower() + cells * along.width(0),
+                bounds.max[axis] > along.upper() - cells * along.width(along.cells() - 1),
+            ];
+            near.into_iter().enumerate().any(|(end, near)| {
+                near && self
+                    .beyond_opening(flow, &Outside { body: b, axis, end, centre: 0.0, box_: [0.0; 2] })
+            })
+        })
     }
 
-    /// The first body whose centre is beyond a bounded side: axis, where it is, where the box begins and ends \[m\].
-    fn outside<const D: usize, A: FlowSolver<D>>(&self, flow: &A) -> Option<(BodyId, usize, f64, [f64; 2])> {
+    /// Notes R of the bodies from number `first` on that are at open sides.
+    fn note_rigid<const D: usize, A: FlowSolver<D>>(&mut self, flow: &A, first: usize) {
+        if flow.sides().closed() {
+            return;
+        }
+        for b in (first..self.states.len()).map(BodyId) {
+            // A body moves less than a cell in a step.
+            let at_opening = self.at_opening(flow, b, 1.0);
+            let twist = self.bodies.twist(b);
+            self.states[b.0].rigid =
+                at_opening.then(|| six(self.forcing.rigid_momentum(flow.velocity(), &self.bodies, b, twist)));
+        }
+    }
+
+    /// Takes the fluid inside that has left the box with a body out of its Iⁿ, and adds what has come in.
+    fn cross<const D: usize, A: FlowSolver<D>>(&mut self, flow: &A) {
+        if flow.sides().closed() {
+            return;
+        }
+        for b in (0..self.states.len()).map(BodyId) {
+            let Wrench { force: linear, torque: angular } = wrench(self.states[b.0].before);
+            self.states[b.0].crossing = Vector6::zeros();
+            if let Some(before) = self.states[b.0].rigid
+                && self.at_opening(flow, b, 0.0)
+            {
+                let twist = Twist { linear, angular };
+                let now = six(self.forcing.rigid_momentum(flow.velocity(), &self.bodies, b, twist));
+                let s = &mut self.states[b.0];
+                s.crossing = before - now;
+                s.internal = s.internal.map(|internal| internal - s.crossing);
+            }
+        }
+    }
+
+    /// Bodies whose centres are beyond a bounded side.
+    fn outside<const D: usize, A: FlowSolver<D>>(&self, flow: &A) -> impl Iterator<Item = Outside> {
         outside(flow.grid(), |a| flow.sides().periodic(a), &self.bodies)
+    }
+
+    /// Whether fluid may pass the side where the body is beyond it. Sides go on beyond their edges.
+    fn beyond_opening<const D: usize, A: FlowSolver<D>>(&self, flow: &A, one: &Outside) -> bool {
+        let (grid, centre) = (flow.grid(), self.bodies.pose(one.body).position);
+        let x = std::array::from_fn(|a| {
+            let lower = grid.origin().get(a).copied().unwrap_or(0.0);
+            let upper = lower + grid.lengths().get(a).copied().unwrap_or(0.0);
+            centre[a].clamp(lower, upper)
+        });
+        flow.sides().is_open_at(one.axis, one.end, x)
+    }
+
+    /// The first body that has left the box where it cannot: through a wall, or through an open side with no exit ahead. As long as it is partly inside, or on
+    /// its way in, the latter may still change.
+    fn escaped<const D: usize, A: FlowSolver<D>>(&self, flow: &A) -> Option<(Outside, Escape)> {
+        self.outside(flow).find_map(|one| {
+            let outwards = one.outwards();
+            let exit = self.bodies.exit_distance(one.body, outwards);
+            if exit <= 0.0 {
+                return None;
+            }
+            if !self.beyond_opening(flow, &one) {
+                return Some((one, Escape::Wall));
+            }
+            let bounds = self.bodies.aabb(one.body);
+            let apart = if one.end == 0 {
+                bounds.max[one.axis] < one.box_[0]
+            } else {
+                bounds.min[one.axis] > one.box_[1]
+            };
+            let leaving = self.bodies.twist(one.body).linear.dot(&outwards) >= 0.0;
+            (exit == f64::INFINITY && apart && leaving).then_some((one, Escape::NoExit))
+        })
     }
 
     /// Fluid and contact loads of the last step on body `b`.
@@ -255,9 +369,9 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
         let s = &self.states[b.0];
         wrench(s.deferred + s.held)
     }
-    /// Impulse over the last step of what holds body `b` where it is not free \[N s, N m s\].
+    /// Impulse over the last step of what holds body `b` where it is not free, and momentum of the fluid inside that left the box with it \[N s, N m s\].
     pub fn constraint_impulse(&self, b: BodyId) -> Wrench {
-        wrench(self.states[b.0].constraint)
+        wrench(self.states[b.0].constraint + self.states[b.0].crossing)
     }
     /// (ρ_s − ρ) V g of body `b` \[N\].
     pub fn weight(&self, b: BodyId) -> Vector {
@@ -280,7 +394,7 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
     pub(crate) fn stake_brought(&self, b: BodyId) -> Stake {
         let (s, inertia) = (&self.states[b.0], self.bodies.inertia(b));
         Stake {
-            momentum: (s.momentum - s.internal[1]).fixed_rows::<3>(0).into(),
+            momentum: (s.momentum - s.internal[1] - s.crossing).fixed_rows::<3>(0).into(),
             energy: 0.5 * (1.0 - self.displaced(b) / inertia.mass) * s.momentum.dot(&s.before),
         }
     }
@@ -288,7 +402,8 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Particles<F, B, S> {
     /// the body has of the impulses.
     pub(crate) fn inner_impulse(&self, b: BodyId) -> Wrench {
         let s = &self.states[b.0];
-        let given = self.last_dt * self.pull(b) + six(self.bodies.contact_impulse(b)) + s.constraint;
+        let given =
+            self.last_dt * self.pull(b) + six(self.bodies.contact_impulse(b)) + s.constraint + s.crossing;
         let gained = self.mass_matrix(b) * self.velocity(b) - s.momentum;
         wrench(gained - given - six(self.forcing.reaction(b)))
     }
@@ -319,13 +434,16 @@ where
     fn couple(&mut self, flow: &mut A, dt: f64, timings: &mut Timings) -> Result<(), CouplingError> {
         let time = flow.time();
         timings.measure(Module::Contact, || self.advance(dt, time))?;
-        if let Some((body, axis, centre, box_)) = self.outside(flow) {
+        if let Some((Outside { body, axis, centre, box_, .. }, by)) = self.escaped(flow) {
             let speed = self.bodies.twist(body).linear.norm();
-            return Err(CouplingError::Escaped { body, axis, centre, box_, speed, time: time + dt });
+            let body = self.known_as(body);
+            return Err(CouplingError::Escaped { body, axis, centre, box_, speed, time: time + dt, by });
         }
         self.forcing.begin(flow.viscous_step(dt));
         timings.measure(Module::SolidFraction, || self.forcing.place(flow.velocity(), &self.bodies))?;
+        timings.measure(Module::Forcing, || self.cross(flow));
         S::exchange(self, flow, dt, timings)?;
+        timings.measure(Module::Forcing, || self.note_rigid(flow, 0));
         Ok(timings.measure(Module::SolidFraction, || flow.follow_walls(&self.bodies))?)
     }
 
@@ -341,13 +459,17 @@ where
         }
         let (n, started) = (self.bodies.n_bodies(), self.serials.len());
         if started < n {
-            self.fit(flow)?;
+            fit(flow.grid(), &self.bodies)?;
+            if let Some((one, _)) = self.escaped(flow) {
+                return Err(one.error());
+            }
             self.states.resize(n, State::default());
             self.forcing.place(flow.velocity(), &self.bodies)?;
             for (b, s) in self.states.iter_mut().enumerate().skip(started) {
                 let internal = self.forcing.internal_momentum(flow.velocity(), &self.bodies, BodyId(b));
                 s.internal = [six(internal); 2];
             }
+            self.note_rigid(flow, started);
             self.serials.count(n);
         }
         Ok(flow.follow_walls(&self.bodies)?)
@@ -360,7 +482,7 @@ where
                 return Err(CouplingError::Density { flow: density, particles: told });
             }
         }
-        self.fit(flow)
+        check_places(flow.grid(), |a| flow.sides().periodic(a), &self.bodies)
     }
 
     fn net_weight(&self) -> Vector {
@@ -384,6 +506,8 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Checkpoint for Particles<F, B, S> {
                 values.extend_from_slice(v.as_slice());
             }
             values.extend_from_slice(&s.added);
+            values.push(f64::from(u8::from(s.rigid.is_some())));
+            values.extend_from_slice(s.rigid.unwrap_or_default().as_slice());
         }
         sink("coupling", &values);
         sink("last_dt", &[self.last_dt]);
@@ -406,6 +530,7 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Checkpoint for Particles<F, B, S> {
                 hydrodynamic: six(6),
                 constraint: six(7),
                 added: [v[48], v[49]],
+                rigid: (v[50] != 0.0).then(|| Vector6::from_column_slice(&v[51..57])),
                 ..State::default()
             });
         }
@@ -413,16 +538,23 @@ impl<F: Forcing, B: Dynamics, S: Strategy> Checkpoint for Particles<F, B, S> {
     }
 }
 
-/// Requires that bodies which a forcing puts into a flow fit into its box and have their centres inside; `periodic` axes have no outside.
+/// Requires that bodies which a forcing puts into a flow fit into its box and have their centres
+/// inside; `periodic` axes have no outside.
 ///
 /// # Errors
 /// [`CouplingError::TooLarge`] and [`CouplingError::Outside`].
-pub fn check_places<const D: usize, B: Bodies + ?Sized>(
+pub fn check_places<const D: usize, B: Bodies>(
     grid: &CartesianGrid<D>,
     periodic: impl Fn(usize) -> bool,
     bodies: &B,
 ) -> Result<(), CouplingError> {
-    for body in (0..bodies.n_bodies()).map(BodyId) {
+    fit(grid, bodies)?;
+    outside(grid, periodic, bodies).next().map_or(Ok(()), |one| Err(one.error()))
+}
+
+/// Requires that all bodies fit into the box.
+fn fit<const D: usize, B: Bodies>(grid: &CartesianGrid<D>, bodies: &B) -> Result<(), CouplingError> {
+    for body in bodies.ids() {
         let bounds = bodies.aabb(body);
         for axis in 0..D {
             let (size, length) = (bounds.extent()[axis], grid.lengths()[axis]);
@@ -431,32 +563,27 @@ pub fn check_places<const D: usize, B: Bodies + ?Sized>(
             }
         }
     }
-    match outside(grid, periodic, bodies) {
-        Some((body, axis, centre, box_)) => Err(CouplingError::Outside { body, axis, centre, box_ }),
-        None => Ok(()),
-    }
+    Ok(())
 }
 
-/// The first body whose centre is beyond a bounded side: axis, where it is, where the box begins and ends \[m\].
-fn outside<const D: usize, B: Bodies + ?Sized>(
+/// Bodies whose centres are beyond a bounded side.
+fn outside<const D: usize, B: Bodies>(
     grid: &CartesianGrid<D>,
     periodic: impl Fn(usize) -> bool,
     bodies: &B,
-) -> Option<(BodyId, usize, f64, [f64; 2])> {
-    for axis in (0..D).filter(|&a| !periodic(a)) {
+) -> impl Iterator<Item = Outside> {
+    (0..D).filter(move |&a| !periodic(a)).flat_map(move |axis| {
         let box_ = [grid.origin()[axis], grid.origin()[axis] + grid.lengths()[axis]];
-        for body in (0..bodies.n_bodies()).map(BodyId) {
+        bodies.ids().filter_map(move |body| {
             let centre = bodies.pose(body).position[axis];
-            if !(box_[0]..=box_[1]).contains(&centre) {
-                return Some((body, axis, centre, box_));
-            }
-        }
-    }
-    None
+            let end = usize::from(centre > box_[1]);
+            (!(box_[0]..=box_[1]).contains(&centre)).then_some(Outside { body, axis, end, centre, box_ })
+        })
+    })
 }
 
 /// Loads are held over a step at most so many times longer than the last.
 const LONGEST_GROWTH: f64 = 10.0;
 
 /// Saved numbers per body.
-const STATE: usize = 8 * 6 + 2;
+const STATE: usize = 8 * 6 + 2 + 7;

@@ -6,7 +6,7 @@ pub use inflow::{Entrant, Inflow};
 
 use crate::contact::{Chen, ContactLaw};
 use crate::placing::PlacingError;
-use crate::{DemError, HalfSpace, RigidBodies, RigidDynamics};
+use crate::{DemError, HalfSpace, RigidBodies, RigidDynamics, SmoothConvex};
 use interfaces::{
     Bodies, BodyId, Dynamics, Freedom, Inertia, Kinematics, Load, Pose, Renumbering, Solid, Twist, Vector,
     Wrench,
@@ -220,6 +220,19 @@ impl<L: ContactLaw> Dynamics for Population<L> {
     }
     fn stable_dt(&self) -> f64 {
         self.bodies.stable_dt()
+    }
+    /// Along the line from the centre of body `b` into the nearest exit.
+    fn exit_distance(&self, b: BodyId, direction: Vector) -> f64 {
+        if self.dismissed.contains(&b) {
+            return 0.0;
+        }
+        let centre = self.bodies.pose(b).position;
+        let ahead = |exit: &HalfSpace| {
+            let [from, to] = exit.chord(centre, direction)?;
+            // The plane itself is not inside.
+            (to > 0.0).then_some(from.max(0.0))
+        };
+        self.exits.iter().filter_map(ahead).fold(f64::INFINITY, f64::min)
     }
     /// Called again at the same time it changes nothing.
     fn renew(&mut self, time: f64) -> Result<Option<Renumbering>, PlacingError> {

@@ -106,6 +106,15 @@ pub trait Forcing: Send {
     /// \[N s, N m s\].
     fn internal_momentum(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies, b: BodyId) -> Wrench;
 
+    /// The same if that fluid moved with `twist`, of what of the body is on the grid: ρ ∫ (v, r × v) dV, v = U + Ω×r \[N s, N m s\].
+    fn rigid_momentum(
+        &mut self,
+        velocity: &dyn VelocityField,
+        bodies: &dyn Bodies,
+        b: BodyId,
+        twist: Twist,
+    ) -> Wrench;
+
     /// Adds dt f_ib to the velocity so that it meets the bodies' motion.
     fn force(&mut self, velocity: &mut dyn VelocityField, bodies: &dyn Kinematics);
 

@@ -1,8 +1,8 @@
 //! The paper's forcing: velocity values set in the cells that a body covers.
 use crate::forcing::LayerSums;
-use crate::smooth::internal_momentum;
+use crate::smooth::{internal_momentum, rigid_momentum};
 use crate::{Forcing, FractionRule, IbmError, Layer, Reconstruction, SolidFraction, SolidNode};
-use interfaces::{Bodies, BodyId, Kinematics, Renumbering, Vector, VelocityField, Wrench};
+use interfaces::{Bodies, BodyId, Kinematics, Renumbering, Twist, Vector, VelocityField, Wrench};
 
 /// Hybrid fictitious domain–immersed boundary forcing (Isoz et al. 2023, equations 1–2 and
 /// figure 3): f_ib = ceil(λ) [M(u_ib) + ∇p] after discretisation, which is
@@ -100,6 +100,16 @@ impl Forcing for Hfdib {
         internal_momentum(&self.inside, self.density, velocity, b)
     }
 
+    fn rigid_momentum(
+        &mut self,
+        velocity: &dyn VelocityField,
+        _: &dyn Bodies,
+        b: BodyId,
+        twist: Twist,
+    ) -> Wrench {
+        rigid_momentum(&self.inside, self.density, velocity.dim(), b, twist)
+    }
+
     fn force(&mut self, velocity: &mut dyn VelocityField, bodies: &dyn Kinematics) {
         let density = self.density;
         for (b, reaction) in self.reactions.iter_mut().enumerate() {
@@ -147,7 +157,6 @@ impl Forcing for Hfdib {
 mod tests {
     use super::*;
     use crate::testing::{Balls, Collocated, lattice};
-    use interfaces::Twist;
 
     #[test]
     fn momentum_is_conserved_and_the_inside_moves_with_the_body() {

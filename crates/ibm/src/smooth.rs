@@ -8,7 +8,7 @@ mod stencils;
 use crate::crowd::Crowd;
 use crate::forcing::LayerSums;
 use crate::solid_fraction::check;
-use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction, ViscousStep};
+use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction, SolidNode, ViscousStep};
 use clearance::Clearance;
 use interfaces::{Bodies, BodyId, Kinematics, Point, Renumbering, Twist, Vector, VelocityField, Wrench};
 use markers::Markers;
@@ -320,6 +320,19 @@ impl Forcing for SmoothForcing {
         internal_momentum(&self.inside, self.density, velocity, b)
     }
 
+    fn rigid_momentum(
+        &mut self,
+        velocity: &dyn VelocityField,
+        bodies: &dyn Bodies,
+        b: BodyId,
+        twist: Twist,
+    ) -> Wrench {
+        for c in 0..velocity.dim() {
+            self.inside[c].cover(velocity.lattice(c), bodies, b);
+        }
+        rigid_momentum(&self.inside, self.density, velocity.dim(), b, twist)
+    }
+
     fn force(&mut self, velocity: &mut dyn VelocityField, bodies: &dyn Kinematics) {
         let Self { density, passes, bodies: all, values, .. } = self;
         let dim = velocity.dim();
@@ -415,12 +428,37 @@ pub(crate) fn internal_momentum(
     velocity: &dyn VelocityField,
     b: BodyId,
 ) -> Wrench {
-    let mut sum = Wrench::default();
-    for c in 0..velocity.dim() {
+    momentum_inside(inside, density, velocity.dim(), b, |c| {
         let u = velocity.component(c);
+        move |node| u[node.index]
+    })
+}
+
+/// The same of fluid that moves with `twist`.
+pub(crate) fn rigid_momentum(
+    inside: &[SolidFraction; 3],
+    density: f64,
+    dim: usize,
+    b: BodyId,
+    twist: Twist,
+) -> Wrench {
+    momentum_inside(inside, density, dim, b, |c| move |node| twist.at(node.arm)[c])
+}
+
+/// ρ Σ λ (v, r × v) V over the nodes of body `b`, v by component and node.
+fn momentum_inside<V: Fn(&SolidNode) -> f64>(
+    inside: &[SolidFraction; 3],
+    density: f64,
+    dim: usize,
+    b: BodyId,
+    component: impl Fn(usize) -> V,
+) -> Wrench {
+    let mut sum = Wrench::default();
+    for c in 0..dim {
+        let v = component(c);
         let (mut momentum, mut moment) = (0.0, Vector::zeros());
         for node in inside[c].nodes(b) {
-            let part = node.volume * node.fraction * u[node.index];
+            let part = node.volume * node.fraction * v(node);
             momentum += part;
             moment += part * node.arm;
         }

@@ -115,4 +115,10 @@ pub trait Dynamics: Bodies + Checkpoint {
         let _ = time;
         Ok(None)
     }
+    /// Distance \[m\] that body `b` may move along the unit vector `direction` before [`renew`](Self::renew) removes it:
+    /// 0 if the next call does, infinite (the default) if none will.
+    fn exit_distance(&self, b: BodyId, direction: Vector) -> f64 {
+        let _ = (b, direction);
+        f64::INFINITY
+    }
 }

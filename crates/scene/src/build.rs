@@ -96,8 +96,9 @@ impl Setup {
     pub(crate) fn check_sizes(&self) -> Result<(), BuildError> {
         let least = SmoothForcing::LEAST_CELLS;
         let spacing = self.axes.iter().map(Axis::narrowest).fold(f64::INFINITY, f64::min);
-        for (number, body) in self.bodies.list.iter().enumerate() {
-            let extent = body.shape.aabb().extent();
+        let later = self.bodies.inflows.iter().flat_map(|inflow| &inflow.shapes);
+        for (number, shape) in self.bodies.list.iter().map(|body| &body.shape).chain(later).enumerate() {
+            let extent = shape.aabb().extent();
             let size = (0..self.dim()).map(|a| extent[a]).fold(f64::INFINITY, f64::min);
             if size < least * spacing {
                 return Err(IbmError::TooCoarse { body: BodyId(number), size, spacing, least }.into());

@@ -60,7 +60,11 @@ pub enum BuildError {
 impl BuildError {
     /// The key that has to do with it, if it is known.
     fn key(&self, setup: &Setup) -> Option<String> {
-        let body = |b: &BodyId| Some(setup.bodies.list.get(b.0)?.origin.clone());
+        // Bodies that come in have the numbers behind those at the start.
+        let body = |b: &BodyId| match setup.bodies.list.get(b.0) {
+            Some(body) => Some(body.origin.clone()),
+            None => Some(setup.bodies.inflows.first()?.origin.clone()),
+        };
         match self {
             Self::Bodies(error) => body(&body_of(error)?),
             Self::Placing(PlacingError::Shape(error)) => body(&body_of(error)?),

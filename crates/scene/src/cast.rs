@@ -152,6 +152,9 @@ impl<L: ContactLaw> Dynamics for Cast<L> {
     fn stable_dt(&self) -> f64 {
         self.bodies.stable_dt()
     }
+    fn exit_distance(&self, b: BodyId, direction: Vector) -> f64 {
+        self.bodies.exit_distance(b, direction)
+    }
     fn renew(&mut self, time: f64) -> Result<Option<Renumbering>, PlacingError> {
         self.time = time;
         let numbers = self.bodies.renew(time)?;

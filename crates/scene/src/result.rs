@@ -135,7 +135,7 @@ impl RunResult {
                 })
             })
             .collect();
-        if !bodies.is_empty() {
+        if !(setup.bodies.list.is_empty() && setup.bodies.inflows.is_empty()) {
             let [entered, left] = view.turnover();
             result["bodies"] = json!(bodies);
             result["contacts"] = json!(view.contacts());

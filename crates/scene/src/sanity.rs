@@ -1,5 +1,7 @@
 //! What looks doubtful about a scene.
-use crate::setup::{Algorithm, BodySetup, Setup};
+mod exits;
+
+use crate::setup::{Algorithm, BodySetup, Setup, is_open};
 use coupling::WeightBalance;
 use fv_mesh::{Axis, Convection, Profile, Side, WallStress};
 use interfaces::Aabb;
@@ -154,6 +156,7 @@ impl Setup {
             self.doubt_bodies(&mut out);
             self.doubt_box(&mut out);
         }
+        self.doubt_exits(&mut out);
         out
     }
 
@@ -300,7 +303,7 @@ impl Setup {
                     axis.length() / widest
                 ));
             }
-            let open = |side: &Side| side_is_open(side);
+            let open = |side: &Side| is_open(side);
             if !pair.iter().any(open) {
                 continue;
             }
@@ -330,13 +333,5 @@ impl Setup {
                 }
             }
         }
-    }
-}
-
-/// Does fluid enter or leave there?
-fn side_is_open(side: &Side) -> bool {
-    match side {
-        Side::Patches(patches) => patches.iter().any(|p| side_is_open(&p.side)),
-        side => matches!(side, Side::Inlet(_) | Side::ConvectiveOutlet | Side::PressureOutlet(_)),
     }
 }

@@ -235,7 +235,7 @@ pub(crate) static SCENE: Table = Table {
             "exits",
             Kind::List(&Kind::Table(&contact::EXIT), 0, 100),
             "none",
-            "Half-spaces: bodies whose centre comes into one are taken away.",
+            "Half-spaces, their normals pointing out of them: a body whose centre is in one is removed at the next step. They may be at, inside or beyond open sides of the box, which bodies pass as far as an exit is ahead of them; a body partly outside is forced where there is fluid.",
             "[{ point = [0.0, 1e-3], normal = [0.0, 1.0] }]",
         ),
         optional(

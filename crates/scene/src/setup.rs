@@ -17,6 +17,7 @@ pub(crate) use flow::{Algorithm, FlowSetup};
 pub(crate) use measures::{Averages, Forces, Images, Output, ProbeSetup, Quantity, Reference};
 pub(crate) use models::{Coefficients, ModelSetup};
 pub(crate) use physics::{ModelChoice, ScalarSetup, ScaleChoice, TurbulenceSetup};
+pub(crate) use sides::is_open;
 
 use crate::document::{Document, Place};
 use crate::expression::Expression;
@@ -98,7 +99,7 @@ impl Setup {
         let fluid = flow::fluid(root)?;
         let flow = flow::read(root)?;
         let gravity = root.vector_of("gravity", dim)?.unwrap_or_default();
-        let bodies = bodies::read(root, &context, &axes, &sides, fluid)?;
+        let bodies = bodies::read(root, &context, &axes, &sides, (fluid, gravity))?;
         let force = root.formulas("force", &["t"], dim)?;
         let initial = match root.table("initial") {
             Some(table) => table.formulas("velocity", &["x", "y", "z"], dim)?,

@@ -65,7 +65,7 @@ pub(super) fn foresee<const D: usize, A: FlowSolver<D>, F: Forcing, B: Dynamics,
 ) -> Result<(), CouplingError> {
     for body in (0..particles.states.len()).map(BodyId) {
         solve(particles, body, flow, dt, virtual_mass)
-            .ok_or(CouplingError::Motion { body, time: flow.time() })?;
+            .ok_or_else(|| CouplingError::Motion { body: particles.known_as(body), time: flow.time() })?;
     }
     Ok(())
 }

@@ -49,6 +49,13 @@ pub struct Patch {
     pub side: Side,
 }
 
+impl Patch {
+    /// Whether `x`, on a side of a box in `D` dimensions that is normal to axis `a`, is in this patch.
+    pub(crate) fn holds<const D: usize>(&self, a: usize, x: &[f64; 3]) -> bool {
+        (0..D).filter(|&b| b != a).all(|b| self.lower[b] <= x[b] && x[b] <= self.upper[b])
+    }
+}
+
 /// What happens at one side of the box.
 #[derive(Clone, Debug)]
 pub enum Side {
@@ -159,6 +166,16 @@ impl<const D: usize> Sides<D> {
     /// The lower and upper side of axis `a`.
     pub fn of(&self, a: usize) -> &[Side; 2] {
         &self.0[a]
+    }
+    /// Whether fluid may pass the lower (`end` 0) or upper (1) side of axis `a` at `x` \[m\]: it is an inlet, an outlet or of
+    /// given pressure there. The coordinate along `a` does not matter.
+    pub fn is_open_at(&self, a: usize, end: usize, x: [f64; 3]) -> bool {
+        match &self.0[a][end] {
+            Side::Patches(patches) => {
+                patches.iter().find(|p| p.holds::<D>(a, &x)).is_some_and(|p| !p.side.is_closed())
+            }
+            side => !side.is_closed(),
+        }
     }
     /// Does nothing flow through any bounded side?
     pub fn closed(&self) -> bool {

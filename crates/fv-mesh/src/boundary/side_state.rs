@@ -254,9 +254,7 @@ fn part<'a, const D: usize>(
     };
     let box_ = [corner(false), corner(true)];
     let Side::Patches(patches) = side else { return Some((side, box_)) };
-    let patch = patches
-        .iter()
-        .find(|p: &&Patch| (0..D).filter(|&b| b != a).all(|b| p.lower[b] <= x[b] && x[b] <= p.upper[b]))?;
+    let patch = patches.iter().find(|p: &&Patch| p.holds::<D>(a, &x))?;
     let extent = [
         std::array::from_fn(|b| box_[0][b].max(patch.lower[b])),
         std::array::from_fn(|b| box_[1][b].min(patch.upper[b])),

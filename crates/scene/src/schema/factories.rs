@@ -167,7 +167,7 @@ pub(super) static FACTORIES: [(&str, &Table); 4] = [
     (
         "inflow",
         &Table {
-            about: "Bodies that come in while the run is on its way, at random free places of the region.",
+            about: "Bodies that come in while the run is on its way, at random free places of the region, which may reach beyond inlets, outlets and sides of given pressure if bodies move inwards from there.",
             keys: &[
                 TEMPLATE,
                 SCALE,

@@ -52,8 +52,10 @@ pub(crate) struct Bodies {
     pub(crate) repulsion: Option<[f64; 2]>,
     /// May they overlap at the start?
     pub(crate) overlaps: bool,
-    /// Walls of the box that they touch.
+    /// Walls of the box that they touch, then planes.
     pub(crate) walls: Vec<HalfSpace>,
+    /// Whether they touch walls of the box.
+    pub(crate) touch_walls: bool,
     pub(crate) wall_material: Material,
     /// Roughness of the films.
     pub(crate) lubrication: Option<f64>,
@@ -116,7 +118,7 @@ pub(super) fn read(
     context: &Context<'_>,
     axes: &[Axis],
     sides: &[[Side; 2]],
-    fluid: Option<Fluid>,
+    (fluid, gravity): (Option<Fluid>, Vector),
 ) -> Result<Bodies, Problem> {
     let materials = Materials::read(root)?;
     let bounds = bounds(axes);
@@ -125,7 +127,7 @@ pub(super) fn read(
         list.push(body(&t, context, &materials, number)?);
     }
     let periodic = |a: usize| sides.get(a).is_some_and(|pair| matches!(pair[0], Side::Periodic));
-    let place = factories::Place { bounds, periodic: [0, 1, 2].map(periodic) };
+    let place = factories::Place { bounds, periodic: [0, 1, 2].map(periodic), sides, fluid, gravity };
     let inflows = factories::read(root, context, &materials, &place, &mut list)?;
     let mut names: Vec<&str> = list.iter().map(|b| b.name.as_str()).collect();
     names.sort_unstable();
@@ -172,6 +174,7 @@ pub(super) fn read(
             planes,
         ]
         .concat(),
+        touch_walls: touches,
         wall_material,
         lubrication: root.table("lubrication").map(|t| t.number("roughness").unwrap_or(1e-3)),
         coupling,

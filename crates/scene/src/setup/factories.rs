@@ -1,23 +1,29 @@
 //! Many bodies at once.
 use super::bodies::{BodySetup, Materials, Motion, freedom};
-use super::{Context, shapes};
+use super::{Context, is_open, shapes};
 use crate::problem::Problem;
 use crate::reader::Reader;
 use dem::placing::{
     CrystalLattice, LatticeKind, Orientations, RandomAddition, Region, SizeDistribution, read_bodies,
 };
 use dem::{Material, Shape};
-use interfaces::{Aabb, Point, Pose, Twist};
+use fv_mesh::{Fluid, Side};
+use interfaces::{Aabb, Point, Pose, Twist, Vector};
 use std::sync::Arc;
 
 /// Where bodies may be.
-pub(super) struct Place {
+pub(super) struct Place<'a> {
     pub(super) bounds: Aabb,
     pub(super) periodic: [bool; 3],
+    pub(super) sides: &'a [[Side; 2]],
+    pub(super) fluid: Option<Fluid>,
+    pub(super) gravity: Vector,
 }
 
 /// Bodies that come in while a run is on its way.
 pub(crate) struct InflowSetup {
+    /// The key that made it: `factories.0`.
+    pub(crate) origin: String,
     pub(crate) region: Aabb,
     pub(crate) rate: f64,
     pub(crate) start: f64,
@@ -41,7 +47,7 @@ pub(super) fn read(
     root: &Reader<'_>,
     context: &Context<'_>,
     materials: &Materials,
-    place: &Place,
+    place: &Place<'_>,
     list: &mut Vec<BodySetup>,
 ) -> Result<Vec<InflowSetup>, Problem> {
     let mut inflows = Vec::new();
@@ -52,7 +58,7 @@ pub(super) fn read(
             "random" => factory.random(list)?,
             "table" => factory.table()?,
             _ => {
-                inflows.push(factory.inflow()?);
+                inflows.push(factory.inflow(number)?);
                 continue;
             }
         };
@@ -81,7 +87,7 @@ pub(super) fn read(
 struct Factory<'a> {
     t: &'a Reader<'a>,
     context: &'a Context<'a>,
-    place: &'a Place,
+    place: &'a Place<'a>,
     material: Material,
 }
 
@@ -103,12 +109,60 @@ impl Factory<'_> {
         }
         Ok(Aabb { min, max })
     }
+    /// The region of an inflow. It may reach beyond sides that bodies can pass, if they move inwards from there.
+    fn inflow_region(&self, velocity: Vector) -> Result<Aabb, Problem> {
+        let Some(region) = self.t.table("region") else { return Ok(self.place.bounds) };
+        let corner = |key: &str| region.point_of(key, self.context.dim).map(Option::unwrap_or_default);
+        let (min, max): (Point, Point) = (corner("lower")?, corner("upper")?);
+        let Place { bounds, sides, fluid, gravity, .. } = self.place;
+        let net = 1.0 - fluid.map_or(0.0, |f| f.density) / self.material.density;
+        for a in 0..self.context.dim {
+            if min[a] >= max[a] {
+                return Err(region.fail_here("the upper corner has to be above the lower one"));
+            }
+            for (end, beyond) in [bounds.min[a] - min[a], max[a] - bounds.max[a]].into_iter().enumerate() {
+                if beyond <= 0.0 {
+                    continue;
+                }
+                let inwards = if end == 0 { 1.0 } else { -1.0 };
+                let (axis, name) = (["x", "y", "z"][a], ["min", "max"][end]);
+                if !is_open(&sides[a][end]) {
+                    return Err(region.fail_here(format!(
+                        "{beyond:.3e} m of the region are beyond the side {axis}_{name}, which bodies cannot pass; keep it inside the box, or make the side an inlet, an outlet or of given pressure"
+                    )));
+                }
+                let speed = inwards * velocity[a];
+                if speed < 0.0 || (speed == 0.0 && inwards * net * gravity[a] <= 0.0) {
+                    return Err(self.t.fail("velocity", format!(
+                        "{beyond:.3e} m of the region are beyond the side {axis}_{name}, and bodies move at {speed} m/s from there into the box; give a velocity above 0 inwards, or keep the region inside"
+                    )));
+                }
+            }
+        }
+        Ok(Aabb { min, max })
+    }
+    /// Whether the largest of these shapes has room in the region of an inflow while nothing else is there.
+    fn check_room(&self, region: Aabb, shapes: &[Arc<dyn Shape>]) -> Result<(), Problem> {
+        let largest = shapes.iter().max_by(|a, b| a.bounding_radius().total_cmp(&b.bounding_radius()));
+        let Some(shape) = largest else { return Ok(()) };
+        let fail = |e| self.t.fail("region", e);
+        let region = Region::cuboid(region, self.repeats(&region)).map_err(fail)?;
+        let placing = RandomAddition::new(region).with_gap(self.gap()).map_err(fail)?;
+        match placing.with_orientations(self.orientations()).place(&[&**shape], self.seed()) {
+            Ok(_) => Ok(()),
+            Err(error) => Err(fail(error)),
+        }
+    }
     /// Periodic only where it spans the whole box.
     fn placing_region(&self) -> Result<Region<'static>, Problem> {
-        let (box_, all) = (self.region()?, &self.place.bounds);
+        let box_ = self.region()?;
+        Region::cuboid(box_, self.repeats(&box_)).map_err(|e| self.t.fail("region", e))
+    }
+    /// Axes along which `box_` repeats.
+    fn repeats(&self, box_: &Aabb) -> [bool; 3] {
+        let all = &self.place.bounds;
         let spans = |a: usize| box_.min[a] == all.min[a] && box_.max[a] == all.max[a];
-        let periodic = [0, 1, 2].map(|a| self.place.periodic[a] && spans(a));
-        Region::cuboid(box_, periodic).map_err(|e| self.t.fail("region", e))
+        [0, 1, 2].map(|a| self.place.periodic[a] && spans(a))
     }
     fn gap(&self) -> f64 {
         self.t.number("gap").unwrap_or(0.0)
@@ -266,12 +320,17 @@ impl Factory<'_> {
         Ok((shapes, rows.into_iter().map(|row| (row.pose, row.twist)).collect()))
     }
 
-    fn inflow(&self) -> Result<InflowSetup, Problem> {
+    fn inflow(&self, origin: usize) -> Result<InflowSetup, Problem> {
         let t = self.t;
         let scale = self.scale()?;
         let number = if t.has("scale") { SIZES } else { 1 };
+        let velocity = t.vector_of("velocity", self.context.dim)?.unwrap_or_default();
+        let region = self.inflow_region(velocity)?;
+        let shapes = self.shapes(&scale.sample(number, self.seed()))?;
+        self.check_room(region, &shapes)?;
         Ok(InflowSetup {
-            region: self.region()?,
+            origin: format!("factories.{origin}"),
+            region,
             rate: t.number("rate").unwrap_or(1.0),
             start: t.number("start").unwrap_or(0.0),
             number: t.whole("number").map(|n| n as u64),
@@ -279,11 +338,8 @@ impl Factory<'_> {
             seed: self.seed(),
             orientations: self.orientations(),
             material: self.material,
-            twist: Twist {
-                linear: t.vector_of("velocity", self.context.dim)?.unwrap_or_default(),
-                ..Twist::default()
-            },
-            shapes: self.shapes(&scale.sample(number, self.seed()))?,
+            twist: Twist { linear: velocity, ..Twist::default() },
+            shapes,
         })
     }
 }

@@ -84,3 +84,11 @@ fn inlet(t: &Reader<'_>, context: &Context<'_>) -> Result<Profile, Problem> {
         (None, None) => Err(t.fail_here("what enters? Give `velocity`, or `peak` for a parabola")),
     }
 }
+
+/// Whether fluid may enter or leave there, on a part of the side at least.
+pub(crate) fn is_open(side: &Side) -> bool {
+    match side {
+        Side::Patches(patches) => patches.iter().any(|p| is_open(&p.side)),
+        side => matches!(side, Side::Inlet(_) | Side::ConvectiveOutlet | Side::PressureOutlet(_)),
+    }
+}

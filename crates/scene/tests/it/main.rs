@@ -1,5 +1,6 @@
 //! Scenes as their users have them: every file in `scenes/`, spoilt files, interrupted runs, folders that cannot be written to.
 mod dry;
+mod exits;
 mod files;
 mod heat;
 mod ledger;

@@ -243,4 +243,14 @@ impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Checkpoint for Simulat
         self.particles.restore(&|name| source(&format!("particles.{name}")))?;
         RestartError::fill(source, "slopes", &mut self.slopes)
     }
+    fn save_start(&mut self, sink: &mut dyn FnMut(&str, &[f64])) {
+        self.flow.save_start(&mut |name, values| sink(&format!("flow.{name}"), values));
+        self.particles.save_start(&mut |name, values| sink(&format!("particles.{name}"), values));
+        sink("slopes", &self.slopes);
+    }
+    fn take_back<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        self.flow.take_back(&|name| source(&format!("flow.{name}")))?;
+        self.particles.take_back(&|name| source(&format!("particles.{name}")))?;
+        RestartError::fill(source, "slopes", &mut self.slopes)
+    }
 }

@@ -10,11 +10,11 @@ pub(crate) struct StateCopy {
 }
 
 impl StateCopy {
-    /// Copies the state of `from`.
-    pub(crate) fn take(&mut self, from: &impl Checkpoint) {
+    /// Copies what `from` needs to take back its next step.
+    pub(crate) fn take(&mut self, from: &mut impl Checkpoint) {
         self.len = 0;
         let Self { arrays, len } = self;
-        from.save(&mut |name, values| {
+        from.save_start(&mut |name, values| {
             if arrays.len() == *len {
                 arrays.push(Default::default());
             }
@@ -28,13 +28,13 @@ impl StateCopy {
         });
     }
 
-    /// Gives `into` the state that was copied.
+    /// Takes `into` back to the state of the copy.
     ///
     /// # Errors
     /// [`RestartError`] if it is that of something else.
     pub(crate) fn give_back(&self, into: &mut impl Checkpoint) -> Result<(), RestartError> {
         let arrays = &self.arrays[..self.len];
-        into.restore(&|name| arrays.iter().find(|a| a.0 == name).map(|a| a.1.as_slice()))
+        into.take_back(&|name| arrays.iter().find(|a| a.0 == name).map(|a| a.1.as_slice()))
     }
 }
 
@@ -60,8 +60,8 @@ mod tests {
     #[test]
     fn the_last_copy_is_given_back() {
         let mut copy = StateCopy::default();
-        copy.take(&Lists(vec![("a", vec![1.0; 3]), ("b", vec![2.0]), ("c", vec![3.0; 2])]));
-        copy.take(&Lists(vec![("b", vec![5.0; 4]), ("c", vec![])]));
+        copy.take(&mut Lists(vec![("a", vec![1.0; 3]), ("b", vec![2.0]), ("c", vec![3.0; 2])]));
+        copy.take(&mut Lists(vec![("b", vec![5.0; 4]), ("c", vec![])]));
         let mut lists = Lists(vec![("c", vec![9.0]), ("b", vec![])]);
         copy.give_back(&mut lists).unwrap();
         assert_eq!(lists.0, [("c", vec![]), ("b", vec![5.0; 4])]);

@@ -74,6 +74,14 @@ impl<A: Checkpoint, S: Checkpoint, B> Checkpoint for WithScalars<A, S, B> {
         self.flow.restore(&|name| source(&format!("flow.{name}")))?;
         self.scalars.restore(&|name| source(&format!("scalars.{name}")))
     }
+    fn save_start(&mut self, sink: &mut dyn FnMut(&str, &[f64])) {
+        self.flow.save_start(&mut |name, values| sink(&format!("flow.{name}"), values));
+        self.scalars.save_start(&mut |name, values| sink(&format!("scalars.{name}"), values));
+    }
+    fn take_back<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        self.flow.take_back(&|name| source(&format!("flow.{name}")))?;
+        self.scalars.take_back(&|name| source(&format!("scalars.{name}")))
+    }
 }
 
 impl<const D: usize, A, S, B> FlowSolver<D> for WithScalars<A, S, B>

@@ -165,6 +165,11 @@ impl<const D: usize> FlowState<D> {
         if self.window != [0; D] {
             sink("window", &self.window.map(|cells| cells as f64));
         }
+        self.save_clock(sink);
+    }
+
+    /// Passes everything but the fields to `sink`: sides and clock.
+    pub(crate) fn save_clock(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         sink("clock", &[self.time, self.step as f64, self.last_dt]);
         sink("rates", &self.rates);
         let mut sides = Vec::new();
@@ -187,6 +192,14 @@ impl<const D: usize> FlowState<D> {
             RestartError::fill(source, &format!("velocity{c}"), component.data_mut())?;
         }
         RestartError::fill(source, "pressure", self.pressure.data_mut())?;
+        self.restore_clock(source)
+    }
+
+    /// Restores what [`save_clock`](Self::save_clock) saved.
+    pub(crate) fn restore_clock<'a>(
+        &mut self,
+        source: &dyn Fn(&str) -> Option<&'a [f64]>,
+    ) -> Result<(), RestartError> {
         let clock = RestartError::take(source, "clock", 3)?;
         (self.time, self.step, self.last_dt) = (clock[0], clock[1] as u64, clock[2]);
         RestartError::fill(source, "rates", &mut self.rates)?;

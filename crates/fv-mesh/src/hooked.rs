@@ -207,4 +207,16 @@ impl<const D: usize, B, C: ClosureSlot<D> + Checkpoint, S: Checkpoint> Checkpoin
         self.flow.expect_eddy_viscosity(self.hooks.closure.fastest());
         Ok(())
     }
+    fn save_start(&mut self, sink: &mut dyn FnMut(&str, &[f64])) {
+        self.flow.save_start(&mut |name, values| sink(&format!("flow.{name}"), values));
+        self.hooks.closure.save_start(&mut |name, values| sink(&format!("closure.{name}"), values));
+        self.hooks.scalars.save_start(&mut |name, values| sink(&format!("scalars.{name}"), values));
+    }
+    fn take_back<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        self.flow.take_back(&|name| source(&format!("flow.{name}")))?;
+        self.hooks.closure.take_back(&|name| source(&format!("closure.{name}")))?;
+        self.hooks.scalars.take_back(&|name| source(&format!("scalars.{name}")))?;
+        self.flow.expect_eddy_viscosity(self.hooks.closure.fastest());
+        Ok(())
+    }
 }

@@ -13,6 +13,20 @@ pub trait Checkpoint {
     /// When an array is missing or has another length than this object needs; the object is then
     /// in an unspecified but valid state.
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError>;
+
+    /// Passes to `sink` what [`take_back`](Self::take_back) needs to take back the step that follows:
+    /// everything, unless an implementation keeps fields from before the step itself.
+    fn save_start(&mut self, sink: &mut dyn FnMut(&str, &[f64])) {
+        self.save(sink);
+    }
+    /// Takes back the one step since [`save_start`](Self::save_start), whole or broken off. The state
+    /// is then, to the bit, that before the step.
+    ///
+    /// # Errors
+    /// As [`restore`](Self::restore).
+    fn take_back<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        self.restore(source)
+    }
 }
 
 impl Checkpoint for () {
@@ -29,6 +43,12 @@ impl<T: Checkpoint + ?Sized> Checkpoint for Box<T> {
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         (**self).restore(source)
     }
+    fn save_start(&mut self, sink: &mut dyn FnMut(&str, &[f64])) {
+        (**self).save_start(sink);
+    }
+    fn take_back<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        (**self).take_back(source)
+    }
 }
 
 /// What there is of it.
@@ -38,6 +58,12 @@ impl<T: Checkpoint> Checkpoint for Option<T> {
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         self.as_mut().map_or(Ok(()), |it| it.restore(source))
+    }
+    fn save_start(&mut self, sink: &mut dyn FnMut(&str, &[f64])) {
+        self.iter_mut().for_each(|it| it.save_start(sink));
+    }
+    fn take_back<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        self.as_mut().map_or(Ok(()), |it| it.take_back(source))
     }
 }
 
@@ -51,6 +77,17 @@ impl<T: Checkpoint> Checkpoint for Vec<T> {
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         for (i, element) in self.iter_mut().enumerate() {
             element.restore(&|name| source(&format!("{i}.{name}")))?;
+        }
+        Ok(())
+    }
+    fn save_start(&mut self, sink: &mut dyn FnMut(&str, &[f64])) {
+        for (i, element) in self.iter_mut().enumerate() {
+            element.save_start(&mut |name, values| sink(&format!("{i}.{name}"), values));
+        }
+    }
+    fn take_back<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        for (i, element) in self.iter_mut().enumerate() {
+            element.take_back(&|name| source(&format!("{i}.{name}")))?;
         }
         Ok(())
     }

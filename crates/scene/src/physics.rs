@@ -238,6 +238,18 @@ impl<const D: usize> Checkpoint for Scalars<D> {
             one.scalar.restore(&|name| source(&format!("{prefix}.{name}")))
         })
     }
+    fn save_start(&mut self, sink: &mut dyn FnMut(&str, &[f64])) {
+        for one in &mut self.list {
+            let prefix = &one.setup.name;
+            one.scalar.save_start(&mut |name, values| sink(&format!("{prefix}.{name}"), values));
+        }
+    }
+    fn take_back<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        self.list.iter_mut().try_for_each(|one| {
+            let prefix = &one.setup.name;
+            one.scalar.take_back(&|name| source(&format!("{prefix}.{name}")))
+        })
+    }
 }
 
 impl Setup {

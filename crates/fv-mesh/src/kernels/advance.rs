@@ -99,8 +99,8 @@ impl<const D: usize> Momentum<D> {
     /// ```
     ///
     /// on control volumes around the faces, by differences that conserve momentum and, with the central scheme and
-    /// ∇·u = 0, kinetic energy (Harlow & Welch 1965; Verstappen & Veldman 2003). `tendency` comes in as Hⁿ⁻¹ and
-    /// leaves as Hⁿ.
+    /// ∇·u = 0, kinetic energy (Harlow & Welch 1965; Verstappen & Veldman 2003). `tendency` leaves as Hⁿ; Hⁿ⁻¹ is
+    /// in `last`, or in `tendency` if that is `None`.
     pub(crate) fn advance(
         &self,
         c: usize,
@@ -108,12 +108,13 @@ impl<const D: usize> Momentum<D> {
         velocity: &[Field<D>; D],
         pressure: &Field<D>,
         next: &mut Field<D>,
-        tendency: &mut Field<D>,
+        (tendency, last): (&mut Field<D>, Option<&Field<D>>),
     ) {
+        let last = last.map(Field::data);
         let u: [&[f64]; D] = std::array::from_fn(|b| velocity[b].data());
         let p = pressure.data();
         for_layers(&self.grid, next, tendency, |rows, start, next, tendency| {
-            let job = Rows { momentum: self, rows, start, k, u, p, next, tendency };
+            let job = Rows { momentum: self, rows, start, k, u, p, last, next, tendency };
             match c {
                 0 => job.of_component::<0>(),
                 1 => job.of_component::<1>(),
@@ -132,6 +133,7 @@ struct Rows<'a, const D: usize> {
     k: Advance<D>,
     u: [&'a [f64]; D],
     p: &'a [f64],
+    last: Option<&'a [f64]>,
     next: &'a mut [f64],
     tendency: &'a mut [f64],
 }
@@ -154,7 +156,7 @@ impl<const D: usize, const C: usize, const KIND: u8> WithSimd for Typed<'_, D, C
     type Output = ();
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Rows { momentum, rows, start, k, u, p, next, tendency } = self.0;
+        let Rows { momentum, rows, start, k, u, p, last, next, tendency } = self.0;
         let n = momentum.grid.cells()[0];
         for r in rows {
             let span = momentum.spans.of(r, n);
@@ -162,6 +164,9 @@ impl<const D: usize, const C: usize, const KIND: u8> WithSimd for Typed<'_, D, C
             let mut at = row_place(&momentum.grid, r);
             at[0] = span.start;
             let local = o - start..o - start + span.len();
+            if let Some(last) = last {
+                tendency[local.clone()].copy_from_slice(&last[o..][..span.len()]);
+            }
             let out = [&mut next[local.clone()], &mut tendency[local]];
             advance_row::<D, C, KIND>(momentum, (o, at), k, (u, p), out);
         }

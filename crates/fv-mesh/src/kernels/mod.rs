@@ -10,7 +10,7 @@ pub(crate) use advance::{Advance, LIMITED, LINEAR, Momentum, flux, upwinded};
 pub(crate) use eddy::add_eddy_stress;
 pub(crate) use project::{
     Conductance, add_dense, change, copy_dense, correct_component, divergence, divergence_row,
-    subtract_second_differences,
+    subtract_second_differences, sum_dense,
 };
 
 use crate::grid::GHOSTS;

@@ -174,6 +174,26 @@ pub(crate) fn add_dense<const D: usize>(grid: &CartesianGrid<D>, phi: &[f64], p:
     });
 }
 
+/// out = φ + p in all cells.
+pub(crate) fn sum_dense<const D: usize>(
+    grid: &CartesianGrid<D>,
+    phi: &[f64],
+    p: &Field<D>,
+    out: &mut Field<D>,
+) {
+    let n = grid.cells()[0];
+    let p = p.data();
+    for_rows(grid, out, |rows, start, out| {
+        for r in rows {
+            let o = row_start(grid, r);
+            let terms = p[o..o + n].iter().zip(&phi[r * n..]);
+            for (out, (p, phi)) in out[o - start..o - start + n].iter_mut().zip(terms) {
+                *out = p + phi;
+            }
+        }
+    });
+}
+
 /// Fills the cells of `out` from dense values.
 pub(crate) fn copy_dense<const D: usize>(grid: &CartesianGrid<D>, dense: &[f64], out: &mut Field<D>) {
     let n = grid.cells()[0];

@@ -101,7 +101,14 @@ impl<const D: usize> Setting<D> {
         p: &Field<D>,
     ) -> [Field<D>; 2] {
         let (mut next, mut tendency) = (Field::zeros(&self.grid), Field::zeros(&self.grid));
-        Momentum::new(&self.grid, &self.metrics, scheme).advance(c, k, u, p, &mut next, &mut tendency);
+        Momentum::new(&self.grid, &self.metrics, scheme).advance(
+            c,
+            k,
+            u,
+            p,
+            &mut next,
+            (&mut tendency, None),
+        );
         change(&self.grid, -1.0, &u[c], &mut next);
         [tendency, next]
     }

@@ -133,7 +133,7 @@ impl<const D: usize> MomentumEquations<D> {
             specific_volume: 0.0,
             force: 0.0,
         };
-        self.convection.advance(c, k, e.velocity, e.pressure, &mut self.scratch, &mut self.tendency);
+        self.convection.advance(c, k, e.velocity, e.pressure, &mut self.scratch, (&mut self.tendency, None));
         if let Some(eddy) = e.eddy {
             let place = (&self.grid, &self.metrics, &self.convection.spans);
             add_eddy_stress(place, c, e.velocity, eddy, &mut self.tendency);

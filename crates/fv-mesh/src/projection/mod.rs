@@ -56,6 +56,27 @@ pub struct Projection<const D: usize> {
     friction: [Vector; 2],
     wall_impulse: Vector,
     walls: Option<Box<Walls<D>>>,
+    start: Option<Box<Start<D>>>,
+}
+
+/// Fields at the start of a step that can be taken back; the velocity is in `next`.
+struct Start<const D: usize> {
+    tendency: [Field<D>; D],
+    pressure: Field<D>,
+    /// Whether velocity and tendency, and the pressure, are those of the step's end.
+    advanced: [bool; 2],
+}
+
+impl<const D: usize> Start<D> {
+    /// Keeps the pressure at the start of the step, unless that was done in this step, and returns it;
+    /// `pressure` is then to be set from it.
+    fn set_pressure_aside(&mut self, pressure: &mut Field<D>) -> Option<&Field<D>> {
+        if std::mem::replace(&mut self.advanced[1], true) {
+            return None;
+        }
+        std::mem::swap(pressure, &mut self.pressure);
+        Some(&self.pressure)
+    }
 }
 
 /// Adams–Bashforth is used while a step is at most so many times longer than the last.
@@ -91,6 +112,7 @@ impl<const D: usize> Projection<D> {
             friction: [Vector::zeros(); 2],
             wall_impulse: Vector::zeros(),
             walls: None,
+            start: None,
             state,
         };
         if let Some(rhs) = flow.state.boundaries.given_pressures() {
@@ -177,7 +199,12 @@ impl<const D: usize> Projection<D> {
             dt * density * (weights[0] * self.friction[0] + weights[1] * self.friction[1] + 0.5 * viscous);
         let FlowState { grid, metrics, boundaries, fluid, velocity, pressure, .. } = &mut self.state;
         let velocity = &mut velocity.components;
+        if let Some(start) = &mut self.start {
+            std::mem::swap(&mut self.tendency, &mut start.tendency);
+            start.advanced[0] = true;
+        }
         for c in 0..D {
+            let last = self.start.as_ref().map(|start| &start.tendency[c]);
             let k = Advance {
                 dt,
                 weights,
@@ -186,7 +213,7 @@ impl<const D: usize> Projection<D> {
                 specific_volume: 1.0 / density,
                 force: force[c],
             };
-            self.momentum.advance(c, k, velocity, pressure, &mut self.next[c], &mut self.tendency[c]);
+            self.momentum.advance(c, k, velocity, pressure, &mut self.next[c], (&mut self.tendency[c], last));
         }
         self.sources.act(density, dt, weights);
         if let Some(sources) = self.sources.take() {
@@ -222,6 +249,9 @@ impl<const D: usize> Projection<D> {
     /// The pressure at rest: zero, or harmonic between the given ones.
     fn reset_pressure(&mut self) {
         let FlowState { grid, pressure, .. } = &mut self.state;
+        if let Some(start) = &mut self.start {
+            start.set_pressure_aside(pressure);
+        }
         if self.rest_pressure.is_empty() {
             pressure.data_mut().fill(0.0);
         } else {
@@ -277,7 +307,10 @@ impl<const D: usize> Projection<D> {
             kernels::correct_component(grid, metrics, c, Conductance::Same(answer), &self.phi, component);
         }
         boundaries.correct(answer, &self.phi);
-        kernels::add_dense(grid, &self.phi, pressure);
+        match self.start.as_deref_mut().and_then(|start| start.set_pressure_aside(pressure)) {
+            Some(before) => kernels::sum_dense(grid, &self.phi, before, pressure),
+            None => kernels::add_dense(grid, &self.phi, pressure),
+        }
         if let Some(walls) = &mut self.walls {
             walls.hold_solid(fluid.density, velocity);
             walls.pressure.smooth_orphans(pressure);

@@ -40,6 +40,11 @@ impl<const D: usize> Projection<D> {
             .iter_mut()
             .chain(&mut self.tendency)
             .chain(&mut self.correction)
+            .chain(
+                self.start
+                    .iter_mut()
+                    .flat_map(|start| start.tendency.iter_mut().chain([&mut start.pressure])),
+            )
             .for_each(|field| field.set_grid(grid));
         self.sources.set_grid(grid);
     }

@@ -31,16 +31,17 @@ pub(super) struct Input<'a, const D: usize> {
 }
 
 /// next = φ + dt (w₀ Hⁿ + w₁ Hⁿ⁻¹ + Dⁿ), H = −∇·(uφ) + Γ∇²φ (explicit axes) + S, D = Γ∇²φ (implicit axes). `tendency`
-/// comes in as Hⁿ⁻¹ and leaves as Hⁿ.
+/// leaves as Hⁿ; Hⁿ⁻¹ is in `last`, or in `tendency` if that is `None`.
 pub(super) fn advance<const D: usize>(
     input: Input<'_, D>,
     step: Step<D>,
     next: &mut Field<D>,
-    tendency: &mut Field<D>,
+    (tendency, last): (&mut Field<D>, Option<&Field<D>>),
 ) {
+    let last = last.map(Field::data);
     for_layers(input.carried.grid, next, tendency, |rows, start, next, tendency| {
         with_kind!(input.carried.carrier, KIND => {
-            Arch::new().dispatch(Rows::<KIND, D> { input, step, rows, start, next, tendency });
+            Arch::new().dispatch(Rows::<KIND, D> { input, step, rows, start, last, next, tendency });
         });
     });
 }
@@ -51,6 +52,7 @@ struct Rows<'a, const KIND: u8, const D: usize> {
     rows: Range<usize>,
     /// Storage index of the first entry of `next` and `tendency`.
     start: usize,
+    last: Option<&'a [f64]>,
     next: &'a mut [f64],
     tendency: &'a mut [f64],
 }
@@ -59,13 +61,16 @@ impl<const KIND: u8, const D: usize> WithSimd for Rows<'_, KIND, D> {
     type Output = ();
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { input, step, rows, start, next, tendency } = self;
+        let Self { input, step, rows, start, last, next, tendency } = self;
         let grid = input.carried.grid;
         let n = grid.cells()[0];
         for r in rows {
             let o = row_start(grid, r);
             let local = o - start..o - start + n;
             let at = row_place(grid, r);
+            if let Some(last) = last {
+                tendency[local.clone()].copy_from_slice(&last[o..][..n]);
+            }
             advance_row::<KIND, D>(input, step, at, o, &mut next[local.clone()], &mut tendency[local]);
         }
     }

@@ -168,7 +168,7 @@ impl<const D: usize> Scalar<D> {
             zeros: &self.zeros,
         };
         let step = Step { dt: 1.0, weights: [1.0, 0.0], explicit: [self.diffusivity; D], implicit: [0.0; D] };
-        advance(input, step, &mut self.next, &mut self.tendency);
+        advance(input, step, &mut self.next, (&mut self.tendency, None));
         out.iter_mut().zip(self.tendency.values()).for_each(|(out, rest)| *out = rest);
         self.shut(whole, out);
     }

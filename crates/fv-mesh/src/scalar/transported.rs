@@ -50,6 +50,15 @@ pub struct Scalar<const D: usize> {
     pub(super) zeros: Vec<f64>,
     pub(super) step: u64,
     last_dt: f64,
+    start: Option<Box<Start<D>>>,
+}
+
+/// Fields at the start of a step that can be taken back; φ is in `next`.
+#[derive(Clone, Debug)]
+struct Start<const D: usize> {
+    tendency: Field<D>,
+    /// Whether φ and the tendency are those of the step's end.
+    advanced: bool,
 }
 
 impl<const D: usize> Scalar<D> {
@@ -86,6 +95,7 @@ impl<const D: usize> Scalar<D> {
             zeros: vec![0.0; grid.cells()[0]],
             step: 0,
             last_dt: 0.0,
+            start: None,
             grid: grid.clone(),
             metrics,
             boundaries,
@@ -253,7 +263,11 @@ impl<const D: usize> ScalarTransport<D> for Scalar<D> {
         };
         let weights = [1.0 + 0.5 * r, -0.5 * r];
         let step = Step { dt, weights, explicit: explicit_part, implicit: implicit_part };
-        advance(input, step, &mut self.next, &mut self.tendency);
+        if let Some(start) = &mut self.start {
+            std::mem::swap(&mut self.tendency, &mut start.tendency);
+        }
+        let last = self.start.as_ref().map(|start| &start.tendency);
+        advance(input, step, &mut self.next, (&mut self.tendency, last));
         self.boundaries.set_time(time + dt);
         if implicit.contains(&true) {
             self.implicit.set(&self.metrics, implicit_part.map(|gamma| 0.5 * dt * gamma));
@@ -262,6 +276,9 @@ impl<const D: usize> ScalarTransport<D> for Scalar<D> {
             kernels::change(&self.grid, 1.0, &self.phi, &mut self.next);
         }
         std::mem::swap(&mut self.phi, &mut self.next);
+        if let Some(start) = &mut self.start {
+            start.advanced = true;
+        }
         self.boundaries.fill_ghosts(&mut self.phi);
         self.step += 1;
         self.last_dt = dt;
@@ -283,16 +300,42 @@ impl<const D: usize> Checkpoint for Scalar<D> {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         sink("scalar", self.phi.data());
         sink("tendency", self.tendency.data());
+        self.save_clock(sink);
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        RestartError::fill(source, "scalar", self.phi.data_mut())?;
+        RestartError::fill(source, "tendency", self.tendency.data_mut())?;
+        self.restore_clock(source)
+    }
+    fn save_start(&mut self, sink: &mut dyn FnMut(&str, &[f64])) {
+        let tendency = || Field::zeros(&self.grid);
+        self.start
+            .get_or_insert_with(|| Box::new(Start { tendency: tendency(), advanced: false }))
+            .advanced = false;
+        self.save_clock(sink);
+    }
+    fn take_back<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        if let Some(start) = &mut self.start
+            && std::mem::take(&mut start.advanced)
+        {
+            std::mem::swap(&mut self.phi, &mut self.next);
+            std::mem::swap(&mut self.tendency, &mut start.tendency);
+        }
+        self.restore_clock(source)
+    }
+}
+
+impl<const D: usize> Scalar<D> {
+    /// Passes everything but φ and its tendency to `sink`.
+    fn save_clock(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         sink("clock", &[self.step as f64, self.last_dt]);
         sink("implicit", &self.diffusion.last.map(|i| f64::from(u8::from(i))));
         if let Some(source) = &self.source {
             sink("source", source.data());
         }
     }
-    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
-        let n = self.grid.storage();
-        RestartError::fill(source, "scalar", self.phi.data_mut())?;
-        RestartError::fill(source, "tendency", self.tendency.data_mut())?;
+
+    fn restore_clock<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         let clock = RestartError::take(source, "clock", 2)?;
         (self.step, self.last_dt) = (clock[0] as u64, clock[1]);
         let implicit = RestartError::take(source, "implicit", D)?;
@@ -301,7 +344,7 @@ impl<const D: usize> Checkpoint for Scalar<D> {
             self.source = None;
             return Ok(());
         }
-        let values = RestartError::take(source, "source", n)?;
+        let values = RestartError::take(source, "source", self.grid.storage())?;
         self.source_mut().data_mut().copy_from_slice(values);
         Ok(())
     }

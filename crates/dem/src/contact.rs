@@ -10,8 +10,10 @@ mod repulsive;
 mod rolling;
 
 pub use chen::Chen;
+pub use friction::Springs;
 pub use gap::{FilmForce, Gap};
-pub use law::{ContactLaw, Memory, Push, Touch};
+pub use law::{ContactLaw, Memory, Pivot, Push, Touch};
+pub(crate) use law::{LEAST_STEPS, stiffness_of_decay};
 pub use lubricated::{Lubricated, WholeFilm};
 pub use potential::Potential;
 pub use properties::{Means, PairProperties};

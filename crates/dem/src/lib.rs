@@ -41,8 +41,8 @@ pub use broad_phase::{
     Automatic, BroadPhase, HierarchicalGrid, LinkedCells, NearPair, PairList, PairListError, RTree, Sweep,
 };
 pub use contact::{
-    Chen, ContactLaw, FilmForce, Gap, Lubricated, Means, Memory, PairProperties, Potential, Push, Repulsive,
-    Rolling, Touch, WholeFilm,
+    Chen, ContactLaw, FilmForce, Gap, Lubricated, Means, Memory, PairProperties, Pivot, Potential, Push,
+    Repulsive, Rolling, Springs, Touch, WholeFilm,
 };
 pub use error::DemError;
 pub use material::Material;

@@ -9,6 +9,7 @@ mod ellipsoids;
 mod facets;
 mod half_space;
 mod integrals;
+mod outline;
 pub(crate) mod plane;
 mod slices;
 mod solver;
@@ -22,6 +23,7 @@ pub use tree::FacetIndex;
 pub use tree::{BoxKind, Normal, Refinement, SubBox};
 
 use interfaces::{Point, Vector};
+use nalgebra::Matrix3;
 
 /// A connected region that two bodies share.
 ///
@@ -40,6 +42,11 @@ pub struct Overlap {
     /// ∂V/∂φ, φ a small turn of the first body about the centroid \[m³\]: ∫ (x − centroid) × n dA over the same part
     /// (Feng 2021, Comput. Methods Appl. Mech. Eng. 373, 113495).
     pub moment: Vector,
+    /// Second moments of the patch's area, projected along its normal n and about its centroid x_a \[m⁴\]:
+    /// K = ∫ w wᵀ dA, w = (x − x_a) × n, so that relative spin ω gives points of the patch the normal velocity w·ω
+    /// besides its mean; in a plane scene ℓ³/12 about z \[m³\]. Zero unless
+    /// [requested](OverlapSolver::with_pivots), and for spheres and discs, whose spin does not move their surface.
+    pub pivot: Matrix3<f64>,
 }
 
 impl Overlap {
@@ -56,7 +63,14 @@ impl Overlap {
     }
     /// All of a body that lies within the other, where nothing changes when it moves.
     pub(crate) fn whole(volume: f64, centroid: Point, normal: Vector) -> Self {
-        Self { volume, centroid, normal, gradient: Vector::zeros(), moment: Vector::zeros() }
+        Self {
+            volume,
+            centroid,
+            normal,
+            gradient: Vector::zeros(),
+            moment: Vector::zeros(),
+            pivot: Matrix3::zeros(),
+        }
     }
     /// As the second body sees it.
     #[must_use]

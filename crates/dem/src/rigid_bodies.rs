@@ -79,6 +79,8 @@ pub struct RigidBodies<L: ContactLaw = Chen> {
     fastest: f64,
     /// How far ahead pairs were listed \[s\].
     listed_for: f64,
+    /// Length of the last sub-step \[s\].
+    last_step: f64,
 }
 
 /// A patch that two bodies share, and what it does.
@@ -159,6 +161,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             stiffest: 0.0,
             fastest: 0.0,
             listed_for: 0.0,
+            last_step: 0.0,
         }
     }
 

@@ -1,5 +1,5 @@
 //! Equation (4).
-use super::friction::Friction;
+use super::friction::{Friction, Springs};
 use super::law::{ContactLaw, Push, Touch};
 use super::properties::{Means, PairProperties};
 use crate::{DemError, Material};
@@ -11,9 +11,12 @@ use interfaces::Vector;
 /// F_n = [Y V/L_c + γ √(Y M/L_c³) dV/dt] n,   L_c = c l_i l_j/(l_i + l_j),   M = m_i m_j/(m_i + m_j)
 /// ```
 ///
+/// dV/dt is the integral of the normal velocity over the patch: damping is a pressure on each of its points, with the couple that
+/// belongs to it ([`Pivot`](crate::Pivot)), and so it acts on bodies that rock, too.
+///
 /// l from the contact to the centre of mass (infinite for a wall), M the other one's mass where one cannot be moved; no tension unless asked for.
 /// Along the surface a spring that grows with the sliding and a dashpot, both `tangential` times the normal ones (Y A/L_c per length,
-/// γ√(YM/L_c³) A per velocity, A = |∂V/∂x|), together at most μ|F_n|. In a plane scene V is an area, all forces are per metre of
+/// γ√(YM/L_c³) A per velocity, A = |∂V/∂x|), together at most μ|F_n|; the same against spin about the normal, by the polar moment of the patch's area. In a plane scene V is an area, all forces are per metre of
 /// depth, and M is the mass of a slice as deep as L_c.
 ///
 /// The force has no potential but for spheres and discs, so bodies with edges gain or lose some per cent of their energy in an elastic rebound, and
@@ -62,14 +65,15 @@ impl Chen {
 }
 
 impl ContactLaw for Chen {
-    type Memory = Vector;
+    type Memory = Springs;
+    const PIVOTS: bool = true;
 
     fn properties(&self, a: &Material, b: &Material) -> PairProperties {
         PairProperties::by(self.means, a, b)
     }
 
     #[inline(always)]
-    fn push(&self, p: &PairProperties, t: &Touch<'_>, spring: &mut Vector) -> Push {
+    fn push(&self, p: &PairProperties, t: &Touch<'_>, springs: &mut Springs) -> Push {
         let (n, area) = (t.overlap.normal, t.area);
         let per_length = self.per_length(t.arms);
         let [wa, wb] = t.inverse_masses;
@@ -87,18 +91,21 @@ impl ContactLaw for Chen {
         let pressure = if self.adhesion || pressure > 0.0 { pressure } else { 0.0 };
         let stiffness = elastic * area;
         let viscosity = dashpot * area;
-        let along = Friction {
-            normal: n,
-            velocity: t.velocity,
+        let (along, torque) = Friction {
             stiffness: p.tangential * stiffness,
             viscosity: p.tangential * viscosity,
             limit: p.friction * pressure.abs(),
-            dt: t.dt,
         }
-        .force(spring);
+        .act(t, springs);
         // (√k + c√(1/m))²: as stiff as the dashpot makes it in effect.
         let stiffness = stiffness + viscosity * viscosity * (wa + wb);
-        Push { force: n * pressure + along, couple: Vector::zeros(), stiffness }
+        let couple = if pressure > 0.0 {
+            t.overlap.moment * (-dashpot * t.rate / area)
+                + t.pivot.couple(dashpot, pressure / area, area, t.dt)
+        } else {
+            Vector::zeros()
+        };
+        Push { force: n * pressure + along, couple: couple + torque, stiffness }
     }
 
     fn check(&self) -> Result<(), DemError> {

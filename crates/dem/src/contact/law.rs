@@ -19,6 +19,8 @@ pub trait ContactLaw: Clone + Debug + Send + Sync {
 
     /// Does it ask for [`Touch::mobility`]?
     const MOBILITY: bool = false;
+    /// Whether it needs [`Touch::pivot`]. Others pay nothing for it.
+    const PIVOTS: bool = false;
     /// Is there a force at all? If not, pairs are not looked for.
     const TOUCHES: bool = true;
 
@@ -84,6 +86,8 @@ pub struct Touch<'a> {
     /// By how much a force −∇V of 1 per m³ changes dV/dt per second: ∇V·m⁻¹∇V over all of both bodies' motions \[m⁴/kg\]. NaN for laws
     /// that do not ask for it.
     pub mobility: f64,
+    /// Relative spin about the patch. Zero for laws without [`ContactLaw::PIVOTS`].
+    pub pivot: Pivot,
     /// Area of the smaller of both bodies' largest flat faces \[m²\]; 0 if one has none. Flat faces may meet, and the area of contact is
     /// there at once.
     pub face: f64,
@@ -91,6 +95,46 @@ pub struct Touch<'a> {
     pub plane: bool,
     /// The sub-step \[s\].
     pub dt: f64,
+    /// Time since the middle of the last sub-step, when contacts were found before \[s\].
+    pub since: f64,
+}
+
+/// Relative spin ω about a patch with second moments of area [K](Overlap::pivot).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pivot {
+    /// K ω = ∫ w v_n dA, v_n = w·ω the normal velocity of the patch's points besides its mean \[m⁴/s\].
+    pub moment: Vector,
+    /// ω·K ω = ∫ v_n² dA \[m⁴/s²\].
+    pub square: f64,
+    /// K ω·I⁻¹K ω/(ω·K ω) over both bodies: decay rate of v_n² per viscosity \[m²/kg\].
+    pub mobility: f64,
+}
+
+impl Pivot {
+    /// Couple on the first body by a damping pressure −c v_n over the patch, c = `viscosity` \[Pa s/m\], mean over a sub-step of
+    /// `dt`. The pressure's root mean square stays below the mean `pressure` \[Pa\] over the `area`, so that no part of the patch
+    /// is pulled for long.
+    pub(super) fn couple(&self, viscosity: f64, pressure: f64, area: f64, dt: f64) -> Vector {
+        if self.square <= 0.0 {
+            return Vector::zeros();
+        }
+        let viscosity = viscosity / (1.0 + 0.5 * dt * viscosity * self.mobility);
+        let most = pressure.max(0.0) * (area / self.square).sqrt();
+        self.moment * -viscosity.min(most)
+    }
+}
+
+/// Share of a relative velocity that damping may take in a sub-step: of a few contacts that act on one motion together no more
+/// than all of it.
+pub(crate) const MOST_TAKEN: f64 = 0.3;
+/// Sub-steps per half period of contacts that are stiffer than foreseen.
+pub(crate) const LEAST_STEPS: f64 = 28.0;
+
+/// Stiffness over mass \[1/s²\] whose sub-steps damp a velocity that decays at `rate` \[1/s\] by a share of at most 0.3.
+#[inline]
+pub(crate) fn stiffness_of_decay(rate: f64) -> f64 {
+    let root = std::f64::consts::PI * rate / (LEAST_STEPS * MOST_TAKEN);
+    root * root
 }
 
 /// What the first body of a pair feels; the second feels the opposite.

@@ -68,6 +68,7 @@ impl<L: ContactLaw> Lubricated<L> {
 impl<L: ContactLaw> ContactLaw for Lubricated<L> {
     type Memory = L::Memory;
     const MOBILITY: bool = L::MOBILITY;
+    const PIVOTS: bool = L::PIVOTS;
     const FILMS: bool = true;
     const PLANE: bool = false;
 

@@ -1,6 +1,6 @@
 //! The law with a potential.
-use super::friction::Friction;
-use super::law::{ContactLaw, Memory, Push, Touch};
+use super::friction::{Friction, Springs};
+use super::law::{ContactLaw, Memory, Push, Touch, stiffness_of_decay};
 use super::properties::{PairProperties, series};
 use crate::DemError;
 use interfaces::Vector;
@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 /// A volume law with a potential, so that it keeps the energy of bodies of any shape:
 ///
 /// ```text
-/// F = −s E′(V) ∇V,   E′(V) = Y/(2 L_c) √(V/(π R*)),   E(V) = Y/(3 L_c) √(V³/(π R*)),   L_c = c R*
+/// F = −(E′(V) + d dV/dt) ∇V,   E′(V) = Y/(2 L_c) √(V/(π R*)),   E(V) = Y/(3 L_c) √(V³/(π R*)),   L_c = c R*
 /// ```
 ///
 /// V is the volume of all patches of a pair, ∇V its derivative with respect to place *and* turning (the force −E′∂V/∂x at the patch's
@@ -20,9 +20,12 @@ use std::f64::consts::PI;
 /// would swing a thousand times faster than it bounces. Between two bodies with flat faces √V is therefore √V₀ x(3 − x)/2, x = V/V₀, below V₀ = 10⁻⁴ A_f R*,
 /// A_f the smaller of both largest faces: still a function of V alone, so energy is kept.
 ///
-/// s is 1 while V grows and e² while it shrinks (Walton & Braun 1986, J. Rheol. 30, 949): bodies part with e times the speed at which they
-/// met, whatever that was, whatever their shapes, at walls and at bodies that cannot be moved, where contact is central. Where loading
-/// turns into unloading within a sub-step, each has its part of it; a contact at rest carries what it has to, between both.
+/// The damping d makes √E and the velocity along it a linear oscillator of damping ratio ζ, in a time of its own, whatever E(V),
+/// the masses and the shapes are: d = 2ζ d√(2E)/dV/√w, w = ∇V·m⁻¹∇V. So central impacts give back e at any speed, and bodies rest
+/// where E′ alone carries them. A contact never pulls. e below 0.002 counts as 0.002.
+///
+/// dV/dt is the integral of the normal velocity over the patch: damping is a pressure d A v_n on each of its points, and a
+/// patch about which bodies pivot at constant V has the couple −d A K ω of what v_n varies ([`Pivot`](crate::Pivot)).
 ///
 /// Along the surface a spring and a dashpot as in [`Chen`](crate::Chen), but with the damping ratio that gives e in a linear contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,78 +79,124 @@ impl Potential {
 /// Volume up to which the force between flat faces begins gently, in areas of the face times R*.
 const ONSET: f64 = 1e-4;
 
-/// What is given back is the share e² of the energy, and the leapfrog's error a share of all of it: the smaller e, the finer the steps.
-const FINER: f64 = 0.02;
-/// Where edges and faces come in, the force has kinks: finer steps where all of the energy is to be kept (to 1e-8 of it, over 200 rebounds of cubes).
-const EDGES_FINER: f64 = 16.0;
+/// Stiffness of contacts of edges and faces as the time step takes it, over that of smooth ones, since the force has kinks where
+/// these come in: with damping (restitution to 3e-4) and without (energy to 1e-8, over 200 rebounds of cubes).
+const FACES_FINER: [f64; 2] = [4.0, 16.0];
 
-/// How quickly a contact at rest follows what presses it. All contacts of a heap do so at once, each by what the others did last: at once would be
-/// too much, and forces would swing from sub-step to sub-step.
+/// Share of a new value in the running mean of what presses a contact: those of a heap follow one another, and at once would
+/// make forces oscillate between sub-steps.
 const FOLLOW: f64 = 0.25;
 
 /// What [`Potential`] keeps per patch.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Loading {
-    spring: Vector,
-    /// Speed of approach along the normal \[m/s\] and by how much the contact slowed it in the last sub-step \[m/s²\].
-    approach: f64,
-    slowed: f64,
-    /// What else quickened it \[m/s²\], smoothed.
+    springs: Springs,
+    /// Speed of approach along the normal that the last sub-step's contact alone leads to \[m/s\].
+    expected: f64,
+    /// Running mean of the rate at which everything else quickens it \[m/s²\].
     other: f64,
-    met: bool,
-    /// Did loading turn into unloading, or back, in the last sub-step?
-    turned: bool,
+    /// Length of the last sub-step \[s\]; 0 before the first.
+    last: f64,
 }
 
 impl Memory for Loading {
-    const N: usize = 8;
+    const N: usize = Springs::N + 3;
     fn save(&self, out: &mut Vec<f64>) {
-        self.spring.save(out);
-        out.extend([self.approach, self.slowed, self.other]);
-        out.extend([self.met, self.turned].map(|yes| f64::from(u8::from(yes))));
+        self.springs.save(out);
+        out.extend([self.expected, self.other, self.last]);
     }
     fn load(from: &[f64]) -> Self {
-        let [approach, slowed, other] = [3, 4, 5].map(|i| from[i]);
-        let [met, turned] = [6, 7].map(|i| from[i] != 0.0);
-        Self { spring: Vector::load(from), approach, slowed, other, met, turned }
+        let [expected, other, last] = [0, 1, 2].map(|i| from[Springs::N + i]);
+        Self { springs: Springs::load(from), expected, other, last }
     }
 }
 
-/// A contact that is loaded and unloaded.
-struct Turn {
-    /// Speed of approach \[m/s\].
-    approach: f64,
-    /// What the full force slows it by, and what all else quickens it by \[m/s²\].
-    full: f64,
-    other: f64,
-    /// Share of the force while the bodies part.
-    least: f64,
-    dt: f64,
+/// Pressure of a patch over a sub-step.
+struct Pressure {
+    /// E′ + d dV/dt, mean over the sub-step \[Pa\].
+    mean: f64,
+    /// d \[Pa s/m³\].
+    damping: f64,
+    /// dE′/dV, secant from V = 0 to the deepest place of the sub-step \[Pa/m³\].
+    stiffness: f64,
 }
 
-impl Turn {
-    /// Mean share of the force over a sub-step, and whether loading turned into unloading or back within it. A contact that did so in the last
-    /// sub-step already is at `rest`: it is brought to a stop over some.
-    fn share(&self, rest: bool) -> (f64, bool) {
-        let Self { approach, full, other, least, dt } = *self;
-        let now = if approach > 0.0 { 1.0 } else { least };
-        let end = approach + (other - now * full) * dt;
-        if full <= 0.0 || (end <= 0.0) == (approach <= 0.0) {
-            return (now, false);
+impl Potential {
+    /// The pressure over a sub-step in the middle of which the patch is as `t` says.
+    ///
+    /// V follows the depth δ as δⁿ through the sub-step: n = 1 of faces, 3/2 of discs, 2 of curved bodies. The first sub-step of a
+    /// contact does the work that belongs to the whole way from V = 0, though the bodies touch in a part of it only, and the
+    /// last one to the place where the force vanishes.
+    #[inline(always)]
+    fn pressure(&self, p: &PairProperties, t: &Touch<'_>, memory: &mut Loading) -> Pressure {
+        let energy = |volume: f64| self.energy(p, t.sizes, t.face, volume, t.plane);
+        let (rate, volume) = (t.rate, t.volume);
+        let (elastic, slope) = energy(volume);
+        let reach = 0.5 * t.dt * rate.abs();
+        // Up to round-off, where the surfaces met just as contacts were found last.
+        let is_first = memory.last == 0.0 && volume <= (1.0 + 1e-6) * rate.abs() * t.since;
+        if p.damping_ratio <= 0.0 || t.mobility <= 0.0 {
+            let most = volume + reach;
+            let (deepest, steepest) = energy(most);
+            let is_last = rate < 0.0 && volume < 2.0 * reach;
+            memory.last = t.dt;
+            let mean = if t.face > 0.0 && (is_first || is_last) { deepest / (2.0 * reach) } else { slope };
+            return Pressure { mean, damping: 0.0, stiffness: steepest / most };
         }
-        let share = if rest {
-            (other + FOLLOW * approach / dt) / full
-        } else {
-            let before = approach / (approach - end);
-            before * now + (1.0 - before) * (other / full).clamp(least, 1.0)
+        // V at the ends of the sub-step, and the whole way between them in rates.
+        let (n, share) = match t.face > 0.0 {
+            true => (1.0, reach / volume),
+            false if t.plane => (1.5, reach / (1.5 * volume)),
+            false => (2.0, reach / (2.0 * volume)),
         };
-        (share.clamp(least, 1.0), true)
+        let power = |x: f64| match t.face > 0.0 {
+            true => x,
+            false if t.plane => x * x.sqrt(),
+            false => x * x,
+        };
+        let most = volume * power(1.0 + share);
+        let (deepest, steepest) = energy(most);
+        let root = |energy: f64| (2.0 * energy).sqrt();
+        // d√(2E)/dV, mean over the part of the sub-step in which the bodies touch, and over all of it.
+        let (touching, all) = if is_first {
+            let root = root(deepest);
+            (root / (n * volume + reach), root / (2.0 * reach))
+        } else if share > 1e-6 {
+            let low = energy(volume * power((1.0 - share).max(0.0))).0;
+            let mean = (root(deepest) - root(low)) / (2.0 * reach).min(n * volume + reach);
+            (mean, mean)
+        } else {
+            let tangent = slope / root(elastic);
+            (tangent, tangent)
+        };
+        let unit = 2.0 * p.damping_ratio / t.mobility.sqrt();
+        let approach = rate / t.area;
+        if memory.last > 0.0 {
+            let other = (approach - memory.expected) / memory.last;
+            memory.other += FOLLOW * (other - memory.other);
+        }
+        // By the velocity in the middle of the sub-step, to which the pressure itself adds.
+        let unslowed = rate + 0.5 * t.dt * memory.other * t.area;
+        let conservative = if is_first { deepest / (2.0 * reach) } else { slope };
+        let damping = unit * touching;
+        let middle = (conservative + unit * all * unslowed) / (1.0 + 0.5 * t.dt * damping * t.mobility);
+        // Bodies that part do so where the pressure vanishes, as it falls by so much in half a sub-step.
+        let fall = steepest - slope;
+        let mean = match middle > 0.0 {
+            true if rate < 0.0 && middle < 2.0 * fall => (middle + fall).powi(2) / (4.0 * fall),
+            true => middle,
+            false => 0.0,
+        };
+        memory.expected = approach - mean * t.mobility / t.area * t.dt;
+        memory.last = t.dt;
+        Pressure { mean, damping, stiffness: steepest / most }
     }
 }
 
 impl ContactLaw for Potential {
     type Memory = Loading;
     const MOBILITY: bool = true;
+    const PIVOTS: bool = true;
 
     #[inline(always)]
     fn push(&self, p: &PairProperties, t: &Touch<'_>, memory: &mut Loading) -> Push {
@@ -158,41 +207,18 @@ impl ContactLaw for Potential {
             *memory = Loading::default();
             return Push { force: Vector::zeros(), couple: Vector::zeros(), stiffness: 0.0 };
         }
-        let rate = t.rate;
-        let (_, mut slope) = self.energy(p, t.sizes, t.face, t.volume, t.plane);
-        // Where whole faces meet, the force begins like a root of the depth. The first and the last sub-step of such a contact do the work that
-        // belongs to the whole way from and to V = 0, though the bodies touch in a part of a sub-step only.
-        let reach = 0.5 * t.dt * rate.abs();
-        let most = t.volume + reach;
-        let (deepest, steepest) = self.energy(p, t.sizes, t.face, most, t.plane);
-        if t.face > 0.0 && reach > 0.0 && (!memory.met || (rate < 0.0 && t.volume < 2.0 * reach)) {
-            slope = deepest / (2.0 * reach);
-        }
-        let approach = rate / area;
-        let full = slope * t.mobility / area;
-        let least = p.restitution * p.restitution;
-        let share = if least < 1.0 {
-            if memory.met {
-                let other = (approach - memory.approach) / t.dt + memory.slowed;
-                memory.other += FOLLOW * (other - memory.other);
-            }
-            let turn = Turn { approach, full, other: memory.other, least, dt: t.dt };
-            let (share, turned) = turn.share(memory.turned);
-            memory.turned = turned;
-            share
-        } else {
-            1.0
-        };
-        (memory.approach, memory.slowed, memory.met) = (approach, share * full, true);
-        let size = share * slope;
+        let Pressure { mean, damping, stiffness } = self.pressure(p, t, memory);
         // dF/dδ = E″A² + E′dA/dδ: of a shallow sphere Y A/L_c; of a face half of it.
-        let stiffness = steepest * area * area / most * (1.0 + FINER / least.max(0.001));
-        let stiffness = match t.face > 0.0 {
-            true if least >= 1.0 => EDGES_FINER * stiffness,
-            true => 2.0 * stiffness,
-            false => stiffness,
-        };
-        let mut force = o.gradient * -size;
+        let mut stiffness = stiffness * area * area;
+        if t.face > 0.0 {
+            stiffness *= FACES_FINER[usize::from(p.damping_ratio <= 0.0)];
+        }
+        if damping > 0.0 {
+            let decay = stiffness_of_decay(damping * t.mobility);
+            stiffness = stiffness.max(decay * area * area / t.mobility);
+        }
+        let mut force = o.gradient * -mean;
+        let mut couple = o.moment * -mean + t.pivot.couple(damping * area, mean, area, t.dt);
         if p.friction > 0.0 {
             let [wa, wb] = t.inverse_masses;
             let ratio = match p.restitution {
@@ -201,17 +227,16 @@ impl ContactLaw for Potential {
                 e => -e.ln() / (PI * PI + e.ln() * e.ln()).sqrt(),
             };
             let along = p.tangential * stiffness;
-            force += Friction {
-                normal: o.normal,
-                velocity: t.velocity,
+            let (along, torque) = Friction {
                 stiffness: along,
                 viscosity: 2.0 * ratio * (along / (wa + wb)).sqrt(),
-                limit: p.friction * size * area,
-                dt: t.dt,
+                limit: p.friction * mean * area,
             }
-            .force(&mut memory.spring);
+            .act(t, &mut memory.springs);
+            force += along;
+            couple += torque;
         }
-        Push { force, couple: o.moment * -size, stiffness }
+        Push { force, couple, stiffness }
     }
 
     fn check(&self) -> Result<(), DemError> {

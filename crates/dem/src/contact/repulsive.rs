@@ -44,6 +44,7 @@ impl<L: ContactLaw> Repulsive<L> {
 impl<L: ContactLaw> ContactLaw for Repulsive<L> {
     type Memory = L::Memory;
     const MOBILITY: bool = L::MOBILITY;
+    const PIVOTS: bool = L::PIVOTS;
     const FILMS: bool = true;
     const PLANE: bool = L::PLANE;
 

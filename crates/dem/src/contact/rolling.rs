@@ -25,6 +25,7 @@ const DAMPING_RATIO: f64 = 0.3;
 impl<L: ContactLaw> ContactLaw for Rolling<L> {
     type Memory = (L::Memory, Vector);
     const MOBILITY: bool = L::MOBILITY;
+    const PIVOTS: bool = L::PIVOTS;
     const FILMS: bool = L::FILMS;
     const PLANE: bool = L::PLANE;
 

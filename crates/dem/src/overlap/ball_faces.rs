@@ -326,5 +326,6 @@ fn patch(a: &Round, volume: f64, sums: &Sums, apart: Vector) -> Option<Overlap> 
         normal: (-gradient).try_normalize(0.0).or_else(|| apart.try_normalize(0.0)).unwrap_or(Vector::x()),
         gradient,
         moment: a.orientation * moment,
+        pivot: nalgebra::Matrix3::zeros(),
     })
 }

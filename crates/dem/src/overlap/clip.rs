@@ -1,6 +1,7 @@
 //! Convex polyhedra, by cutting one off at the planes of the other.
 use super::Overlap;
 use super::facets::Sums;
+use super::outline::Outline;
 use crate::shapes::Plane;
 use crate::{ConvexPolyhedron, Shape};
 use interfaces::{Pose, Vector};
@@ -29,6 +30,8 @@ pub(crate) struct Clipper {
     open: Vec<[u32; 2]>,
     /// What finds that place taken: the face, the place and whether the border leaves there.
     later: Vec<(u32, u32, bool)>,
+    /// Whether [`Overlap::pivot`] is requested.
+    pub(crate) pivots: bool,
 }
 
 /// An edge from place to place, with the numbers of the faces on its left and right.
@@ -96,20 +99,24 @@ impl Clipper {
         let foot = |p: &Plane| p.normal * (p.offset - p.normal.dot(&reference));
         self.feet.extend(a.planes.iter().map(foot));
         self.feet.extend(self.planes.iter().map(foot));
-        let mut sums = Sums::default();
+        let (mut sums, mut outline) = (Sums::default(), Outline::default());
         for e in &self.edges {
             let [p, q] = e.ends.map(|i| self.places[i as usize] - reference);
             let [left, right] = e.faces.map(|f| self.feet[f as usize]);
             sums.add_edge(p, q, left, right);
-            match e.faces.map(|f| f < first_planes) {
-                [true, false] => sums.add_curve(p, q),
-                [false, true] => sums.add_curve(q, p),
-                _ => {}
+            let [p, q] = match e.faces.map(|f| f < first_planes) {
+                [true, false] => [p, q],
+                [false, true] => [q, p],
+                _ => continue,
+            };
+            sums.add_curve(p, q);
+            if self.pivots {
+                outline.add(p, q);
             }
         }
         if sums.volume > 0.0 {
             let to_world = |x: Vector| (at_a.to_world((reference + x).into()), at_a.orientation * x);
-            out.push(sums.overlap(to_world, apart.try_normalize(0.0).unwrap_or(Vector::x())));
+            out.push(sums.overlap(&outline, to_world, apart.try_normalize(0.0).unwrap_or(Vector::x())));
         }
     }
 

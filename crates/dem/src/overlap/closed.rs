@@ -1,6 +1,7 @@
 //! Discs and spheres, with one another and with plane walls: lenses, segments and caps.
 use super::Overlap;
 use interfaces::{Point, Vector};
+use nalgebra::Matrix3;
 use std::f64::consts::PI;
 
 /// A part of a disc or sphere of radius `r` beyond a plane, `s` deep: its volume, the distance of
@@ -43,7 +44,14 @@ fn cap(r: f64, s: f64) -> Part {
 /// Round bodies have no moment about the centroid: it lies on the line of centres, and so does the gradient.
 #[inline]
 fn overlap(volume: f64, centroid: Point, normal: Vector, area: f64) -> Overlap {
-    Overlap { volume, centroid, normal, gradient: -area * normal, moment: Vector::zeros() }
+    Overlap {
+        volume,
+        centroid,
+        normal,
+        gradient: -area * normal,
+        moment: Vector::zeros(),
+        pivot: Matrix3::zeros(),
+    }
 }
 
 pub(crate) fn discs(ra: f64, a: Point, rb: f64, b: Point) -> Option<Overlap> {

@@ -23,6 +23,11 @@ pub(crate) struct HalfSpaceOverlap {
 }
 
 impl HalfSpaceOverlap {
+    /// Whether [`Overlap::pivot`] is requested.
+    pub(crate) fn set_pivots(&mut self, pivots: bool) {
+        self.groups.pivots = pivots;
+    }
+
     /// One patch per connected region that the body shares with the wall.
     pub(crate) fn overlap(&mut self, body: &Facets, at: &Pose, wall: &HalfSpace, out: &mut Vec<Overlap>) {
         let to_body = |v: Vector| at.orientation.inverse_transform_vector(&v);
@@ -46,14 +51,17 @@ impl HalfSpaceOverlap {
         }
         let to_world = |x: Vector| (at.to_world(Point::from(reference + x)), at.orientation * x);
         let patches = self.groups.patches(1e-14 * body.radius.powi(3));
-        out.extend(patches.iter().filter(|s| s.volume > 0.0).map(|s| s.overlap(to_world, wall.normal())));
+        let own = patches.iter().filter(|r| r.sums.volume > 0.0);
+        out.extend(own.map(|r| r.sums.overlap(&r.outline, to_world, wall.normal())));
     }
 
     /// Lists the faces and vertices that lie behind the plane, at least in part, and numbers what hangs together.
     fn find(&mut self, body: &Facets, normal: Vector, offset: f64) {
         self.run = self.run.wrapping_add(1);
         if self.run == 0 {
+            let pivots = self.groups.pivots;
             *self = Self { run: 1, ..Self::default() };
+            self.set_pivots(pivots);
         }
         if self.heights.len() < body.vertices.len() {
             self.heights.resize(body.vertices.len(), (0, 0.0));
@@ -117,7 +125,8 @@ impl HalfSpaceOverlap {
         let heights = corners.map(|v| self.heights[v as usize].1);
         let arms = corners.map(|v| body.vertices[v as usize] - reference);
         let Some(inner) = (0..3).find(|&i| heights[i] <= 0.0) else { return };
-        let sums = self.groups.sums(self.numbers[corners[inner] as usize]);
+        let group = self.numbers[corners[inner] as usize];
+        let sums = self.groups.sums(group);
         if heights.iter().all(|h| *h <= 0.0) {
             sums.add_face(arms[0], arms[1], arms[2]);
             return;
@@ -144,7 +153,7 @@ impl HalfSpaceOverlap {
                 sums.add_face(enters, arms[i], leaves);
             }
         }
-        sums.add_curve(leaves, enters);
+        self.groups.add_curve(group, leaves, enters);
     }
 }
 

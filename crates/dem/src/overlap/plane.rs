@@ -10,7 +10,7 @@ use super::Overlap;
 use crate::shapes::Piece;
 use crate::{HalfSpace, Polygon};
 use interfaces::{Point, Pose, Vector};
-use nalgebra::Vector2;
+use nalgebra::{Matrix3, Vector2};
 use ring::{Ring, Side};
 
 /// Overlaps convex pieces of both, and puts together what hangs together over the cuts between them; keeps the memory that this takes.
@@ -174,7 +174,10 @@ impl PlaneOverlap {
                 self.parts.push(part);
             }
         }
+        let first = out.len();
         self.finish(at, (at - at_b.position).xy(), out);
+        // Spin does not move a disc's border.
+        out[first..].iter_mut().for_each(|o| o.pivot = Matrix3::zeros());
     }
 
     fn start(&mut self) {
@@ -250,5 +253,6 @@ fn patch(sums: &Sums, about: Point, apart: Vector2<f64>) -> Overlap {
         normal: -space(gradient) / length,
         gradient: space(gradient),
         moment: Vector::z() * (moment - centre.perp(&gradient)),
+        pivot: Matrix3::from_diagonal(&(Vector::z() * (length.powi(3) / 12.0))),
     }
 }

@@ -6,9 +6,10 @@ use super::half_space::HalfSpaceOverlap;
 use super::plane::PlaneOverlap;
 use super::slices::Slices;
 use super::tree::{AdaptiveTree, Exhausted, Normal, Refinement, SubBox};
-use super::{Overlap, closed, columns, walls};
+use super::{Overlap, closed, columns, outline, walls};
 use crate::{DemError, Form, Shape};
 use interfaces::Pose;
+use nalgebra::Matrix3;
 use std::fmt;
 
 /// A way to compute an overlap.
@@ -71,6 +72,7 @@ pub struct OverlapSolver {
     plane: PlaneOverlap,
     slices: Slices,
     tree: AdaptiveTree,
+    pivots: bool,
 }
 
 /// Largest relative error of a volume that is aimed at unless told.
@@ -97,6 +99,20 @@ impl OverlapSolver {
     #[must_use]
     pub fn with_tolerance(self, tolerance: f64) -> Self {
         Self { tolerance: Some(tolerance), ..self }
+    }
+
+    /// Whether [`Overlap::pivot`] is computed: exactly where flat faces, ellipsoids or cylinders meet walls, where polyhedra and
+    /// where polygons meet; elsewhere as of a disc of the patch's area. No route pays for it unless it is requested.
+    #[must_use]
+    pub fn with_pivots(mut self, pivots: bool) -> Self {
+        self.set_pivots(pivots);
+        self
+    }
+    pub(crate) fn set_pivots(&mut self, pivots: bool) {
+        self.pivots = pivots;
+        self.clipper.pivots = pivots;
+        self.facets.set_pivots(pivots);
+        self.half_space.set_pivots(pivots);
     }
 
     /// How far the adaptive tree goes; to a relative error of the volume of about 1e-3 unless told.
@@ -184,6 +200,7 @@ impl OverlapSolver {
             self.patches[first..].iter_mut().for_each(|o| *o = o.swapped());
             return Ok(());
         }
+        let first = self.patches.len();
         let out = &mut self.patches;
         let best = || best(&form_a, &form_b).ok_or(DemError::Unsupported { a: a.name(), b: b.name() });
         let route = self.route.map_or_else(best, Ok)?;
@@ -227,6 +244,11 @@ impl OverlapSolver {
                 found
             }
         };
+        if self.pivots && !(is_round(&form_a) || is_round(&form_b)) {
+            for o in self.patches[first..].iter_mut().filter(|o| o.pivot == Matrix3::zeros()) {
+                o.pivot = outline::of_disc(o.area(), o.normal);
+            }
+        }
         if found { Ok(()) } else { Err(DemError::Route { a: a.name(), b: b.name(), route }) }
     }
 
@@ -298,6 +320,11 @@ fn rank(form: &Form<'_>) -> usize {
         Form::Distance => 8,
         Form::HalfSpace(_) => 9,
     }
+}
+
+/// Whether spin leaves the surface where it is.
+fn is_round(form: &Form<'_>) -> bool {
+    matches!(form, Form::Disc(_) | Form::Sphere(_))
 }
 
 /// Is it convex and known by straight lines?

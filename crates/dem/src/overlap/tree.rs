@@ -388,6 +388,7 @@ impl Oriented {
             normal: (-gradient).try_normalize(0.0).unwrap_or(between),
             gradient,
             moment: self.axes * moment,
+            pivot: Matrix3::zeros(),
         }
     }
 }

@@ -1,21 +1,15 @@
 //! Ellipsoids and cylinders at plane walls, exactly.
-use super::Overlap;
 use super::closed::{segment, sphere_wall};
 use super::columns::rules::KRONROD;
+use super::{Overlap, outline};
 use crate::{Cylinder, Ellipsoid, HalfSpace, Shape};
 use interfaces::{Point, Pose, Vector};
+use nalgebra::Matrix3;
 use std::f64::consts::PI;
 
 /// All of a body within the wall with outward normal `n`.
 fn sunk(shape: &dyn Shape, at: &Pose, n: Vector) -> Overlap {
-    let zero = Vector::zeros();
-    Overlap {
-        volume: shape.inertia(1.0).volume,
-        centroid: at.position,
-        normal: n,
-        gradient: zero,
-        moment: zero,
-    }
+    Overlap::whole(shape.inertia(1.0).volume, at.position, n)
 }
 
 /// An ellipsoid E at a `wall` that stands where it is: the affine image of the cap of a unit ball that is cut off at D/h from
@@ -33,12 +27,19 @@ pub(super) fn ellipsoid(shape: &Ellipsoid, at: &Pose, wall: &HalfSpace) -> Optio
     let to_world = |x: Vector| at.orientation * e.component_mul(&x);
     let gradient = n * -(ball.area() * e.product() / reach);
     let to_cut = to_world(scaled * (-distance / reach) - ball.centroid.coords);
+    // The cut of the ball has ∫ x xᵀ dA = ¼ A ρ² (1 − s sᵀ), ρ its radius and s the direction to it.
+    let axes = at.orientation.to_rotation_matrix().matrix() * Matrix3::from_diagonal(&e);
+    let along = scaled / reach;
+    let across = Matrix3::identity() - along * along.transpose();
+    let quarter = 0.25 * gradient.norm() * ball.area() / PI;
+    let spread = axes * across * axes.transpose() * quarter;
     Some(Overlap {
         volume: e.product() * ball.volume,
         centroid: at.position + to_world(ball.centroid.coords),
         normal: n,
         gradient,
         moment: to_cut.cross(&gradient),
+        pivot: outline::pivot(&spread, n),
     })
 }
 
@@ -71,6 +72,8 @@ pub(super) fn cylinder(shape: &Cylinder, at: &Pose, wall: &HalfSpace) -> Option<
         let top = -distance / cos;
         sums.discs(r, -h, top);
         (sums.cut, sums.cut_z) = (PI * r * r, PI * r * r * top);
+        let quarter = 0.25 * PI * r.powi(4);
+        sums.spread = [top * sums.cut_z, 0.0, quarter, quarter];
     } else {
         let (first, last) = (height(-1.0), height(1.0));
         // Infinite or not a number where the axis is along the plane.
@@ -86,8 +89,19 @@ pub(super) fn cylinder(shape: &Cylinder, at: &Pose, wall: &HalfSpace) -> Option<
     }
     let middle = (axis * sums.z + out * sums.out) / volume;
     let gradient = n * -sums.cut;
-    let to_cut = axis * sums.cut_z + out * sums.cut_out - middle * sums.cut;
-    Some(Overlap { volume, centroid: at.position + middle, normal: n, gradient, moment: -to_cut.cross(&n) })
+    let first = axis * sums.cut_z + out * sums.cut_out;
+    let to_cut = first - middle * sums.cut;
+    // Without a direction away from the axis, any across it.
+    let out = if sin < 1e-14 { axis.cross(&at.orientation.transform_vector(&Vector::x())) } else { out };
+    let side = axis.cross(&out);
+    let [zz, zu, uu, ww] = sums.spread;
+    let mixed = axis * out.transpose() + out * axis.transpose();
+    let about_origin =
+        axis * axis.transpose() * zz + mixed * zu + out * out.transpose() * uu + side * side.transpose() * ww;
+    let spread = about_origin - first * first.transpose() / sums.cut;
+    let pivot = if sums.cut > 0.0 { outline::pivot(&spread, n) } else { Matrix3::zeros() };
+    let moment = -to_cut.cross(&n);
+    Some(Overlap { volume, centroid: at.position + middle, normal: n, gradient, moment, pivot })
 }
 
 /// Integrals over the part of a cylinder within a wall and over the plane that cuts it: of one, of the height and of the
@@ -100,6 +114,8 @@ struct Sums {
     cut: f64,
     cut_z: f64,
     cut_out: f64,
+    /// ∫ z², z u, u² and w² over the plane, u away from the axis and w across both.
+    spread: [f64; 4],
 }
 
 impl Sums {
@@ -137,7 +153,10 @@ impl Sums {
             let strip = dz * part.cut / sin;
             self.cut += strip;
             self.cut_z += strip * z;
-            self.cut_out -= strip * r * angle.cos();
+            let u = -r * angle.cos();
+            self.cut_out += strip * u;
+            let second = [z * z, z * u, u * u, part.cut * part.cut / 12.0];
+            self.spread.iter_mut().zip(second).for_each(|(sum, x)| *sum += strip * x);
         }
     }
 }

@@ -20,6 +20,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             properties: &self.properties,
             n_materials: self.materials.len(),
             periods: self.periods,
+            last_step: self.last_step,
         }
     }
 
@@ -60,6 +61,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             self.feel_as_before();
             return Ok(false);
         }
+        self.last_step = dt;
         self.contact_time += if self.n_contacts() == 0 { 0.0 } else { dt };
         if self.kick(dt, first) { self.diverged() } else { Ok(true) }
     }

@@ -57,8 +57,14 @@ impl<L: ContactLaw> Checkpoint for RigidBodies<L> {
         values.extend(island.iter().zip(slow).flat_map(|(i, s)| [f64::from(*i), *s]));
         values.push(f64::from(*steps));
         sink("sleep", &values);
-        let counters =
-            [self.contact_time, self.overlap_calls as f64, self.stiffest, self.fastest, self.listed_for];
+        let counters = [
+            self.contact_time,
+            self.overlap_calls as f64,
+            self.stiffest,
+            self.fastest,
+            self.listed_for,
+            self.last_step,
+        ];
         sink("contact_time", &counters);
     }
 
@@ -82,8 +88,9 @@ impl<L: ContactLaw> Checkpoint for RigidBodies<L> {
         let n = RestartError::take(source, "n_patches", 1)?[0] as usize;
         let size = PATCH + L::Memory::N;
         let patches = RestartError::take(source, "patches", size * n)?;
-        let counters = RestartError::take(source, "contact_time", 5)?;
+        let counters = RestartError::take(source, "contact_time", 6)?;
         (self.contact_time, self.overlap_calls) = (counters[0], counters[1] as u64);
+        self.last_step = counters[5];
         let sleep = RestartError::take(source, "sleep", 2 * self.bodies.len() + 1)?;
         for (b, v) in sleep.chunks_exact(2).enumerate() {
             (self.sleepers.island[b], self.sleepers.slow[b]) = (v[0] as u32, v[1]);

@@ -109,6 +109,8 @@ pub(super) struct View<'a, L> {
     pub(super) properties: &'a [PairProperties],
     pub(super) n_materials: usize,
     pub(super) periods: Periods,
+    /// Length of the last sub-step \[s\].
+    pub(super) last_step: f64,
 }
 
 impl<L: ContactLaw> View<'_, L> {

@@ -3,17 +3,13 @@ use super::RigidBodies;
 use super::body::{Constants, Kind};
 use super::contacts::View;
 use super::meeting::{Meeting, Other};
-use super::time_step::LEAST_STEPS;
 use crate::Shape;
-use crate::contact::{ContactLaw, FilmForce, Gap};
+use crate::contact::{ContactLaw, FilmForce, Gap, stiffness_of_decay};
 use crate::overlap::plane;
 use crate::overlap::tree::{self, Closest};
 use interfaces::{Point, Pose, Vector, Wrench};
 use nalgebra::Matrix2;
-use std::f64::consts::PI;
 
-/// Largest share of a relative velocity that a film takes in a sub-step.
-const MOST_TAKEN: f64 = 0.3;
 /// Surfaces count as no flatter than a sphere of so many radii of the smaller body.
 const FLATTEST: f64 = 1.0;
 
@@ -59,8 +55,8 @@ impl<L: ContactLaw> View<'_, L> {
         if !wall {
             inverse += inverse_mass(meeting.pair.b, meeting.others());
         }
-        let rate = PI * resistance * inverse / (LEAST_STEPS * MOST_TAKEN);
-        Some(Film { on_both: meeting.wrenches(at, force, couple), stiffness: rate * rate })
+        let stiffness = stiffness_of_decay(resistance * inverse);
+        Some(Film { on_both: meeting.wrenches(at, force, couple), stiffness })
     }
 
     /// Where the two are closest, if that is within reach.

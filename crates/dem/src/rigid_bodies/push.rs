@@ -2,7 +2,7 @@
 use super::body::{Body, Constants};
 use super::contacts::{Patch, Record, View};
 use super::meeting::{Meeting, Other};
-use crate::contact::{ContactLaw, Push, Touch};
+use crate::contact::{ContactLaw, Pivot, Push, Touch};
 use crate::overlap::closed::Lens;
 use crate::{DemError, Overlap, OverlapSolver};
 use interfaces::{Vector, Wrench};
@@ -58,9 +58,11 @@ impl<L: ContactLaw> View<'_, L> {
             arms: [larger(arms[0], SHORTEST_ARM * a.radius), larger(arms[1], SHORTEST_ARM * radius_b)],
             sizes: [a.radius, radius_b],
             mobility: if L::MOBILITY { area * area * inverse } else { f64::NAN },
+            pivot: Pivot::default(),
             face: 0.0,
             plane: false,
             dt,
+            since: 0.5 * (self.last_step + dt),
         };
         let (push, memory) = self.answer(&touch, [a.material, material_b], before);
         let torque = normal.cross(&push.force);
@@ -89,6 +91,7 @@ impl<L: ContactLaw> View<'_, L> {
             lens = meeting.lens();
             lens.as_slice()
         } else {
+            solver.set_pivots(L::PIVOTS);
             meeting.solve(solver)?
         };
         let volume = shared.iter().map(|o| o.volume).sum();
@@ -134,9 +137,11 @@ impl<L: ContactLaw> View<'_, L> {
             arms: [length(&arm_a, first), f64::INFINITY],
             sizes: [first.size, f64::INFINITY],
             mobility: f64::NAN,
+            pivot: Pivot::default(),
             face: first.face,
             plane: a.is_plane(),
             dt,
+            since: 0.5 * (self.last_step + dt),
         };
         let (mut inverse_b, mut turns) = (0.0, if L::MOBILITY { mobility(a, first, &arm_a) } else { 0.0 });
         let material = match meeting.other {
@@ -160,6 +165,9 @@ impl<L: ContactLaw> View<'_, L> {
         if L::MOBILITY {
             touch.mobility = area * area * (a.inverse_mass + inverse_b) + turns;
         }
+        if L::PIVOTS {
+            touch.pivot = pivot(meeting, overlap, touch.spin);
+        }
         self.answer(&touch, [a.material, material], before)
     }
 
@@ -181,6 +189,23 @@ impl<L: ContactLaw> View<'_, L> {
         };
         (push, memory)
     }
+}
+
+/// Spin of a pair about a patch.
+fn pivot(meeting: &Meeting<'_>, overlap: &Overlap, spin: Vector) -> Pivot {
+    let moment = overlap.pivot * spin;
+    let square = spin.dot(&moment);
+    // Also where it is not a number.
+    if !(square > 0.0) {
+        return Pivot::default();
+    }
+    let turns =
+        |body: &Body, constants: &Constants| constants.turning.mobility(&body.pose.orientation, &moment);
+    let mut mobility = turns(meeting.a, meeting.constants());
+    if let Other::Body(b, _) = meeting.other {
+        mobility += turns(b, meeting.others());
+    }
+    Pivot { moment, square, mobility: mobility / square }
 }
 
 /// The patch before that a patch goes on from: the pair's nearest one, unless another patch is nearer to it.

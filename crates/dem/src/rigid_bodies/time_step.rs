@@ -1,7 +1,7 @@
 //! How long a sub-step may be.
 use super::RigidBodies;
 use super::body::{Constants, Kind};
-use crate::contact::{ContactLaw, Push, Touch};
+use crate::contact::{ContactLaw, LEAST_STEPS, Pivot, Push, Touch};
 use crate::overlap::Overlap;
 use crate::{DemError, PairProperties};
 use interfaces::{Point, Vector};
@@ -9,8 +9,7 @@ use std::f64::consts::PI;
 
 /// Sub-steps per half period of the stiffest contact foreseen.
 const STEPS_PER_CONTACT: f64 = 33.0;
-/// Sub-steps per half period of contacts that are stiffer than was foreseen, and what is still accepted.
-pub(super) const LEAST_STEPS: f64 = 28.0;
+/// What is still accepted of [`LEAST_STEPS`].
 const FEWEST_STEPS: f64 = 22.0;
 /// Overlap, in radii of the smaller body, up to which that stiffness is foreseen.
 const FORESEEN_DEPTH: f64 = 0.05;
@@ -61,6 +60,7 @@ impl<L: ContactLaw> RigidBodies<L> {
                 normal: Vector::x(),
                 gradient: -area * Vector::x(),
                 moment: Vector::zeros(),
+                pivot: nalgebra::Matrix3::zeros(),
             };
             let touch = Touch {
                 overlap: &overlap,
@@ -72,10 +72,12 @@ impl<L: ContactLaw> RigidBodies<L> {
                 inverse_masses: [least_mass, if wall { 0.0 } else { least_mass }],
                 arms: [arm, if wall { f64::INFINITY } else { arm }],
                 sizes: [r, if wall { f64::INFINITY } else { r }],
-                mobility: 0.0,
+                mobility: area * area * least_mass * if wall { 1.0 } else { 2.0 },
+                pivot: Pivot::default(),
                 face,
                 plane,
                 dt: f64::MIN_POSITIVE,
+                since: 0.0,
             };
             let Push { stiffness, .. } = self.law.push(properties, &touch, &mut L::Memory::default());
             PI / (stiffness * (touch.inverse_masses[0] + touch.inverse_masses[1])).sqrt()

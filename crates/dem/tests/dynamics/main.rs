@@ -12,6 +12,7 @@ mod population;
 mod potential;
 mod removal;
 mod repulsion;
+mod rocking;
 mod rotation;
 mod sleep;
 mod state;

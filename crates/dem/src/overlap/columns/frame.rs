@@ -150,6 +150,7 @@ impl Frame {
             normal: (-gradient).try_normalize(0.0).unwrap_or(-units[2]),
             gradient,
             moment: about - (centroid.coords - self.origin).cross(&gradient),
+            pivot: nalgebra::Matrix3::zeros(),
         })
     }
 }

@@ -61,6 +61,7 @@ impl Sums {
             normal: (-gradient).try_normalize(0.0).unwrap_or(-self.upwards),
             gradient,
             moment: self.moment * weight - middle.cross(&gradient),
+            pivot: nalgebra::Matrix3::zeros(),
         })
     }
 }

@@ -1,7 +1,9 @@
 //! What hangs together.
+use super::super::outline::Outline;
 use super::Sums;
 use super::body::NONE;
 use super::crossings::Crossings;
+use interfaces::Vector;
 use nalgebra::Matrix3;
 
 /// Disjoint sets of crossings, and of vertices by their group's number (Tarjan 1975, J. ACM 22, 215).
@@ -10,7 +12,18 @@ pub(crate) struct Groups {
     parents: Vec<u32>,
     /// One for every group; those of numbers that are not their own parent stay empty.
     sums: Vec<Sums>,
-    patches: Vec<Sums>,
+    /// Whether [`Overlap::pivot`](crate::Overlap::pivot) is requested.
+    pub(crate) pivots: bool,
+    /// One for every group, if so.
+    outlines: Vec<Outline>,
+    patches: Vec<Region>,
+}
+
+/// Sums over one connected region.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Region {
+    pub(crate) sums: Sums,
+    pub(crate) outline: Outline,
 }
 
 impl Groups {
@@ -51,6 +64,19 @@ impl Groups {
     pub(crate) fn start_sums(&mut self) {
         self.sums.clear();
         self.sums.resize(self.parents.len(), Sums::default());
+        self.outlines.clear();
+        if self.pivots {
+            self.outlines.resize(self.parents.len(), Outline::default());
+        }
+    }
+    /// Adds a part p → q of the curve in which the surfaces cross, as [`Sums::add_curve`].
+    #[inline]
+    pub(crate) fn add_curve(&mut self, i: u32, p: Vector, q: Vector) {
+        let root = self.root(i) as usize;
+        self.sums[root].add_curve(p, q);
+        if let Some(outline) = self.outlines.get_mut(root) {
+            outline.add(p, q);
+        }
     }
     #[inline]
     pub(crate) fn sums(&mut self, i: u32) -> &mut Sums {
@@ -67,17 +93,25 @@ impl Groups {
     }
     /// One sum for every connected region. Groups with negative volume, beyond `round_off`, are borders of hollows, which belong
     /// to the region around them: that with the nearest centroid among those large enough. (Without any, they stay as they are.)
-    pub(crate) fn patches(&mut self, round_off: f64) -> &[Sums] {
+    pub(crate) fn patches(&mut self, round_off: f64) -> &[Region] {
         self.patches.clear();
         let roots = || (0..self.parents.len()).filter(|&i| self.parents[i] == i as u32);
-        self.patches.extend(roots().map(|i| self.sums[i]).filter(|s| s.volume > 0.0));
-        for hollow in roots().map(|i| self.sums[i]).filter(|s| s.volume < -round_off) {
-            let distance = |s: &Sums| (s.first / s.volume - hollow.first / hollow.volume).norm();
-            let large = |s: &&mut Sums| s.volume >= -hollow.volume;
+        let region = |i: usize| {
+            let outline = self.outlines.get(i).copied().unwrap_or_default();
+            Region { sums: self.sums[i], outline }
+        };
+        self.patches.extend(roots().map(region).filter(|r| r.sums.volume > 0.0));
+        for hollow in roots().map(region).filter(|r| r.sums.volume < -round_off) {
+            let centre = |r: &Region| r.sums.first / r.sums.volume;
+            let distance = |r: &Region| (centre(r) - centre(&hollow)).norm();
+            let large = |r: &&mut Region| r.sums.volume >= -hollow.sums.volume;
             let around =
                 self.patches.iter_mut().filter(large).min_by(|s, t| distance(s).total_cmp(&distance(t)));
             match around {
-                Some(around) => around.add(&hollow),
+                Some(around) => {
+                    around.sums.add(&hollow.sums);
+                    around.outline.join(&hollow.outline);
+                }
                 None => self.patches.push(hollow),
             }
         }

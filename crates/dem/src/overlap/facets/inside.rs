@@ -1,7 +1,7 @@
 //! Which vertices of one body lie in the other, and the sums over all edges.
 use super::body::{Body, Crossed, NONE};
 use super::crossings::Crossings;
-use super::groups::Groups;
+use super::groups::{Groups, Region};
 use super::signs::{Side, ray_crosses};
 use super::{Bodies, Sums};
 use crate::shapes::{Facets, WIDTH};
@@ -59,15 +59,14 @@ impl Bodies<'_> {
     }
 
     /// Sums over all edges of the shared region, one for every connected part.
-    pub(super) fn sum<'g>(&mut self, crossings: &Crossings, groups: &'g mut Groups) -> &'g [Sums] {
+    pub(super) fn sum<'g>(&mut self, crossings: &Crossings, groups: &'g mut Groups) -> &'g [Region] {
         groups.start_sums();
         for s in &crossings.segments {
             let [p, q] = s.ends.map(|c| crossings.all[c as usize].arm);
             let (left, right) =
                 (&self.first.marks.cut[s.first as usize], &self.second.marks.cut[s.second as usize]);
-            let sums = groups.sums(s.ends[0]);
-            sums.add_edge(p, q, left.foot, right.foot);
-            sums.add_curve(p, q);
+            groups.sums(s.ends[0]).add_edge(p, q, left.foot, right.foot);
+            groups.add_curve(s.ends[0], p, q);
         }
         for (number, c) in (0..).zip(&crossings.all) {
             let body = if c.of_first { &self.first } else { &self.second };

@@ -35,6 +35,11 @@ pub(crate) struct FacetOverlap {
 }
 
 impl FacetOverlap {
+    /// Whether [`Overlap::pivot`] is requested.
+    pub(crate) fn set_pivots(&mut self, pivots: bool) {
+        self.groups.pivots = pivots;
+    }
+
     /// One patch per connected region.
     ///
     /// # Errors
@@ -75,16 +80,17 @@ impl FacetOverlap {
         bodies.find_pairs(&mut self.stack, &mut self.crossings);
         self.groups.clear(&self.crossings);
         bodies.find_inside(&self.crossings, &mut self.groups);
-        let sums = bodies.sum(&self.crossings, &mut self.groups);
+        let regions = bodies.sum(&self.crossings, &mut self.groups);
         let to_world = |x: Vector| (at_b.to_world(Point::from(reference + x)), at_b.orientation * x);
         let round_off = 1e-12 * b.radius.powi(3);
-        let (volume, most) = (sums.iter().map(|s| s.volume).sum::<f64>(), (high - low).product());
-        let least = sums.iter().map(|s| s.volume).fold(0.0, f64::min);
+        let (volume, most) = (regions.iter().map(|r| r.sums.volume).sum::<f64>(), (high - low).product());
+        let least = regions.iter().map(|r| r.sums.volume).fold(0.0, f64::min);
         if !(-round_off <= least && volume <= most + round_off) {
             return Err(Impossible { volume: if least < 0.0 { least } else { volume }, most });
         }
         let towards = apart.try_normalize(0.0).unwrap_or(Vector::x());
-        out.extend(sums.iter().filter(|s| s.volume > 0.0).map(|s| s.overlap(to_world, towards)));
+        let own = regions.iter().filter(|r| r.sums.volume > 0.0);
+        out.extend(own.map(|r| r.sums.overlap(&r.outline, to_world, towards)));
         Ok(())
     }
 }

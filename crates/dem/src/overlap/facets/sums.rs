@@ -1,6 +1,8 @@
 //! Volumes and moments as sums over the edges of a solid.
 use super::super::Overlap;
+use super::super::outline::Outline;
 use interfaces::{Point, Vector};
+use nalgebra::Matrix3;
 
 /// What a region bounded by flat faces sums to, about a reference point.
 ///
@@ -69,13 +71,21 @@ impl Sums {
         self.gradient += other.gradient;
         self.turn += other.turn;
     }
-    /// The overlap, once moved by `to_world` from the reference point; `towards` is the way the first body is pushed where the gradient
+    /// The overlap within an `outline` (empty: no [`Overlap::pivot`]), once moved by `to_world` from the reference point; `towards` is the way the first body is pushed where the gradient
     /// vanishes.
-    pub(crate) fn overlap(&self, to_world: impl Fn(Vector) -> (Point, Vector), towards: Vector) -> Overlap {
+    pub(crate) fn overlap(
+        &self,
+        outline: &Outline,
+        to_world: impl Fn(Vector) -> (Point, Vector),
+        towards: Vector,
+    ) -> Overlap {
         let arm = self.first / self.volume;
         let turn = self.turn - arm.cross(&self.gradient);
+        let turn_to_world =
+            Matrix3::from_columns(&[Vector::x(), Vector::y(), Vector::z()].map(|e| to_world(e).1));
         let (centroid, gradient) = (to_world(arm).0, to_world(self.gradient).1);
         Overlap {
+            pivot: turn_to_world * outline.pivot() * turn_to_world.transpose(),
             volume: self.volume,
             centroid,
             normal: (-gradient).try_normalize(0.0).unwrap_or(towards),

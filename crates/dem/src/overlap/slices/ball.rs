@@ -80,6 +80,7 @@ pub(super) fn overlap(
         gradient,
         // All normals of the ball lead through its centre.
         moment: -from_centre.cross(&gradient),
+        pivot: nalgebra::Matrix3::zeros(),
     })
 }
 

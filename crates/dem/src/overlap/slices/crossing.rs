@@ -61,6 +61,7 @@ pub(super) fn overlap(a: &Tube, b: &Tube, tolerance: f64) -> Option<Overlap> {
         normal: (-gradient).try_normalize(0.0).unwrap_or(if d > 0.0 { -n } else { n }),
         gradient,
         moment: n * (sums.volume * cos / sin),
+        pivot: nalgebra::Matrix3::zeros(),
     })
 }
 

@@ -52,6 +52,7 @@ impl Frame {
             normal: (-gradient).try_normalize(0.0).unwrap_or(normal),
             gradient,
             moment: self.world(moment),
+            pivot: nalgebra::Matrix3::zeros(),
         })
     }
 }

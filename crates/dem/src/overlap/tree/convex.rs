@@ -115,7 +115,14 @@ impl Convex {
     pub(crate) fn overlap(&self, origin: Point, between: Vector) -> Overlap {
         let Totals { volume, centroid, gradient, moment } = self.totals;
         let normal = (-gradient).try_normalize(0.0).unwrap_or(between);
-        Overlap { volume, centroid: origin + centroid, normal, gradient, moment }
+        Overlap {
+            volume,
+            centroid: origin + centroid,
+            normal,
+            gradient,
+            moment,
+            pivot: nalgebra::Matrix3::zeros(),
+        }
     }
 }
 

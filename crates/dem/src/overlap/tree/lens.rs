@@ -95,6 +95,7 @@ impl Lens {
             normal: (-gradient).try_normalize(0.0).unwrap_or(between),
             gradient,
             moment: self.root.axes * self.moment,
+            pivot: nalgebra::Matrix3::zeros(),
         }
     }
 }

@@ -1,4 +1,5 @@
 //! What happens at one side, line by line.
+use super::outlet_momentum::FaceExcess;
 use super::{Extrapolation, Lines, Patch, Profile, Side, Sides};
 use crate::grid::GHOSTS;
 use crate::metrics::Metrics;
@@ -50,6 +51,8 @@ pub(super) struct SideState<const D: usize> {
     pub(super) normal_change: Vec<f64>,
     /// Pressure on the side where it is given.
     pub(super) pressure: Vec<f64>,
+    /// Of the faces where it is given.
+    pub(super) excess: FaceExcess,
     /// Of the other components.
     pub(super) laws: [Law; D],
     /// Place of the side along its axis.
@@ -113,9 +116,11 @@ impl<const D: usize> SideState<D> {
         }
         let fixed = kind.iter().all(|k| k.is_fixed());
         let steady = !side.any(&|s| matches!(s, Side::Inlet(Profile::Function(_))));
+        let lines_of_pressure = if kind.contains(&FaceKind::Pressure) { lines.len() } else { 0 };
         Ok(Self {
             side,
             kind,
+            excess: FaceExcess::new(lines_of_pressure),
             normal: list(),
             given: list(),
             open: Vec::new(),

@@ -7,6 +7,7 @@ mod window;
 
 pub use params::{PisoParams, TimeScheme};
 
+use crate::boundary::OutletStep;
 use crate::flow_state::{FlowState, show_clock, show_state};
 use crate::kernels;
 use crate::linear::StencilMatrix;
@@ -37,7 +38,7 @@ const ITERATIONS: usize = 100;
 /// end of the step (BDF2). The pressure is that of the end of the step.
 /// The parts of a step are public: [`predict`](Self::predict), [`correct`](Self::correct) (several
 /// times) and [`finish`](Self::finish); [`advance`](Self::advance) is all of them, with an [`ImmersedForcing`] between. Outlets
-/// of given pressure are those of [`Simple`](crate::Simple).
+/// of given pressure are those of [`Projection`](crate::Projection).
 ///
 /// ```
 /// use fv_mesh::{CartesianGrid, Fluid, Piso, Side};
@@ -245,13 +246,23 @@ impl<const D: usize> Piso<D> {
             self.equations.solver.solve(matrix, &self.equations.rhs, &mut self.delta[c])?;
             self.correction.set(c, matrix, None, 1.0 / weights[0]);
         }
-        let FlowState { grid, metrics, boundaries, fluid, velocity, .. } = &mut self.state;
+        let FlowState { grid, metrics, boundaries, fluid, velocity, pressure, .. } = &mut self.state;
+        let stress = self.eddy.as_ref();
+        boundaries.set_outlet_diffusion(metrics, fluid.viscosity, stress.map(|eddy| (eddy, &[][..])));
+        boundaries.advance_excess(OutletStep {
+            metrics,
+            velocity: &self.old,
+            pressure,
+            fluid: *fluid,
+            inverse_step: dt.recip(),
+            relaxation: [0.0; 2],
+        });
         for (u, delta) in velocity.components.iter_mut().zip(&self.delta) {
             kernels::add_dense(grid, delta, u);
         }
         boundaries.advance_outlets(metrics, &velocity.components, dt, fluid.viscosity)?;
-        boundaries.reset_outlets(&velocity.components);
-        self.correction.update(boundaries, fluid.viscosity)?;
+        boundaries.apply_excess(&velocity.components);
+        self.correction.update(boundaries)?;
         self.state.fill_velocity();
         self.side_flux = self.equations.side_flux(&self.carrier, &self.state.velocity.components);
         self.corrections = 0;
@@ -283,15 +294,16 @@ impl<const D: usize> Piso<D> {
                 kernels::add_dense(grid, h, u);
             }
         }
-        boundaries.reset_outlets(&velocity.components);
+        boundaries.apply_excess(&velocity.components);
         self.state.fill_velocity();
         let FlowState { grid, boundaries, fluid, velocity, pressure, .. } = &mut self.state;
-        self.correction.measure(boundaries, &velocity.components, Some(pressure), fluid.density);
+        self.correction.measure(boundaries, &velocity.components);
         match self.correction.solve(true) {
             Err(PoissonError::NonFinite { .. }) => return Err(self.state.diverged(dt)),
             other => other?,
         };
         self.correction.correct(boundaries, &mut velocity.components);
+        boundaries.measure_excess(&velocity.components);
         let density = fluid.density;
         self.correction.phi.iter_mut().for_each(|phi| *phi *= density);
         kernels::add_dense(grid, &self.correction.phi, pressure);

@@ -6,6 +6,7 @@ mod sources;
 mod unknowns;
 mod window;
 
+use crate::boundary::OutletStep;
 use crate::cut::{Step, Walls};
 use crate::diffusion::{SplitDiffusion, stiffness};
 use crate::flow_state::{FlowState, show_clock, show_state};
@@ -172,7 +173,9 @@ impl<const D: usize> Projection<D> {
     }
 
     fn predict_here(&mut self, dt: f64, force: [f64; D]) -> Result<(), FlowError> {
-        self.sources.start();
+        if self.sources.start() {
+            self.reset_outlet_diffusion();
+        }
         let implicit = self.choose_implicit(dt)?;
         // The fields hold the old values in their ghosts.
         self.state.boundaries.advance(&self.state.metrics, self.state.time + dt)?;
@@ -236,7 +239,15 @@ impl<const D: usize> Projection<D> {
         }
         std::mem::swap(velocity, &mut self.next);
         boundaries.advance_outlets(metrics, velocity, dt, fluid.viscosity)?;
-        boundaries.advance_pressure_faces(metrics, [&self.next, velocity], pressure, *fluid, dt);
+        boundaries.advance_excess(OutletStep {
+            metrics,
+            velocity: &self.next,
+            pressure,
+            fluid: *fluid,
+            inverse_step: dt.recip(),
+            relaxation: [0.0; 2],
+        });
+        boundaries.apply_excess(velocity);
         self.state.last_dt = dt;
         self.state.fill_velocity();
         if any_implicit {

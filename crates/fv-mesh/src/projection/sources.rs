@@ -78,11 +78,12 @@ impl<const D: usize> Sources<D> {
         self.eddy_rate
     }
 
-    /// Forgets the eddy viscosity of an earlier step.
-    pub(super) fn start(&mut self) {
+    /// Forgets the eddy viscosity of an earlier step; returns whether nothing is given for this one.
+    pub(super) fn start(&mut self) -> bool {
         if !self.given {
             self.eddy_rate = 0.0;
         }
+        !self.given
     }
 
     /// Takes back accelerations that no predictor step used.
@@ -151,6 +152,13 @@ impl<const D: usize> Projection<D> {
     /// Takes back accelerations that no predictor step used.
     pub(crate) fn forget_sources(&mut self) {
         self.sources.forget();
+        self.reset_outlet_diffusion();
+    }
+
+    /// Diffusion along outlets by the fluid's own viscosity.
+    pub(super) fn reset_outlet_diffusion(&mut self) {
+        let FlowState { metrics, boundaries, fluid, .. } = &mut self.state;
+        boundaries.set_outlet_diffusion(metrics, fluid.viscosity, None);
     }
 
     /// Tells [`stable_dt`](Self::stable_dt) of the largest Σ ν_t/h² in the next step \[1/s\].
@@ -163,6 +171,8 @@ impl<const D: usize> Projection<D> {
         stress.eddy.check(&self.state.grid)?;
         self.sources.eddy_rate = stress.rate;
         self.momentum.set_law(stress.law());
+        let FlowState { metrics, boundaries, fluid, .. } = &mut self.state;
+        boundaries.set_outlet_diffusion(metrics, fluid.viscosity, Some((&stress.eddy, &stress.walls)));
         self.choose_implicit(dt)?;
         self.gather(1, |flow, sources| {
             sources.iter_mut().enumerate().for_each(|(c, source)| stress.add(c, &flow.state, source));

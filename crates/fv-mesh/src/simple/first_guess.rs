@@ -88,16 +88,15 @@ impl<const D: usize> Simple<D> {
         boundaries.reset_outlets(&velocity.components);
         self.state.fill_velocity();
         let has_solids = self.walls.is_some() || self.pinned.iter().any(|p| !p.is_empty());
-        let FlowState { boundaries, fluid, .. } = &mut self.state;
-        self.correction.update(boundaries, fluid.viscosity)?;
+        self.correction.update(&mut self.state.boundaries)?;
         for _ in 0..MOST {
-            let FlowState { grid, metrics, boundaries, fluid, velocity, .. } = &mut self.state;
+            let FlowState { grid, metrics, boundaries, velocity, .. } = &mut self.state;
             let velocity = &mut velocity.components;
             if let Some(walls) = &self.walls {
                 walls.show_fluxes(velocity);
             }
             let through = momentum::throughput(grid, metrics, velocity);
-            let divergence = self.correction.measure(boundaries, velocity, None, fluid.density);
+            let divergence = self.correction.measure(boundaries, velocity);
             let done = divergence <= LEFT * through;
             if !done {
                 if has_solids {

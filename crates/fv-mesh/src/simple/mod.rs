@@ -11,6 +11,7 @@ pub use params::{SimpleInfo, SimpleParams};
 pub(crate) use pressure_correction::PressureCorrection;
 pub use walls::WallStress;
 
+use crate::boundary::OutletStep;
 use crate::flow_state::{FlowState, show_state};
 use crate::kernels;
 use crate::linear::StencilMatrix;
@@ -43,9 +44,7 @@ const ROUND_OFF: f64 = 1e-12;
 /// Cahouet & Chabat 1988; with it α_u may be near 1 however viscous the fluid is). The right-hand side has the full
 /// [`Convection`] scheme (deferred correction), so the steady flow has its order, whatever α_u is.
 ///
-/// At a [`Side::PressureOutlet`] the pressure extrapolated from two cells is the given one plus
-/// ½ρ(|u| + 2ν/w)(u − u_inside), w the width of the cell and u the velocity through the side: the momentum balance of half
-/// a cell.
+/// The velocity through a [`Side::PressureOutlet`] follows the momentum of the half cell before it, as in [`Projection`](crate::Projection).
 ///
 /// Before the first iteration the velocity is freed of its divergence: from rest, or from a uniform stream that passes through
 /// walls, it starts as the potential flow.
@@ -260,21 +259,31 @@ impl<const D: usize> Simple<D> {
         if scale > 0.0 {
             info.momentum.iter_mut().for_each(|r| *r /= scale);
         }
-        let FlowState { grid, metrics, boundaries, fluid, velocity, .. } = &mut self.state;
+        let FlowState { grid, metrics, boundaries, fluid, velocity, pressure, .. } = &mut self.state;
+        let stress = self.stress.as_ref().map(|stress| (&stress.eddy, &stress.walls[..]));
+        boundaries.set_outlet_diffusion(metrics, fluid.viscosity, stress);
+        boundaries.advance_excess(OutletStep {
+            metrics,
+            velocity: &velocity.components,
+            pressure,
+            fluid: *fluid,
+            inverse_step: 0.0,
+            relaxation: [1.0 / self.params.velocity_relaxation - 1.0, self.params.viscous_share],
+        });
         for (u, delta) in velocity.components.iter_mut().zip(&self.delta) {
             kernels::add_dense(grid, delta, u);
         }
         boundaries.advance_outlets(metrics, &velocity.components, LONG, fluid.viscosity)?;
-        boundaries.reset_outlets(&velocity.components);
+        boundaries.apply_excess(&velocity.components);
         self.state.fill_velocity();
         let FlowState { grid, metrics, boundaries, fluid, velocity, pressure, .. } = &mut self.state;
-        self.correction.update(boundaries, fluid.viscosity)?;
+        self.correction.update(boundaries)?;
         let velocity = &mut velocity.components;
         if let Some(walls) = &self.walls {
             walls.show_fluxes(velocity);
         }
         let through = momentum::throughput(grid, metrics, velocity);
-        let divergence = self.correction.measure(boundaries, velocity, Some(pressure), fluid.density);
+        let divergence = self.correction.measure(boundaries, velocity);
         if !divergence.is_finite() {
             return Err(self.state.diverged(0.0));
         }

@@ -10,9 +10,6 @@ use crate::poisson::{PoissonError, PoissonInfo};
 use crate::pressure::PressureEnds;
 use crate::{CartesianGrid, Field, FlowError};
 
-/// Least rate at which outlets answer, relative to that of the velocity inside.
-const SLOWEST: f64 = 1e-6;
-
 /// Solves ∇·(β ∇φ) = ∇·u for the correction u ← u − β ∇φ, with β \[s\] on the faces: what a component answers to a
 /// kinematic pressure gradient.
 pub(crate) struct PressureCorrection<const D: usize> {
@@ -35,10 +32,8 @@ pub(crate) struct PressureCorrection<const D: usize> {
 struct Given {
     /// Dense number of the cell before it.
     cell: usize,
-    phi: f64,
     /// 2β/width of the cell.
     conductance: f64,
-    width: f64,
 }
 
 impl<const D: usize> PressureCorrection<D> {
@@ -129,22 +124,19 @@ impl<const D: usize> PressureCorrection<D> {
         self.beta[c][face] *= open;
     }
 
-    /// Hands β to the solver. On faces of given pressure it is w/(|u| + 2ν/w), w the width of the cell before them: so the
-    /// pressure p there, extrapolated from inside, and the velocity u through them settle where
-    /// p − p_given = ½ρ(|u| + 2ν/w)(u − u_inside), whatever the relaxation or step.
-    pub(crate) fn update(&mut self, boundaries: &mut Boundaries<D>, viscosity: f64) -> Result<(), FlowError> {
+    /// Passes β to the solver. On faces of given pressure, where φ = 0, it is what their momentum answers to a pressure.
+    pub(crate) fn update(&mut self, boundaries: &mut Boundaries<D>) -> Result<(), FlowError> {
         for c in 0..D {
             if !self.metrics.periodic[c] {
                 self.close(c);
             }
         }
-        let (grid, metrics, beta, n) = (&self.grid, &self.metrics, &mut self.beta, self.grid.cells());
-        boundaries.each_pressure_face(|face, normal| {
-            let PressureFace { axis, upper, cell, .. } = face;
-            let width = metrics.axes[axis].width[GHOSTS + if upper { n[axis] - 1 } else { 0 }];
-            let beta = &mut beta[axis][end_face(grid, axis, cell, upper)];
-            // The last term only matters to an inviscid fluid at rest.
-            *beta = width / (normal.abs() + 2.0 * viscosity / width + SLOWEST * width / *beta);
+        let (grid, beta) = (&self.grid, &mut self.beta);
+        boundaries.each_pressure_face(|face, _| {
+            let PressureFace { axis, upper, cell, rate, .. } = face;
+            if rate > 0.0 {
+                beta[axis][end_face(grid, axis, cell, upper)] = 1.0 / rate;
+            }
         });
         let beta = self.beta.each_ref().map(|b| Some(b.as_slice()));
         Ok(self.solver.multigrid().set_coefficients(beta)?)
@@ -180,41 +172,18 @@ impl<const D: usize> PressureCorrection<D> {
         }
     }
 
-    /// Measures the divergence of the velocity. On faces of given pressure φ will be what brings the pressure there,
-    /// extrapolated from two cells, to the one given, or 0 without a `pressure`; the velocity that this takes counts. Gives
-    /// Σ |∇·u| V.
-    pub(crate) fn measure(
-        &mut self,
-        boundaries: &mut Boundaries<D>,
-        velocity: &[Field<D>; D],
-        pressure: Option<&Field<D>>,
-        density: f64,
-    ) -> f64 {
+    /// Measures the divergence of the velocity; returns Σ |∇·u| V.
+    pub(crate) fn measure(&mut self, boundaries: &mut Boundaries<D>, velocity: &[Field<D>; D]) -> f64 {
         self.write_divergence(velocity);
         self.given.clear();
-        let p = pressure.map(Field::data);
-        let (given, stride, n) = (&mut self.given, self.grid.stride(), self.grid.cells());
+        let (given, n) = (&mut self.given, self.grid.cells());
         let (metrics, beta, grid) = (&self.metrics, &self.beta, &self.grid);
         boundaries.each_pressure_face(|face, _| {
-            let PressureFace { axis, upper, cell, index, pressure } = face;
-            let (at, gap) = if upper { (n[axis] - 1, n[axis] - 1) } else { (0, 1) };
-            let nodes = &metrics.axes[axis];
-            let width = nodes.width[GHOSTS + at];
-            let phi = p.map_or(0.0, |p| {
-                let rise = if n[axis] > 1 {
-                    let next = if upper { index - stride[axis] } else { index + stride[axis] };
-                    0.5 * width * nodes.faces.inv_volume[GHOSTS + gap] * (p[index] - p[next])
-                } else {
-                    0.0
-                };
-                (pressure - p[index] - rise) / density
-            });
+            let PressureFace { axis, upper, cell, .. } = face;
+            let width = metrics.axes[axis].width[GHOSTS + if upper { n[axis] - 1 } else { 0 }];
             let beta = beta[axis][end_face(grid, axis, cell, upper)];
-            given.push(Given { cell, phi, conductance: 2.0 * beta / width, width });
+            given.push(Given { cell, conductance: 2.0 * beta / width });
         });
-        for g in &self.given {
-            self.divergence[g.cell] -= g.conductance / g.width * g.phi;
-        }
         crate::momentum_matrix::absolute_sum(grid, metrics, None, &self.divergence)
     }
 
@@ -259,7 +228,7 @@ impl<const D: usize> PressureCorrection<D> {
         boundaries.each_pressure_face(|face, normal| {
             let Some(g) = given.next() else { return };
             let sign = if face.upper { 1.0 } else { -1.0 };
-            *normal += sign * g.conductance * (self.phi[g.cell] - g.phi);
+            *normal += sign * g.conductance * self.phi[g.cell];
         });
     }
 }

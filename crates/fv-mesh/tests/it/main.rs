@@ -3,5 +3,6 @@ mod boundaries;
 mod exact;
 mod hooks;
 mod norms;
+mod outlet_friction;
 mod stress;
 mod wall_friction;

@@ -1,20 +1,16 @@
 //! Faces of which the surface closes a part.
 use super::Cutter;
-use super::distances::Near;
-use super::plane::Plane;
+use super::distances::{Near, ON};
+use super::face_distances::FaceDistances;
+use super::profile::{self, Side, Support};
 use interfaces::{Bodies, CutFace, Vector};
 
-/// Smaller openings are closed: the flux that is lost goes with the square of this share.
-const LEAST: f64 = 1e-3;
+/// Openings up to this share are closed: the flux that is lost goes with the square of it. Round-off does not decide for walls just that far
+/// from a line of the grid.
+const LEAST: f64 = 1e-3 * (1.0 + ON);
 
-/// A half of the mean velocity over an edge, relative to the wall: the share of the edge that is open there, and the weights of
-/// the node in the middle of the edge and of its neighbour.
-#[derive(Clone, Copy, Debug, Default)]
-struct Half {
-    open: f64,
-    own: f64,
-    neighbour: f64,
-}
+/// Faces of which no more than this share is closed are open.
+const ROUND: f64 = 1e-12;
 
 impl<B: Bodies + ?Sized> Cutter<'_, B> {
     /// The faces that are not wholly open.
@@ -66,7 +62,7 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
         self.velocity.lattice(self.c).index(node).filter(|_| self.nodes.solid(node).is_none())
     }
 
-    /// A face of a plane grid: two halves, from the node to either end.
+    /// A face of a grid in 2D: an edge, cut by the surface on either side of its node, or on both.
     fn edge(&self, near: &Near) -> Option<CutFace> {
         let lattice = self.velocity.lattice(self.c);
         let (node, along) = (near.node.map(|i| i as isize), 1 - self.c);
@@ -75,72 +71,74 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
         if near.distance.abs() > 0.5 * width {
             return (near.distance < 0.0).then(|| closed(index));
         }
-        let ends = [0, 1].map(|side| {
-            let mut up = [0; 3];
-            up[along] = side;
-            self.corner(node, up).filter(|corner| corner.distance <= 0.0)
-        });
-        let beyond = |side: usize, steps: isize| {
-            let mut at = node;
-            at[along] += steps * (2 * side as isize - 1);
-            self.fluid(at)
-        };
-        let mut face = closed(index);
-        for side in 0..2 {
-            let mut step = Vector::zeros();
-            step[along] = (side as f64 - 0.5) * width;
-            let next = beyond(side, 1);
-            let half = match (near.distance > 0.0, ends[side]) {
-                // Beside a half that the wall cuts the profile goes on to the next node.
-                (true, None) if ends[1 - side].is_some() && next.is_some() => {
-                    Half { open: 0.5, own: 0.375, neighbour: 0.125 }
-                }
-                (true, None) => Half { open: 0.5, own: 0.5, neighbour: 0.0 },
-                (true, Some(end)) => self.half_to_the_wall(near, end, step),
-                (false, None) => self.half_from_the_wall(near, step, next.is_some()),
-                (false, Some(_)) => Half::default(),
-            };
-            face.open += half.open;
-            face.terms[0].1 += half.own;
-            if let Some(next) = next {
-                face.terms[1 + side] = (next, half.neighbour);
-            }
-        }
-        if face.open >= 1.0 {
+        let sides = [0, 1].map(|side| self.side(near, side, along, width));
+        let open = sides[0].open + sides[1].open;
+        if open >= 1.0 - ROUND {
             return None;
         }
-        if face.open < LEAST {
+        let mut face = CutFace { open, ..closed(index) };
+        if open < LEAST {
             return Some(closed(index));
         }
-        // The open side, where the wall is on one side only.
-        let side = usize::from(ends[0].is_some());
-        if ends[0].is_some() != ends[1].is_some()
-            && let (Some(_), Some(second)) = (beyond(side, 1), beyond(side, 2))
-        {
-            bend(&mut face, side, second);
+        if near.distance > 0.0 {
+            profile::around_node(sides, &mut face)
+        } else {
+            profile::from_walls(sides, &mut face)
         }
         Some(face)
     }
 
-    /// From the node in the fluid along `step` to an end inside: linear up to the wall.
-    fn half_to_the_wall(&self, near: &Near, end: &Near, step: Vector) -> Half {
+    /// One side of the node of an edge.
+    fn side(&self, near: &Near, side: usize, along: usize, width: f64) -> Side {
+        let node = near.node.map(|i| i as isize);
+        let sign = 2 * side as isize - 1;
+        let mut up = [0; 3];
+        up[along] = side as isize;
+        let end = self.corner(node, up).filter(|corner| corner.distance <= 0.0);
+        let at = |steps: isize| {
+            let mut at = node;
+            at[along] += steps * sign;
+            at
+        };
+        let mut step = Vector::zeros();
+        step[along] = 0.5 * sign as f64 * width;
+        let open = 0.5
+            * match (near.distance > 0.0, end) {
+                (true, None) => 1.0,
+                (true, Some(end)) => self.share_before(near, end, step),
+                (false, Some(_)) => 0.0,
+                (false, None) => {
+                    let arm = near.arm + step;
+                    let d = self.distance(near.body(), arm);
+                    if d > 0.0 { self.crossing(near.body(), arm, -step, [d, near.distance]) } else { 0.0 }
+                }
+            };
+        let next = match self.nodes.solid(at(1)) {
+            _ if end.is_some() => Support::Wall(open),
+            Some(wall) if near.distance > 0.0 => {
+                let nodes = &self.velocity.lattice(self.c).axes[along];
+                step[along] = nodes.place(at(1)[along]) - nodes.place(node[along]);
+                let share = self.share_before(near, wall, step);
+                Support::Wall((share * step[along].abs() / width).max(0.5))
+            }
+            Some(_) => Support::Wall(1.0),
+            None => self.fluid(at(1)).map_or(Support::None, Support::Node),
+        };
+        let second = match self.nodes.solid(at(2)) {
+            Some(_) => Support::Wall(2.0),
+            None => self.fluid(at(2)).map_or(Support::None, Support::Node),
+        };
+        Side { open, cut: end.is_some(), next, second }
+    }
+
+    /// Share of the way along `step` from a node in the fluid to a place inside that is before the surface.
+    fn share_before(&self, near: &Near, end: &Near, step: Vector) -> f64 {
         let arm = end.arm - step;
         let start = self.distance_at(near, end.body(), arm).max(0.0);
-        let t = self.crossing(end.body(), arm, step, [start, end.distance]);
-        Half { open: 0.5 * t, own: 0.25 * t, neighbour: 0.0 }
+        self.crossing(end.body(), arm, step, [start, end.distance])
     }
 
-    /// From the node inside along `step` to an end in the fluid: linear from the wall to the next node, if there is one, which
-    /// is `open` + ½ away and seen at the middle of what is open.
-    fn half_from_the_wall(&self, near: &Near, step: Vector, next: bool) -> Half {
-        let arm = near.arm + step;
-        let end = self.distance(near.body(), arm);
-        let t = if end > 0.0 { self.crossing(near.body(), arm, -step, [end, near.distance]) } else { 0.0 };
-        let open = 0.5 * t;
-        Half { open, own: 0.0, neighbour: if next { 0.5 * open * open / (open + 0.5) } else { 0.0 } }
-    }
-
-    /// A face of a grid in space, cut by the plane that fits the distances at its node and corners.
+    /// A face of a grid in 3D, by the distances at its node and corners.
     fn polygon(&self, near: &Near) -> Option<CutFace> {
         let lattice = self.velocity.lattice(self.c);
         let node = near.node.map(|i| i as isize);
@@ -156,46 +154,28 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
             (up[axes[0]], up[axes[1]]) = ((k & 1) as isize, (k >> 1) as isize);
             *distance = self.corner(node, up)?.distance;
         }
-        let solid = corners.iter().chain([&near.distance]).filter(|&&d| d <= 0.0).count();
-        if solid == 0 {
+        let cut = FaceDistances::new(corners, near.distance);
+        let open = cut.open();
+        if open >= 1.0 - ROUND {
             return None;
         }
-        // Simpson's mean, since the surface bends, and the rise from side to side.
-        let mean = (8.0 * near.distance + corners.iter().sum::<f64>()) / 12.0;
-        let rise = [
-            0.5 * (corners[1] + corners[3] - corners[0] - corners[2]),
-            0.5 * (corners[2] + corners[3] - corners[0] - corners[1]),
-        ];
-        let plane = Plane::new(mean, rise);
-        let open = if solid == 5 { 0.0 } else { plane.open() };
-        if open >= 1.0 {
-            return None;
-        }
-        let mut face = closed(index);
         if open < LEAST {
-            return Some(face);
+            return Some(closed(index));
         }
-        face.open = open;
-        // The next node on the open side, along the axis where the distance grows most, and how much larger it is there.
-        let k = usize::from(rise[1].abs() > rise[0].abs());
-        let (axis, mut beyond) = (axes[k], node);
-        beyond[axis] += if rise[k] > 0.0 { 1 } else { -1 };
-        let nodes = &lattice.axes[axis];
-        let gap = (nodes.place(beyond[axis]) - nodes.place(node[axis])).abs();
-        let further = rise[k].abs() * gap / nodes.width(node[axis]);
-        let next = self.fluid(beyond).filter(|_| further > 0.0);
-        let whole = plane.above(0.0);
-        if near.distance > 0.0 {
-            // Linear from the wall to the node, and on to the next one.
-            let own = mean.max(0.0);
-            let rest = plane.above(own);
-            let inner = if own > 1e-12 * further { (whole - rest) / own } else { open };
-            let outer = next.map_or(0.0, |_| rest / further);
-            face.terms[0].1 = inner - outer;
-            face.terms[1] = (next.unwrap_or(index), outer);
-        } else if let Some(next) = next {
-            face.terms[1] = (next, whole / (mean + further).max(whole));
-        }
+        let neighbours = [0, 1].map(|k| {
+            let mut beyond = node;
+            beyond[axes[k]] += if cut.rise[k] > 0.0 { 1 } else { -1 };
+            let nodes = &lattice.axes[axes[k]];
+            let gap = (nodes.place(beyond[axes[k]]) - nodes.place(node[axes[k]])).abs();
+            let further = cut.rise[k].abs() * gap / nodes.width(node[axes[k]]);
+            let next = match self.nodes.solid(beyond) {
+                Some(_) => Support::Wall(0.0),
+                None => self.fluid(beyond).map_or(Support::None, Support::Node),
+            };
+            (next, further)
+        });
+        let mut face = CutFace { open, ..closed(index) };
+        cut.weights(neighbours, &mut face);
         Some(face)
     }
 }
@@ -203,21 +183,4 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
 /// A face whose flux is the wall's.
 fn closed(index: usize) -> CutFace {
     CutFace { index, open: 0.0, constant: 0.0, terms: [(index, 0.0); 4] }
-}
-
-/// Adds what the curvature of the profile changes in a flux by straight pieces; `second` is the node after next on the open
-/// `side`.
-///
-/// With t the distance from the wall in cells, a the open share, nodes at t₁ = a + ½ and t₂ = a + 3⁄2 and the second
-/// difference u″ of the wall and these two, it is −u″ (t₀³/12 + 1/24) for a > ½ (t₀ = a − ½) and −u″ (t₁a²/4 − a³/6) else.
-/// Faces that are wholly open carry the velocity of their middle, which is u″/24 less than their mean; so does the open
-/// part here, or neighbouring faces would not agree.
-fn bend(face: &mut CutFace, side: usize, second: usize) {
-    let a = face.open;
-    let (t0, t1, t2) = (a - 0.5, a + 0.5, a + 1.5);
-    let pieces = if t0 > 0.0 { t0.powi(3) / 12.0 + 1.0 / 24.0 } else { t1 * a * a / 4.0 - a.powi(3) / 6.0 };
-    // u″ = 2 (u₂/t₂ − u₁/t₁), relative to the wall.
-    let share = -2.0 * (pieces + a / 24.0);
-    face.terms[1 + side].1 -= share / t1;
-    face.terms[3] = (second, share / t2);
 }

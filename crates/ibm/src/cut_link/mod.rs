@@ -1,8 +1,9 @@
 //! Walls at rest that cut the grid.
 pub(crate) mod distances;
+mod face_distances;
 mod faces;
 mod links;
-mod plane;
+mod profile;
 pub(crate) mod resolution;
 
 use crate::IbmError;
@@ -12,9 +13,10 @@ use interfaces::{Bodies, BodyId, CutComponent, CutWalls, Point, SolidPoint, Vect
 /// How bodies at rest (or turning in themselves) cut a staggered grid: where links between velocity nodes meet the
 /// surface, and which part of every face is open. See [`CutWalls`] for what a flow does with it.
 ///
-/// The flux through a cut face follows from a velocity that is linear in the distance from the wall: between the wall and
-/// the node of the face, and between that node and its neighbour on the open side; in the plane the curvature of the
-/// profile is added. That makes the fluxes second order.
+/// The flux through a cut face follows from a velocity that depends on the distance from the wall alone: from the wall to
+/// the node of the face and on to its neighbours on the open side, with the curvature of the profile. That makes the fluxes
+/// second order. Cuts are continuous in the place of the wall: nodes on a surface, within 10⁻⁶ of the narrowest spacing, are
+/// inside, so that bodies which are symmetric to the grid have symmetric loads.
 ///
 /// # Errors
 /// [`IbmError::Lost`] and [`IbmError::TooLarge`]; [`IbmError::Outside`] and [`IbmError::Unseen`] for a body without a node of some
@@ -90,14 +92,22 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
     /// the distance, by false position (Anderson & Björck 1973, BIT 13, 253).
     fn crossing(&self, b: BodyId, arm: Vector, step: Vector, ends: [f64; 2]) -> f64 {
         let (solid, turn) = (self.bodies.solid(b), self.bodies.pose(b).orientation.inverse());
-        let (from, step) = (Point::from(turn * arm), turn * step);
+        let (from, way) = (Point::from(turn * arm), turn * step);
         let ([mut low, mut high], [mut at_low, mut at_high]) = ([0.0, 1.0], ends);
         let mut t = 0.0;
-        // What is left of the value of an end that stays, by that of the end that moves from `old` to `new`.
+        // Factor for the value of an end that stays, from those of the end that moves.
         let less = |new: f64, old: f64| if new < old { 1.0 - new / old } else { 0.5 };
-        for _ in 0..MOST {
+        let mut width = 1.0;
+        for step in 0..MOST {
             t = (low * at_high - high * at_low) / (at_high - at_low);
-            let d = solid.signed_distance(from + t * step, self.nodes.band);
+            // Three steps that do not halve the bracket (a kink of the distance) are followed by a bisection.
+            if step % 3 == 2 {
+                if high - low > 0.5 * width {
+                    t = 0.5 * (low + high);
+                }
+                width = high - low;
+            }
+            let d = solid.signed_distance(from + t * way, self.nodes.band);
             if d.abs() <= CLOSE * (ends[0] - ends[1]).abs() {
                 break;
             }
@@ -114,7 +124,7 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
 }
 
 /// Steps of a search for a root, and when it is found, as a share of the difference between the ends.
-const MOST: usize = 30;
+const MOST: usize = 100;
 const CLOSE: f64 = 1e-10;
 
 #[cfg(test)]

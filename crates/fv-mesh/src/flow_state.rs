@@ -150,6 +150,16 @@ impl<const D: usize> FlowState<D> {
         self.measure.of(&self.grid, &self.metrics, &self.velocity.components, fluid)
     }
 
+    /// The same with the divergence of the fluxes that `show` puts in the place of the velocity.
+    pub(crate) fn statistics_of_fluxes(&mut self, show: impl FnOnce(&mut Self)) -> FlowStatistics {
+        let sums = self.statistics();
+        let nodes = self.velocity.components.clone();
+        show(self);
+        let divergence = self.statistics().divergence;
+        self.velocity.components = nodes;
+        FlowStatistics { divergence, ..sums }
+    }
+
     /// What the bounded sides do to the kinetic energy.
     pub(crate) fn side_power(&self) -> SidePower {
         let Self { grid, metrics, velocity, pressure, fluid, .. } = self;
@@ -232,10 +242,6 @@ pub(crate) fn each_cell<const D: usize>(grid: &CartesianGrid<D>, mut f: impl FnM
 /// What all flow algorithms show of their state.
 macro_rules! show_state {
     () => {
-        /// Sums and extremes of the velocity, as it is now.
-        pub fn statistics(&mut self) -> $crate::FlowStatistics {
-            self.state.statistics()
-        }
         /// What the bounded sides do to the kinetic energy of the fluid, as it is now.
         pub fn side_power(&self) -> $crate::SidePower {
             self.state.side_power()

@@ -24,8 +24,10 @@ pub(crate) struct Walls<const D: usize> {
     pub(crate) pressure: CutPressure,
     /// Impulse of the fluid on each body in the last step \[N s, N m s\].
     pub(crate) impulses: Vec<Wrench>,
-    /// Velocities of the faces' nodes while the faces carry the flux.
+    /// Velocities of the faces' nodes while the faces carry the flux, that flux otherwise.
     nodes: [Vec<f64>; D],
+    /// dt/ρ of the last projection, if the fluxes in `nodes` are those that it made free of divergence.
+    pub(crate) projected: Option<f64>,
 }
 
 /// One step's numbers.
@@ -58,6 +60,7 @@ impl<const D: usize> Walls<D> {
             pressure,
             impulses: vec![Wrench::default(); cuts.n_bodies],
             nodes: std::array::from_fn(|c| vec![0.0; cuts.components[c].faces.len()]),
+            projected: None,
             cuts,
         })
     }
@@ -106,6 +109,23 @@ impl<const D: usize> Walls<D> {
         }
     }
 
+    /// Gives the faces the flux whose divergence the last projection removed: that of u* less dt/ρ times the gradient of its `phi` on the open part;
+    /// without one the flux of the velocity.
+    pub(crate) fn show_conserved(&self, phi: &[f64], velocity: &mut [Field<D>; D]) {
+        for (c, component) in velocity.iter_mut().enumerate() {
+            let faces = &self.cuts.components[c].faces;
+            let u = component.data_mut();
+            let fluxes: Vec<f64> = match self.projected {
+                Some(answer) => {
+                    let gradients = self.pressure.gradients(c, phi);
+                    self.nodes[c].iter().zip(gradients).map(|(flux, slope)| flux - answer * slope).collect()
+                }
+                None => faces.iter().map(|face| face.mean_velocity(u)).collect(),
+            };
+            faces.iter().zip(fluxes).for_each(|(face, flux)| u[face.index] = flux);
+        }
+    }
+
     fn swap(&mut self, c: usize, u: &mut [f64]) {
         for (value, face) in self.nodes[c].iter_mut().zip(&self.cuts.components[c].faces) {
             std::mem::swap(value, &mut u[face.index]);
@@ -128,6 +148,7 @@ impl<const D: usize> Walls<D> {
         &mut self,
         source: &dyn Fn(&str) -> Option<&'a [f64]>,
     ) -> Result<(), RestartError> {
+        self.projected = None;
         for (c, links) in self.links.iter_mut().enumerate() {
             RestartError::fill(source, &format!("walls{c}"), &mut links.plain)?;
         }

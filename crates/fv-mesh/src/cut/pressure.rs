@@ -1,6 +1,6 @@
 //! The pressure equation of cells that walls cut.
 use super::recent::Recent;
-use super::regions::{CutCell, Orphan, Regions};
+use super::regions::{CutCell, Orphan, Passage, Regions};
 use crate::boundary::Boundaries;
 use crate::metrics::Metrics;
 use crate::parts::least_parts;
@@ -54,6 +54,8 @@ pub(crate) struct CutPressure {
     orphans: Vec<Orphan>,
     /// Dense numbers and storage indices of the cells inside the solid.
     solid: Vec<(usize, usize)>,
+    /// Per component: how the pressure acts on its faces.
+    passages: Vec<Vec<Passage>>,
 }
 
 /// K⁻¹ is kept if it has at most so many entries per cell of the grid: its product then costs less than a few of the box's
@@ -75,7 +77,8 @@ impl CutPressure {
         metrics: &Metrics<D>,
         boundaries: &Boundaries<D>,
     ) -> Self {
-        let Regions { cells, orphans, solid, floating } = Regions::new(cuts, grid, metrics, boundaries);
+        let Regions { cells, orphans, solid, floating, passages } =
+            Regions::new(cuts, grid, metrics, boundaries);
         let row = grid.cells()[0];
         let start = |r: usize| cells.partition_point(|cut| cut.cell < r * row);
         let m = cells.len();
@@ -94,6 +97,7 @@ impl CutPressure {
             iterations: 0,
             orphans,
             solid: solid.into_iter().map(|cell| (cell, grid.place(grid.cell(cell)))).collect(),
+            passages,
         }
     }
 
@@ -274,6 +278,11 @@ impl CutPressure {
         for (cut, source) in self.cells[cells.clone()].iter().zip(&sources[cells]) {
             row[cut.cell - r * self.row] += source;
         }
+    }
+
+    /// Open share times ∂φ/∂n at every face of component `c`.
+    pub(super) fn gradients(&self, c: usize, phi: &[f64]) -> impl Iterator<Item = f64> {
+        self.passages[c].iter().map(|p| p.weight * (phi[p.cells[1]] - phi[p.cells[0]]))
     }
 
     /// Takes the pressure out of the solid.

@@ -1,6 +1,7 @@
 //! What walls make of the cells: faces that are not wholly open, cells without a velocity, regions that are cut off.
 use crate::CartesianGrid;
 use crate::boundary::{Boundaries, FaceKind};
+use crate::grid::GHOSTS;
 use crate::metrics::Metrics;
 use interfaces::CutWalls;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -15,6 +16,17 @@ pub(super) struct Regions {
     pub(super) solid: Vec<usize>,
     /// No pressure is given at any side.
     pub(super) floating: bool,
+    /// Per component, in the order of its faces that are not wholly open: how the pressure acts on them.
+    pub(super) passages: Vec<Vec<Passage>>,
+}
+
+/// How the pressure acts on a face that is not wholly open.
+#[derive(Clone, Copy)]
+pub(super) struct Passage {
+    /// Dense numbers of the cells below and above.
+    pub(super) cells: [usize; 2],
+    /// Open share over the distance of their centres \[1/m\].
+    pub(super) weight: f64,
 }
 
 /// A cell of the fluid with faces that are not wholly open.
@@ -48,18 +60,27 @@ impl Regions {
     ) -> Self {
         let n = grid.cells();
         let mut cut = Vec::new();
+        let none = Passage { cells: [0; 2], weight: 0.0 };
+        let mut passages: Vec<Vec<Passage>> =
+            cuts.components.iter().take(D).map(|component| vec![none; component.faces.len()]).collect();
         for (c, component) in cuts.components.iter().enumerate().take(D) {
-            for face in &component.faces {
+            for (number, face) in component.faces.iter().enumerate() {
                 let Some(above) = grid.cell_at(face.index) else { continue };
                 let mut below = above;
                 below[c] = if above[c] == 0 { n[c] - 1 } else { above[c] - 1 };
                 let cells = [grid.index(below), grid.index(above)];
-                cut.push(Cut { axis: c, cells, open: face.open, conductance: metrics.conductance(c, above) });
+                let conductance = metrics.conductance(c, above);
+                cut.push(Cut { axis: c, number, cells, open: face.open, conductance });
             }
         }
         let solid = solid_cells(&cut, grid, metrics);
         let orphans = orphans(cuts, grid, metrics, &mut cut);
-        cut.retain(|face| !face.cells.iter().all(|cell| solid.contains(cell)));
+        for &Cut { axis, number, cells, open, .. } in &cut {
+            let above = grid.cell(cells[1])[axis];
+            let weight = open * metrics.of(Some(axis), axis).inv_volume[GHOSTS + above];
+            passages[axis][number] = Passage { cells, weight };
+        }
+        cut.retain(|face| face.open < 1.0 && !face.cells.iter().all(|cell| solid.contains(cell)));
         let roots = Roots::new(&cut, &solid, grid, metrics, boundaries);
         // A region that hangs on a closed face sees through it what is behind.
         let mut closed: BTreeMap<usize, Vec<(usize, f64)>> = BTreeMap::new();
@@ -82,13 +103,15 @@ impl Regions {
         let cells = cells.collect();
         let mut solid: Vec<usize> = solid.into_iter().collect();
         solid.sort_unstable();
-        Self { cells, orphans, solid, floating: roots.floating.is_some() }
+        Self { cells, orphans, solid, floating: roots.floating.is_some(), passages }
     }
 }
 
 /// A face that is not wholly open.
 struct Cut {
     axis: usize,
+    /// Its place among the faces of that component.
+    number: usize,
     /// Dense numbers of the cells below and above.
     cells: [usize; 2],
     open: f64,
@@ -129,7 +152,7 @@ fn orphans<const D: usize>(
     cuts: &CutWalls,
     grid: &CartesianGrid<D>,
     metrics: &Metrics<D>,
-    cut: &mut Vec<Cut>,
+    cut: &mut [Cut],
 ) -> Vec<Orphan> {
     let solid: [HashSet<usize>; D] =
         std::array::from_fn(|c| cuts.components[c].solid.iter().map(|point| point.index).collect());
@@ -164,7 +187,6 @@ fn orphans<const D: usize>(
         let factor = |cell: &usize| widest.get(cell).map_or(1.0, |widest| 1.0 / widest);
         face.open *= face.cells.iter().map(factor).fold(1.0, f64::max);
     }
-    cut.retain(|face| face.open < 1.0);
     let mean = |(cell, mut neighbours): (usize, Vec<(usize, f64)>)| {
         let sum: f64 = neighbours.iter().map(|n| n.1).sum();
         neighbours.iter_mut().for_each(|n| n.1 /= sum);

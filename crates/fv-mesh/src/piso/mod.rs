@@ -15,7 +15,9 @@ use crate::momentum_matrix::{self as momentum, Equation, Implicit, MomentumEquat
 use crate::per_dimension::per_dimension;
 use crate::poisson::PoissonError;
 use crate::simple::PressureCorrection;
-use crate::{CartesianGrid, Convection, Field, FlowError, Fluid, ImmersedForcing, Side, walls};
+use crate::{
+    CartesianGrid, Convection, Field, FlowError, FlowStatistics, Fluid, ImmersedForcing, Side, walls,
+};
 use interfaces::Vector;
 
 /// A step may be at most so many times longer than the last for BDF2 to look back: it is stable up to 1 + √2.
@@ -376,6 +378,10 @@ impl<const D: usize> Piso<D> {
         self.wall_impulse
     }
 
+    /// Sums and extremes of the velocity, as it is now.
+    pub fn statistics(&mut self) -> FlowStatistics {
+        self.state.statistics()
+    }
     show_state!();
     show_clock!();
 }

@@ -1,9 +1,9 @@
 //! Immersed walls in a flow.
 use super::Projection;
-use crate::FlowError;
 use crate::cut::{Walls, check};
 use crate::flow_state::FlowState;
 use crate::per_dimension::per_dimension;
+use crate::{FlowError, FlowStatistics};
 use interfaces::{CutWalls, Wrench};
 
 impl<const D: usize> Projection<D> {
@@ -44,13 +44,26 @@ impl<const D: usize> Projection<D> {
                 *walls = Some(Box::new(made));
             }
         }
-        if let Some(walls) = &self.walls {
+        if let Some(walls) = &mut self.walls {
+            walls.projected = None;
             walls.start(&mut velocity.components, pressure);
         }
         self.state.fill_velocity();
         self.state.fill_pressure();
         self.state.measure_rates();
         Ok(())
+    }
+
+    /// Sums and extremes of the velocity, as it is now. With immersed walls ∇·u is that of the fluxes through the open parts of the faces, of which
+    /// the last projection made the flow free.
+    pub fn statistics(&mut self) -> FlowStatistics {
+        match &self.walls {
+            None => self.state.statistics(),
+            Some(walls) => self.state.statistics_of_fluxes(|state| {
+                walls.show_conserved(&self.phi, &mut state.velocity.components);
+                state.fill_velocity();
+            }),
+        }
     }
 
     /// Impulse of the fluid on each body of the walls in the last step \[N s, N m s\], about the body's centre of mass.

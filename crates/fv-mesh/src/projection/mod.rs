@@ -159,6 +159,9 @@ impl<const D: usize> Projection<D> {
         self.state.set_velocity(u);
         // The last tendency and pressure belong to another flow.
         self.state.last_dt = 0.0;
+        if let Some(walls) = &mut self.walls {
+            walls.projected = None;
+        }
     }
 
     /// First half of a step: the velocity becomes u*, under the body force `force` per mass
@@ -323,6 +326,7 @@ impl<const D: usize> Projection<D> {
             None => kernels::add_dense(grid, &self.phi, pressure),
         }
         if let Some(walls) = &mut self.walls {
+            walls.projected = Some(answer);
             walls.hold_solid(fluid.density, velocity);
             walls.pressure.smooth_orphans(pressure);
         }

@@ -4,7 +4,7 @@ use super::walls::{SimpleWalls, WallStress};
 use crate::boundary::Boundaries;
 use crate::flow_state::FlowState;
 use crate::spans::Spans;
-use crate::{Field, FlowError, Modelled};
+use crate::{Field, FlowError, FlowStatistics, Modelled};
 use interfaces::{Closure, CutCells, Vector, Wrench};
 
 impl<const D: usize> Simple<D> {
@@ -14,6 +14,16 @@ impl<const D: usize> Simple<D> {
         match (&mut self.energy, k) {
             (Some(own), Some(k)) => own.data_mut().copy_from_slice(k.data()),
             (own, k) => *own = k.cloned(),
+        }
+    }
+
+    /// Sums and extremes of the velocity, as it is now. With immersed walls ∇·u is that of the fluxes through the open parts of the faces.
+    pub fn statistics(&mut self) -> FlowStatistics {
+        match &self.walls {
+            None => self.state.statistics(),
+            Some(walls) => {
+                self.state.statistics_of_fluxes(|state| walls.show_fluxes(&mut state.velocity.components))
+            }
         }
     }
 

@@ -318,6 +318,26 @@ pub enum DemError {
         /// The step \[s\].
         dt: f64,
     },
+    /// There is no wall of this number.
+    #[error(
+        "there is no wall {wall}: the numbers of the {walls} walls go from 0, in the order in which they were added"
+    )]
+    NoSuchWall {
+        /// The number.
+        wall: usize,
+        /// How many there are.
+        walls: usize,
+    },
+    /// A wall's surface can slide only.
+    #[error("the surface of wall {wall} cannot move with ({:e}, {:e}, {:e}) m/s: its normal is ({:.6}, {:.6}, {:.6}), and walls keep their place; give a finite velocity along the plane, or take a body that cannot be moved (Freedom::NONE) and moves", velocity[0], velocity[1], velocity[2], normal[0], normal[1], normal[2])]
+    WallVelocity {
+        /// Number of the wall.
+        wall: usize,
+        /// The velocity \[m/s\].
+        velocity: [f64; 3],
+        /// The wall's normal.
+        normal: [f64; 3],
+    },
     /// There is no body of this number.
     #[error("there is no body {}: the numbers of the {bodies} bodies go from 0, and change when bodies are taken away", body.0)]
     NoSuchBody {

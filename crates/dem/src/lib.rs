@@ -51,7 +51,9 @@ pub use overlap::FacetIndex;
 pub use overlap::{BoxKind, CellOverlap, Normal, Overlap, OverlapSolver, Refinement, Route, SubBox, overlap};
 #[cfg(feature = "placing")]
 pub use population::{Entrant, Inflow, Origin, Population};
-pub use rigid_bodies::{Contact, Partner, RigidBodies, Sleep, Tether};
+pub use rigid_bodies::{
+    Contact, DEEP, Depth, Partner, RestingDepth, RigidBodies, Sleep, Tether, resting_depth,
+};
 pub use rigid_dynamics::RigidDynamics;
 #[cfg(feature = "mesh")]
 pub use shapes::{AdmissionReport, MeshError, Shell, Thinnest, TriangleMesh, TriangleSoup};

@@ -3,16 +3,20 @@ mod advance;
 mod body;
 mod checkpoint;
 mod contacts;
+mod depth;
 mod film;
 mod meeting;
 mod near;
 mod push;
 mod removal;
 mod sleep;
+mod surfaces;
 mod sweep;
 mod tether;
 mod time_step;
 mod turning;
+
+pub use depth::{DEEP, Depth, RestingDepth, resting_depth};
 
 use crate::broad_phase::{NearPair, PairList};
 use crate::contact::{Chen, ContactLaw, Potential};
@@ -27,6 +31,7 @@ use near::Listed;
 pub use sleep::Sleep;
 use sleep::Sleepers;
 use std::sync::Arc;
+use surfaces::Surfaces;
 use sweep::Felt;
 pub use tether::Tether;
 
@@ -67,6 +72,9 @@ pub struct RigidBodies<L: ContactLaw = Chen> {
     chunks: Vec<Chunk<L::Memory>>,
     carried: Vec<(NearPair, Patch<L::Memory>)>,
     sleepers: Sleepers<L::Memory>,
+    surfaces: Surfaces,
+    /// Whether any surface slides.
+    any_slides: bool,
     /// One per body, or none at all.
     tethers: Vec<Option<Tether>>,
     contact_time: f64,
@@ -92,6 +100,8 @@ pub struct Contact {
     pub partner: Partner,
     /// Volume that both share \[m³\].
     pub volume: f64,
+    /// Area of the patch, |∂V/∂x| \[m²\].
+    pub area: f64,
     /// Its centroid, next to `body` \[m\].
     pub point: Point,
     /// The way the overlap pushes `body`, of unit length.
@@ -154,6 +164,8 @@ impl<L: ContactLaw> RigidBodies<L> {
             chunks: Vec::new(),
             carried: Vec::new(),
             sleepers: Sleepers::default(),
+            surfaces: Surfaces::default(),
+            any_slides: false,
             tethers: Vec::new(),
             contact_time: 0.0,
             overlap_calls: 0,
@@ -240,7 +252,8 @@ impl<L: ContactLaw> RigidBodies<L> {
         Ok(body)
     }
 
-    /// Adds a plane wall of `material` (its density does not matter: walls do not move).
+    /// Adds a plane wall of `material` (its density does not matter: walls keep their place). Its surface may
+    /// [move](Self::set_wall_velocity).
     ///
     /// # Errors
     /// [`DemError::Material`].
@@ -324,8 +337,8 @@ impl<L: ContactLaw> RigidBodies<L> {
         let awake = self.chunks.iter().flat_map(|c| &c.patches).map(|p| (self.near[p.near as usize], p));
         awake.chain(self.sleepers.kept()).map(|(pair, p)| {
             let (body, partner) = (BodyId(pair.a as usize), self.view().partner(&pair));
-            let Patch { volume, point, normal, force, couple, .. } = *p;
-            Contact { body, partner, volume, point, normal, force, couple }
+            let Patch { volume, area, point, normal, force, couple, .. } = *p;
+            Contact { body, partner, volume, area, point, normal, force, couple }
         })
     }
     /// Seconds so far in which anything touched anything.
@@ -403,6 +416,9 @@ impl<L: ContactLaw> Kinematics for RigidBodies<L> {
     }
     fn twist(&self, b: BodyId) -> Twist {
         self.bodies[b.0].twist
+    }
+    fn surface_motion(&self, b: BodyId, arm: Vector) -> Option<Vector> {
+        self.surfaces.body(b.0, arm)
     }
 }
 

@@ -44,7 +44,8 @@ pub trait Kinematics: Sync {
     /// How body `b` moves.
     fn twist(&self, b: BodyId) -> Twist;
     /// What the surface of body `b` does besides, at `arm` from its centre of mass, in the world: it slides, or blows and sucks (in a
-    /// box without outlet as much as it sucks). It is asked for on the surface and up to two cells from it. `None` (the
+    /// box without outlet as much as it sucks). Contacts take the part along the surface of what `dem::RigidBodies` is given
+    /// (`set_surface_motion`). It is asked for on the surface and up to two cells from it. `None` (the
     /// default), everywhere, if it only moves with the body \[m/s\].
     fn surface_motion(&self, b: BodyId, arm: Vector) -> Option<Vector> {
         let _ = (b, arm);

@@ -174,8 +174,9 @@ impl Setup {
             bodies.set_gravity(self.gravity);
         }
         let Bodies { list, inflows, exits, walls, wall_material, overlaps, .. } = &self.bodies;
-        for wall in walls {
-            bodies.add_wall(*wall, *wall_material)?;
+        for (number, wall) in walls.iter().enumerate() {
+            bodies.add_wall(wall.plane, *wall_material)?;
+            bodies.set_wall_velocity(number, wall.velocity)?;
         }
         let mut scripts = Vec::new();
         for (number, body) in list.iter().enumerate() {

@@ -108,6 +108,9 @@ impl<L: ContactLaw> Kinematics for Cast<L> {
     fn twist(&self, b: BodyId) -> Twist {
         self.bodies.twist(b)
     }
+    fn surface_motion(&self, b: BodyId, arm: Vector) -> Option<Vector> {
+        self.bodies.surface_motion(b, arm)
+    }
 }
 
 impl<L: ContactLaw> Bodies for Cast<L> {

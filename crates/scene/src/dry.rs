@@ -5,7 +5,7 @@ use crate::setup::Setup;
 use crate::view::View;
 use crate::watch::Solids;
 use coupling::{Evolving, Grains, StepInfo, Timings};
-use dem::{ContactLaw, Population, RigidDynamics};
+use dem::{ContactLaw, Depth, Population, RigidDynamics};
 use fv_mesh::Axis;
 use interfaces::{Bodies, BodyId, Checkpoint, Dynamics, Kinematics, Lattice, Wrench};
 use std::io::{self, Write};
@@ -82,6 +82,9 @@ where
     }
     fn contacts(&self) -> usize {
         self.grains.bodies.rigid_bodies().n_contacts()
+    }
+    fn deepest(&self) -> Option<Depth> {
+        self.grains.bodies.rigid_bodies().deepest()
     }
     fn turnover(&self) -> [u64; 2] {
         self.grains.bodies.turnover()

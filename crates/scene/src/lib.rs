@@ -33,6 +33,7 @@
 mod build;
 mod build_error;
 mod cast;
+mod deepest;
 mod document;
 mod dry;
 mod expression;

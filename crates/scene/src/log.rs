@@ -28,3 +28,13 @@ impl Log {
             .map_err(output("writing", &self.path))
     }
 }
+
+/// A warning, in the log and, unless `quiet`, on the terminal.
+pub(crate) fn warn(log: &mut Log, warning: &str, quiet: bool) -> Result<(), CouplingError> {
+    log.line(&format!("warning: {warning}"))?;
+    if !quiet {
+        // Nobody may be reading.
+        let _ = writeln!(std::io::stderr(), "warning: {warning}");
+    }
+    Ok(())
+}

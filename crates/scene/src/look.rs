@@ -1,5 +1,6 @@
 //! The observer of the time loop, and what is saved.
-use crate::log::Log;
+use crate::deepest::Deepest;
+use crate::log::{Log, warn};
 use crate::setup::Setup;
 use crate::view::{Flow, Guests, Seen, View};
 use crate::watch::{Audience, output};
@@ -50,13 +51,17 @@ impl<S> Books<S> for () {
     }
 }
 
-/// Shortest and longest step, largest Courant number.
+/// The most that there was in a run.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Extremes(pub(crate) [f64; 3]);
+pub(crate) struct Extremes {
+    /// Shortest and longest step, largest Courant number.
+    pub(crate) steps: [f64; 3],
+    pub(crate) deepest: Deepest,
+}
 
 impl Default for Extremes {
     fn default() -> Self {
-        Self([f64::INFINITY, 0.0, 0.0])
+        Self { steps: [f64::INFINITY, 0.0, 0.0], deepest: Deepest::default() }
     }
 }
 
@@ -78,7 +83,8 @@ fn halves(n: u64) -> [f64; 2] {
 impl<S: Checkpoint, K: Checkpoint> Checkpoint for Whole<'_, S, K> {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         sink("scene", &halves(self.fingerprint));
-        sink("extremes", &self.extremes.0);
+        sink("extremes", &self.extremes.steps);
+        self.extremes.deepest.save(sink);
         self.simulation.save(sink);
         self.books.save(&mut |name, values| sink(&format!("books.{name}"), values));
         if let Some(audience) = self.audience {
@@ -89,7 +95,8 @@ impl<S: Checkpoint, K: Checkpoint> Checkpoint for Whole<'_, S, K> {
         if RestartError::take(source, "scene", 2)? != halves(self.fingerprint) {
             return Err(RestartError::Differs("the scene".into()));
         }
-        RestartError::fill(source, "extremes", &mut self.extremes.0)?;
+        RestartError::fill(source, "extremes", &mut self.extremes.steps)?;
+        self.extremes.deepest = Deepest::restore(source)?;
         self.simulation.restore(source)?;
         self.books.restore(&|name| source(&format!("books.{name}")))
     }
@@ -155,14 +162,18 @@ impl<S: Show, K: Books<S>> Observer<S> for Look<'_, K> {
         let start = Instant::now();
         self.books.step(simulation, info)?;
         self.ledger += start.elapsed().as_secs_f64();
-        let [low, high, courant] = self.extremes.0;
-        self.extremes.0 = [low.min(info.dt), high.max(info.dt), courant.max(info.courant)];
+        let [low, high, courant] = self.extremes.steps;
+        self.extremes.steps = [low.min(info.dt), high.max(info.dt), courant.max(info.courant)];
         let mut seen = simulation.see(self.setup);
         self.audience.step(&mut seen, info)?;
+        let deep = self.extremes.deepest.look(&seen, info);
         if let Some(progress) = &mut self.progress {
             progress.tell(info.step, info.time, || seen.status(info));
         }
         drop(seen);
+        if deep && let Some(warning) = self.extremes.deepest.warning(self.setup) {
+            warn(&mut self.log, &warning, self.progress.is_none())?;
+        }
         if info.snapshot.is_none() {
             self.save_if_due(simulation)?;
         }

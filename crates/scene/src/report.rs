@@ -118,6 +118,9 @@ impl RunResult {
                 out += &format!("  warning: {warning}\n");
             }
         }
+        if let Some(warning) = r["deepest_overlap"]["warning"].as_str() {
+            out += &format!("  warning: {warning}\n");
+        }
         if let Some(l) = r.get("ledger") {
             let of = |key: &str| shown(&l[key], |x| format!("{x:.2e}"));
             out += &format!(

@@ -72,7 +72,7 @@ impl RunResult {
     ) -> Self {
         let flow = view.statistics();
         let dim = view.dim();
-        let [shortest, longest, courant] = extremes.0;
+        let [shortest, longest, courant] = extremes.steps;
         let mut result = json!({
             "scene": setup.name,
             "title": setup.title,
@@ -140,6 +140,9 @@ impl RunResult {
             result["bodies"] = json!(bodies);
             result["contacts"] = json!(view.contacts());
             result["turnover"] = json!({ "entered": entered, "left": left });
+            if let Some(deep) = extremes.deepest.result(setup) {
+                result["deepest_overlap"] = deep;
+            }
         }
         for watch in &audience.watches {
             if let Some(value) = watch.results() {

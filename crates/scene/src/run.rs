@@ -1,7 +1,7 @@
 //! Runs a scene.
 use crate::build_error::BuildError;
 use crate::cast::Cast;
-use crate::log::Log;
+use crate::log::{Log, warn};
 use crate::look::{Books, Extremes, Kept, Look, Show, Whole};
 use crate::options::Options;
 use crate::physics::Physics;
@@ -21,7 +21,6 @@ use example_support::cpu::Stopwatch;
 use example_support::progress::Progress;
 use ibm::Forcing;
 use interfaces::{Checkpoint, RestartError};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -246,11 +245,7 @@ impl Stage<'_> {
     /// Tells what looks doubtful.
     pub(crate) fn warn(&self, log: &mut Log) -> Result<(), CouplingError> {
         for warning in self.warnings {
-            log.line(&format!("warning: {warning}"))?;
-            if !self.options.quiet {
-                // Nobody may be reading.
-                let _ = writeln!(std::io::stderr(), "warning: {warning}");
-            }
+            warn(log, warning, self.options.quiet)?;
         }
         Ok(())
     }

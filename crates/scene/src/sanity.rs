@@ -1,4 +1,5 @@
 //! What looks doubtful about a scene.
+mod contacts;
 mod exits;
 
 use crate::setup::{Algorithm, BodySetup, Setup, is_open};
@@ -150,6 +151,7 @@ impl Setup {
     pub(crate) fn warnings(&self) -> Vec<String> {
         let mut out = Vec::new();
         self.doubt_measures(&mut out);
+        self.doubt_contacts(&mut out);
         if self.fluid.is_some() {
             self.doubt_cells(&mut out);
             self.doubt_speeds(&mut out);

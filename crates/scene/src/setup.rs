@@ -11,7 +11,9 @@ mod shapes;
 mod sides;
 mod time;
 
-pub(crate) use bodies::{Bodies, BodySetup, ContactLawChoice, ForcingChoice, Motion, StrategyChoice};
+pub(crate) use bodies::{
+    Bodies, BodySetup, ContactLawChoice, ForcingChoice, Motion, StrategyChoice, WallSetup,
+};
 pub(crate) use factories::InflowSetup;
 pub(crate) use flow::{Algorithm, FlowSetup};
 pub(crate) use measures::{Averages, Forces, Images, Output, ProbeSetup, Quantity, Reference};

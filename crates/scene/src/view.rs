@@ -5,7 +5,7 @@ use crate::steady::Steady;
 use crate::still::Still;
 use crate::watch::Solids;
 use coupling::{Particles, StepInfo, Strategy, Timings};
-use dem::{ContactLaw, Population, RigidDynamics};
+use dem::{ContactLaw, Depth, Population, RigidDynamics};
 use example_support::progress::Status;
 use fv_mesh::{
     Axis, CartesianGrid, CellWriter, Field, FlowStatistics, Hooked, OutputError, SampleError, Sampler, Sides,
@@ -91,6 +91,8 @@ pub(crate) trait View {
     /// Loads of fluid (without buoyancy) and contacts over the last step of length `dt`.
     fn loads(&self, b: BodyId, dt: f64) -> [Wrench; 2];
     fn contacts(&self) -> usize;
+    /// The deepest overlap of the last step.
+    fn deepest(&self) -> Option<Depth>;
     /// Bodies that came in and that left so far.
     fn turnover(&self) -> [u64; 2];
     /// Writes the bodies for ParaView; `false` if there are none to write.
@@ -245,6 +247,7 @@ pub(crate) trait Guests {
     fn serial(&self, b: BodyId) -> u64;
     fn loads(&self, b: BodyId, dt: f64, walls: &[Wrench]) -> [Wrench; 2];
     fn contacts(&self) -> usize;
+    fn deepest(&self) -> Option<Depth>;
     fn turnover(&self) -> [u64; 2];
     fn write(&self, corner: Point, out: &mut dyn Write) -> io::Result<bool>;
 }
@@ -262,6 +265,9 @@ impl Guests for Still {
     }
     fn contacts(&self) -> usize {
         0
+    }
+    fn deepest(&self) -> Option<Depth> {
+        None
     }
     fn turnover(&self) -> [u64; 2] {
         [0; 2]
@@ -287,6 +293,9 @@ where
     }
     fn contacts(&self) -> usize {
         self.bodies.rigid_bodies().n_contacts()
+    }
+    fn deepest(&self) -> Option<Depth> {
+        self.bodies.rigid_bodies().deepest()
     }
     fn turnover(&self) -> [u64; 2] {
         self.bodies.turnover()
@@ -393,6 +402,9 @@ impl<const D: usize, A: Flow<D>, P: Guests> View for Seen<'_, D, A, P> {
     }
     fn contacts(&self) -> usize {
         self.guests.contacts()
+    }
+    fn deepest(&self) -> Option<Depth> {
+        self.guests.deepest()
     }
     fn turnover(&self) -> [u64; 2] {
         self.guests.turnover()

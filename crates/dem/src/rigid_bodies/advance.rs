@@ -21,6 +21,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             n_materials: self.materials.len(),
             periods: self.periods,
             last_step: self.last_step,
+            surfaces: self.any_slides.then_some(&self.surfaces),
         }
     }
 

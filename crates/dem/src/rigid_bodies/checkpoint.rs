@@ -9,7 +9,7 @@ use interfaces::{Checkpoint, Load, Point, RestartError, Rotation, Vector, Wrench
 
 /// Saved numbers per body, and per touching patch besides what the law keeps.
 const BODY: usize = 38;
-const PATCH: usize = 18;
+const PATCH: usize = 19;
 
 /// Poses, twists, loads, contact impulses and what the contact law keeps of touching patches. Shapes, materials, walls and gravity are not saved:
 /// the run that restores has to set up the same ones.
@@ -44,7 +44,7 @@ impl<L: ContactLaw> Checkpoint for RigidBodies<L> {
         for (pair, patch) in awake.chain(self.sleepers.kept()) {
             values.extend([f64::from(pair.a), f64::from(pair.b)]);
             values.extend(pair.image.map(f64::from));
-            values.push(patch.volume);
+            values.extend([patch.volume, patch.area]);
             for v in [patch.point.coords, patch.normal, patch.force, patch.couple] {
                 values.extend_from_slice(v.as_slice());
             }
@@ -112,10 +112,11 @@ impl<L: ContactLaw> Checkpoint for RigidBodies<L> {
         for v in patches.chunks_exact(size) {
             let wanted = key(v[0] as u32, v[1] as u32, [v[2] as i32, v[3] as i32, v[4] as i32]);
             let at = self.near.binary_search_by_key(&wanted, |p| key(p.a, p.b, p.image));
-            let vector = |i: usize| Vector::new(v[6 + 3 * i], v[7 + 3 * i], v[8 + 3 * i]);
+            let vector = |i: usize| Vector::new(v[7 + 3 * i], v[8 + 3 * i], v[9 + 3 * i]);
             let patch = Patch {
                 near: at.unwrap_or_default() as u32,
                 volume: v[5],
+                area: v[6],
                 point: Point::from(vector(0)),
                 normal: vector(1),
                 force: vector(2),

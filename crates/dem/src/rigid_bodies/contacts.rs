@@ -4,6 +4,7 @@ use super::body::{Body, Constants, Loads};
 use super::film::Film;
 use super::meeting::Other;
 use super::push::larger;
+use super::surfaces::Surfaces;
 use crate::broad_phase::NearPair;
 use crate::contact::{ContactLaw, Push};
 use crate::overlap::closed;
@@ -19,6 +20,7 @@ pub(super) struct Patch<M> {
     /// Number of the pair in the list of near ones.
     pub(super) near: u32,
     pub(super) volume: f64,
+    pub(super) area: f64,
     pub(super) point: Point,
     pub(super) normal: Vector,
     pub(super) force: Vector,
@@ -35,10 +37,11 @@ pub(super) struct Record<'a, M> {
 
 impl<M> Record<'_, M> {
     #[inline(always)]
-    pub(super) fn add(&mut self, overlap: &Overlap, push: &Push, memory: M) {
+    pub(super) fn add(&mut self, overlap: &Overlap, area: f64, push: &Push, memory: M) {
         let Overlap { volume, centroid, normal, .. } = *overlap;
+        let near = self.near;
         let Push { force, couple, .. } = *push;
-        self.patches.push(Patch { near: self.near, volume, point: centroid, normal, force, couple, memory });
+        self.patches.push(Patch { near, volume, area, point: centroid, normal, force, couple, memory });
     }
 }
 
@@ -111,6 +114,8 @@ pub(super) struct View<'a, L> {
     pub(super) periods: Periods,
     /// Length of the last sub-step \[s\].
     pub(super) last_step: f64,
+    /// Surfaces that slide, if any do.
+    pub(super) surfaces: Option<&'a Surfaces>,
 }
 
 impl<L: ContactLaw> View<'_, L> {

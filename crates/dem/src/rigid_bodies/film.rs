@@ -45,6 +45,9 @@ impl<L: ContactLaw> View<'_, L> {
             velocity -= b.twist.at(at - at_b);
             spin -= b.twist.angular;
         }
+        if let Some(surfaces) = self.surfaces {
+            velocity += surfaces.slip(meeting, at, normal);
+        }
         let wall = matches!(meeting.other, Other::Wall(_));
         let film = Gap { distance: gap, normal, velocity, spin, radius, curvatures, wall };
         let FilmForce { force, couple, resistance } = self.law.across(&film);

@@ -47,6 +47,10 @@ impl<L: ContactLaw> View<'_, L> {
             }
         };
         let inverse = a.inverse_mass + inverse_b;
+        let velocity = match self.surfaces {
+            Some(surfaces) => velocity + surfaces.slip(meeting, overlap.centroid, normal),
+            None => velocity,
+        };
         let touch = Touch {
             overlap,
             area,
@@ -71,7 +75,7 @@ impl<L: ContactLaw> View<'_, L> {
             Other::Body(..) => Wrench { force: -push.force, torque: -push.couple - torque * arms[1] },
             Other::Wall(_) => Wrench::default(),
         };
-        record.add(overlap, &push, memory);
+        record.add(overlap, area, &push, memory);
         Ok((push.stiffness, [on_a, on_b]))
     }
 
@@ -103,7 +107,7 @@ impl<L: ContactLaw> View<'_, L> {
             }
             let (push, memory) = self.push_patch(meeting, overlap, volume, before, dt);
             stiffest = larger(push.stiffness, stiffest);
-            record.add(overlap, &push, memory);
+            record.add(overlap, overlap.area(), &push, memory);
         }
         Ok(stiffest)
     }
@@ -161,6 +165,9 @@ impl<L: ContactLaw> View<'_, L> {
             Other::Wall(w) => w.material,
         };
         touch.rate = overlap.rate(touch.velocity, touch.spin);
+        if let Some(surfaces) = self.surfaces {
+            touch.velocity += surfaces.slip(meeting, overlap.centroid, overlap.normal);
+        }
         touch.inverse_masses = meeting.inverse_masses(inverse_b);
         if L::MOBILITY {
             touch.mobility = area * area * (a.inverse_mass + inverse_b) + turns;
@@ -195,8 +202,7 @@ impl<L: ContactLaw> View<'_, L> {
 fn pivot(meeting: &Meeting<'_>, overlap: &Overlap, spin: Vector) -> Pivot {
     let moment = overlap.pivot * spin;
     let square = spin.dot(&moment);
-    // Also where it is not a number.
-    if !(square > 0.0) {
+    if square <= 0.0 || square.is_nan() {
         return Pivot::default();
     }
     let turns =

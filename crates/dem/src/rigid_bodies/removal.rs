@@ -31,6 +31,7 @@ impl<L: ContactLaw> RigidBodies<L> {
         numbers.apply(&mut self.contact);
         numbers.apply(&mut self.impulse);
         numbers.apply(&mut self.tethers);
+        self.surfaces.renumber(&numbers);
         self.loads.renumber(&numbers);
         self.sleepers.renumber(&numbers);
         self.listed.clear();

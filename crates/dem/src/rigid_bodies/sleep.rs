@@ -1,7 +1,7 @@
 //! Bodies that lie still are left alone.
 use super::RigidBodies;
 use super::body::{Body, Constants};
-use super::contacts::{CHUNK, Chunk, Patch};
+use super::contacts::{CHUNK, Chunk, Patch, wall_of};
 use super::near::Listed;
 use crate::DemError;
 use crate::broad_phase::NearPair;
@@ -211,6 +211,14 @@ impl<L: ContactLaw> RigidBodies<L> {
         for patch in self.chunks.iter().flat_map(|c| &c.patches) {
             let NearPair { a, b, .. } = self.near[patch.near as usize];
             let (i, j) = (a as usize, b as usize);
+            // On a belt friction goes on.
+            let wall = (j >= n).then(|| wall_of(b));
+            if self.any_slides && self.surfaces.slides(i, j, wall) {
+                may[i] = false;
+                if j < n {
+                    may[j] = false;
+                }
+            }
             // Who cannot be moved holds nobody together, but keeps awake while it moves.
             for (one, other) in [(i, j), (j, i)] {
                 if other < n && one < n && !self.constants[other].movable() && !self.lies(other) {

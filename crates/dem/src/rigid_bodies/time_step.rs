@@ -1,10 +1,9 @@
 //! How long a sub-step may be.
 use super::RigidBodies;
 use super::body::{Constants, Kind};
-use crate::contact::{ContactLaw, LEAST_STEPS, Pivot, Push, Touch};
-use crate::overlap::Overlap;
+use super::depth::Geometry;
+use crate::contact::{ContactLaw, LEAST_STEPS};
 use crate::{DemError, PairProperties};
-use interfaces::{Point, Vector};
 use std::f64::consts::PI;
 
 /// Sub-steps per half period of the stiffest contact foreseen.
@@ -52,38 +51,12 @@ impl<L: ContactLaw> RigidBodies<L> {
         } else {
             (PI * chord * chord, PI * depth * depth * r)
         };
-        let least_mass = 1.0 / c.inertia.mass;
-        let of = |area: f64, volume: f64, arm: f64, face: f64| {
-            let overlap = Overlap {
-                volume,
-                centroid: Point::origin(),
-                normal: Vector::x(),
-                gradient: -area * Vector::x(),
-                moment: Vector::zeros(),
-                pivot: nalgebra::Matrix3::zeros(),
-            };
-            let touch = Touch {
-                overlap: &overlap,
-                area,
-                volume,
-                rate: 0.0,
-                velocity: Vector::zeros(),
-                spin: Vector::zeros(),
-                inverse_masses: [least_mass, if wall { 0.0 } else { least_mass }],
-                arms: [arm, if wall { f64::INFINITY } else { arm }],
-                sizes: [r, if wall { f64::INFINITY } else { r }],
-                mobility: area * area * least_mass * if wall { 1.0 } else { 2.0 },
-                pivot: Pivot::default(),
-                face,
-                plane,
-                dt: f64::MIN_POSITIVE,
-                since: 0.0,
-            };
-            let Push { stiffness, .. } = self.law.push(properties, &touch, &mut L::Memory::default());
-            PI / (stiffness * (touch.inverse_masses[0] + touch.inverse_masses[1])).sqrt()
+        let of = |patch: [f64; 4]| {
+            let (push, masses) = Geometry::new(c, patch, [plane, wall]).push(&self.law, properties);
+            PI / (push.stiffness * (masses[0] + masses[1])).sqrt()
         };
-        let cap = of(area, volume, r, 0.0);
-        if c.flat > area { cap.min(of(c.flat, c.flat * depth, c.inner, c.flat)) } else { cap }
+        let cap = of([area, volume, r, 0.0]);
+        if c.flat > area { cap.min(of([c.flat, c.flat * depth, c.inner, c.flat])) } else { cap }
     }
 
     /// The longest sub-step as things stand: what was foreseen, what the stiffest contact asks for, and what keeps bodies from

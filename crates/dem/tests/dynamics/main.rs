@@ -1,7 +1,9 @@
 //! Contacts and motion against closed forms; what the files share.
 mod absent;
 mod bad_input;
+mod belts;
 mod collisions;
+mod depth;
 mod film;
 mod friction;
 mod many;

@@ -11,7 +11,20 @@ const PLANE_NORMAL: Key = required(
 
 pub(super) static EXIT: Table = Table { about: "A half-space.", keys: &[PLANE_POINT, PLANE_NORMAL] };
 
-static PLANE: Table = Table { about: "All behind a plane, solid.", keys: &[PLANE_POINT, PLANE_NORMAL] };
+static PLANE: Table = Table {
+    about: "All behind a plane, solid.",
+    keys: &[
+        PLANE_POINT,
+        PLANE_NORMAL,
+        optional(
+            "velocity",
+            Kind::List(&Kind::Number(Range::Any, "m/s"), 2, 3),
+            "at rest",
+            "Velocity of its surface in the plane: a belt.",
+            "[0.5, 0.0]",
+        ),
+    ],
+};
 
 static REPULSION: Table = Table {
     about: "A force F₀(1 − δ/ζ)² between bodies whose closest places are δ < ζ apart, and from walls (Glowinski et al. 1999).",

@@ -27,6 +27,16 @@ pub(crate) struct BodySetup {
     pub(crate) tether: Option<Tether>,
 }
 
+/// A plane that bodies touch.
+#[derive(Clone, Debug)]
+pub(crate) struct WallSetup {
+    /// The key that made it: `sides.y_min`, `contact.planes.0`.
+    pub(crate) name: String,
+    pub(crate) plane: HalfSpace,
+    /// Velocity of its surface in the plane \[m/s\].
+    pub(crate) velocity: Vector,
+}
+
 /// What moves a body.
 #[derive(Clone, Debug)]
 pub(crate) enum Motion {
@@ -52,8 +62,8 @@ pub(crate) struct Bodies {
     pub(crate) repulsion: Option<[f64; 2]>,
     /// May they overlap at the start?
     pub(crate) overlaps: bool,
-    /// Walls of the box that they touch, then planes.
-    pub(crate) walls: Vec<HalfSpace>,
+    /// Walls that they touch: sides of the box, then planes of their own.
+    pub(crate) walls: Vec<WallSetup>,
     /// Whether they touch walls of the box.
     pub(crate) touch_walls: bool,
     pub(crate) wall_material: Material,
@@ -143,7 +153,21 @@ pub(super) fn read(
     let exits = root.tables("exits").iter().map(half_space).collect::<Result<_, _>>()?;
     let contact = root.table("contact");
     let planes = contact.as_ref().map(|t| t.tables("planes")).unwrap_or_default();
-    let planes = planes.iter().map(half_space).collect::<Result<Vec<_>, _>>()?;
+    let planes = planes
+        .iter()
+        .enumerate()
+        .map(|(number, t)| {
+            let velocity = t.vector_of("velocity", context.dim)?.unwrap_or_default();
+            let plane = half_space(t)?;
+            if plane.normal().dot(&velocity).abs() > 1e-12 * velocity.norm() {
+                return Err(t.fail(
+                    "velocity",
+                    "a plane keeps its place and its surface slides only; give a velocity at a right angle to `normal`, or take a body with motion \"prescribed\"",
+                ));
+            }
+            Ok(WallSetup { name: format!("contact.planes.{number}"), plane, velocity })
+        })
+        .collect::<Result<Vec<_>, _>>()?;
     let word = |key: &str| contact.as_ref().and_then(|t| t.text(key));
     let first = list.first().map_or(materials.default, |b| b.material);
     let wall_material = match word("wall_material") {
@@ -260,14 +284,23 @@ fn bounds(axes: &[Axis]) -> Aabb {
 }
 
 /// The walls of the box, as bodies touch them: sides that are walls or planes of symmetry.
-fn walls(axes: &[Axis], sides: &[[Side; 2]]) -> Result<Vec<HalfSpace>, dem::DemError> {
+fn walls(axes: &[Axis], sides: &[[Side; 2]]) -> Result<Vec<WallSetup>, dem::DemError> {
     let mut out = Vec::new();
     for (a, (axis, pair)) in axes.iter().zip(sides).enumerate() {
-        for (side, (at, sign)) in pair.iter().zip([(axis.lower(), 1.0), (axis.upper(), -1.0)]) {
-            if matches!(side, Side::Wall(_) | Side::FreeSlip) {
+        let ends = [(axis.lower(), 1.0, "min"), (axis.upper(), -1.0, "max")];
+        for (side, (at, sign, end)) in pair.iter().zip(ends) {
+            let velocity = match side {
+                Side::Wall(u) => Some(Vector::from(*u)),
+                Side::FreeSlip => Some(Vector::zeros()),
+                _ => None,
+            };
+            if let Some(velocity) = velocity {
                 let (mut point, mut normal) = (Point::origin(), Vector::zeros());
                 (point[a], normal[a]) = (at, sign);
-                out.push(HalfSpace::new(point, normal)?);
+                // What leads out of the plane is an error of the sides.
+                let velocity = velocity - normal * normal.dot(&velocity);
+                let name = format!("sides.{}_{end}", ["x", "y", "z"][a]);
+                out.push(WallSetup { name, plane: HalfSpace::new(point, normal)?, velocity });
             }
         }
     }

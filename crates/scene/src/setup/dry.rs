@@ -35,14 +35,12 @@ pub(super) fn agrees(root: &Reader<'_>, setup: &Setup) -> Result<(), Problem> {
     }
     for (a, pair) in setup.sides.iter().enumerate() {
         for side in pair {
-            let known = match side {
-                Side::Wall(u) => *u == [0.0; 3],
-                side => matches!(side, Side::Periodic | Side::FreeSlip | Side::ConvectiveOutlet),
-            };
+            let known =
+                matches!(side, Side::Wall(_) | Side::Periodic | Side::FreeSlip | Side::ConvectiveOutlet);
             if !known {
                 let sides = root.table("sides").unwrap_or_else(|| root.clone());
                 let axis = ["x", "y", "z"][a];
-                return Err(sides.fail_here(format!("along {axis}: without `fluid` nothing enters or drives; take \"wall\" (at rest), \"symmetry\", \"periodic\", or \"outlet\" for a side that bodies may leave by")));
+                return Err(sides.fail_here(format!("along {axis}: without `fluid` nothing enters; take \"wall\", \"symmetry\", \"periodic\", or \"outlet\" for a side that bodies may leave by")));
             }
         }
     }

@@ -24,7 +24,6 @@ fn a_block_slides_without_a_fluid() {
         ("bodies.0.motion=\"fixed\"", "nothing happens"),
         ("output.fields=true", "no fields to write"),
         ("sides.x={type=\"inlet\", velocity=[1.0, 0.0]}", "along x: without `fluid` nothing enters"),
-        ("sides.y={type=\"wall\", velocity=[1.0, 0.0]}", "along y: without `fluid` nothing enters or drives"),
     ] {
         let found = problems(&text, more);
         assert!(found.contains(told), "{more}: {found}");

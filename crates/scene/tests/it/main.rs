@@ -1,4 +1,5 @@
 //! Scenes as their users have them: every file in `scenes/`, spoilt files, interrupted runs, folders that cannot be written to.
+mod contacts;
 mod dry;
 mod exits;
 mod files;
@@ -78,6 +79,12 @@ fn run(text: &str, more: &[&str], options: &Options) -> RunResult {
     let more: Vec<String> = more.iter().map(|s| (*s).into()).collect();
     let scene = Scene::parse("scene.toml", text, &more).unwrap();
     scene.run(options, &AtomicBool::new(false)).unwrap()
+}
+
+/// The plan of the scene in `text` with `more` set.
+fn plan(text: &str, more: &[&str]) -> scene::Plan {
+    let more: Vec<String> = more.iter().map(|s| (*s).into()).collect();
+    Scene::parse("scene.toml", text, &more).unwrap().plan().unwrap()
 }
 
 /// What is told of that scene with `more` set; nothing if it is right.

@@ -3,7 +3,6 @@ use clap::ValueEnum;
 use dem::{
     Chen, ContactLaw, DemError, Material, PairProperties, Potential, Push, RigidBodies, Rolling, Touch,
 };
-use interfaces::Vector;
 
 /// The bodies of all these examples.
 pub type Granulate = RigidBodies<Rolling<Law>>;
@@ -37,8 +36,9 @@ impl From<Ways> for Law {
 
 impl ContactLaw for Law {
     /// What each of them keeps.
-    type Memory = (Vector, <Potential as ContactLaw>::Memory);
+    type Memory = (<Chen as ContactLaw>::Memory, <Potential as ContactLaw>::Memory);
     const MOBILITY: bool = true;
+    const PIVOTS: bool = true;
 
     fn properties(&self, a: &Material, b: &Material) -> PairProperties {
         match self {

@@ -1,0 +1,117 @@
+//! What looks doubtful about contacts.
+use crate::setup::{BodySetup, ContactLawChoice, Motion, Setup, WallSetup};
+use dem::{ContactLaw, DEEP, RestingDepth, Rolling, resting_depth};
+use fv_mesh::Side;
+use interfaces::Vector;
+
+/// Share of the space that a pile of bodies fills: loose packings of spheres have 0.55 to 0.64.
+const PACKING: f64 = 0.6;
+
+/// A body that will rest on a wall.
+struct Rest<'a> {
+    body: &'a BodySetup,
+    wall: &'a WallSetup,
+    /// Layers of bodies on it, itself counted.
+    layers: f64,
+    depth: RestingDepth,
+}
+
+impl Setup {
+    pub(super) fn doubt_contacts(&self, out: &mut Vec<String>) {
+        let bodies = &self.bodies;
+        if bodies.law == ContactLawChoice::None {
+            if bodies.any_free() && !bodies.walls.is_empty() {
+                out.push(format!(
+                    "contact.law = \"none\": bodies pass through one another and through {}, and leave the box{}; take \"chen\" or \"potential\" to hold them, or give `exits` where they may go",
+                    bodies.walls.iter().map(|w| w.name.as_str()).collect::<Vec<_>>().join(", "),
+                    if self.fluid.is_some() { ", which ends the run" } else { "" },
+                ));
+            }
+            return;
+        }
+        for (a, pair) in self.sides.iter().enumerate().filter(|_| bodies.any_free()) {
+            for (side, end) in pair.iter().zip(["min", "max"]) {
+                if let Side::Patches(patches) = side
+                    && patches.iter().any(|p| matches!(p.side, Side::Wall(_)))
+                {
+                    let axis = ["x", "y", "z"][a];
+                    out.push(format!("sides.{axis}_{end} has parts, whose walls bodies do not touch; give contact.planes where they should"));
+                }
+            }
+        }
+        if let Some(Rest { body, wall, layers, depth }) = self.deepest_rest() {
+            let ratio = depth.depth / depth.radius;
+            if ratio > DEEP {
+                let pile = if layers > 1.0 {
+                    format!(" and that of a pile about {layers:.0} bodies high")
+                } else {
+                    String::new()
+                };
+                out.push(format!(
+                    "body {} will rest {} % of its radius (of a body as large) deep in {}, under its weight less buoyancy{pile}; contact laws are made for up to {:.0} %: give the materials of both a youngs_modulus of {:.2e} Pa or more",
+                    body.name,
+                    if ratio < 1.0 { format!("{:.0}", 100.0 * ratio) } else { "100 or more".into() },
+                    wall.name,
+                    100.0 * DEEP,
+                    depth.youngs_modulus,
+                ));
+            }
+        }
+    }
+
+    /// The body that weight or buoyancy presses into a wall deepest.
+    fn deepest_rest(&self) -> Option<Rest<'_>> {
+        match self.bodies.law {
+            _ if self.bodies.repulsion.is_some() => None,
+            ContactLawChoice::Chen => self.rest_by(&self.chen()),
+            ContactLawChoice::Potential => self.rest_by(&self.potential()),
+            ContactLawChoice::Rolling => self.rest_by(&Rolling(self.chen())),
+            ContactLawChoice::None => None,
+        }
+    }
+
+    fn rest_by<L: ContactLaw>(&self, law: &L) -> Option<Rest<'_>> {
+        let rests = self.bodies.list.iter().filter_map(|body| self.rest_of(law, body));
+        let ratio = |r: &Rest<'_>| r.depth.depth / r.depth.radius;
+        rests.max_by(|a, b| ratio(a).total_cmp(&ratio(b)))
+    }
+
+    fn rest_of<'a, L: ContactLaw>(&'a self, law: &L, body: &'a BodySetup) -> Option<Rest<'a>> {
+        let Motion::Free(freedom) = &body.motion else { return None };
+        let net = self.net_weight(body);
+        let free = |a: usize| freedom.linear[a] || net[a] == 0.0;
+        if body.tether.is_some() || !(0..3).all(free) {
+            return None;
+        }
+        // The wall that bears the most of it.
+        let pressed = |w: &WallSetup| -w.plane.normal().dot(&net);
+        let wall = self.bodies.walls.iter().max_by(|a, b| pressed(a).total_cmp(&pressed(b)))?;
+        let load = pressed(wall);
+        if load <= 1e-6 * net.norm() {
+            return None;
+        }
+        let layers = self.layers(body, &net);
+        let material = &self.bodies.wall_material;
+        let depth = resting_depth(law, body.shape.clone(), &body.material, material, load * layers)?;
+        Some(Rest { body, wall, layers, depth })
+    }
+
+    /// Weight less buoyancy \[N\]; in a plane scene per metre of depth.
+    fn net_weight(&self, body: &BodySetup) -> Vector {
+        let inertia = body.shape.inertia(body.material.density);
+        let displaced = self.fluid.map_or(0.0, |f| f.density * inertia.volume);
+        self.gravity * (inertia.mass - displaced)
+    }
+
+    /// How many bodies are on one another where all that are pressed the same way lie in a heap over the whole box.
+    fn layers(&self, body: &BodySetup, net: &Vector) -> f64 {
+        let down = net.iamax();
+        let across: f64 =
+            self.axes.iter().enumerate().filter(|(a, _)| *a != down).map(|(_, axis)| axis.length()).product();
+        let along = |b: &&BodySetup| matches!(b.motion, Motion::Free(_)) && self.net_weight(b).dot(net) > 0.0;
+        let volume: f64 = self.bodies.list.iter().filter(along).map(|b| b.shape.inertia(1.0).volume).sum();
+        let own = body.shape.inertia(1.0).volume;
+        let size = if self.dim() == 2 { own.sqrt() } else { own.cbrt() };
+        (volume / (PACKING * across * size)).max(1.0)
+    }
+}

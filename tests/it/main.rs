@@ -12,6 +12,7 @@ mod immersed_stress;
 mod meshes;
 mod moving;
 mod moving_walls;
+mod narrow_gaps;
 mod physics;
 mod plane_shapes;
 mod population;

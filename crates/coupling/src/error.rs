@@ -32,7 +32,7 @@ pub enum CouplingError {
     },
     /// A body does not fit into the box.
     #[error(
-        "body {} is {size:.3e} m long along axis {axis}, the box only {length:.3e} m: make the body smaller or the box larger", body.0
+        "body {} is {size:.3e} m long along axis {axis}, the box only {length:.3e} m (of a periodic axis, a cell more is possible): make the body smaller or the box larger", body.0
     )]
     TooLarge {
         /// The body.
@@ -110,7 +110,7 @@ pub enum CouplingError {
     },
     /// The velocity has grown so much that time stands still.
     #[error(
-        "a Courant number of {courant} allows no more than dt = {dt:.3e} s at t = {time:.6} s: the run is diverging; start again with a smaller Courant number or time step, or a finer grid; bodies much lighter than the fluid need a virtual mass (`Particles::with_virtual_mass`)"
+        "a Courant number of {courant} allows no more than dt = {dt:.3e} s at t = {time:.6} s: the run is diverging; start again with a smaller Courant number or time step; if that ends even earlier, the step is not the cause: take a finer grid, and for bodies much lighter than the fluid a virtual mass (`Particles::with_virtual_mass`)"
     )]
     Collapsed {
         /// The step \[s\].

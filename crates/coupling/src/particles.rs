@@ -459,7 +459,7 @@ where
         }
         let (n, started) = (self.bodies.n_bodies(), self.serials.len());
         if started < n {
-            fit(flow.grid(), &self.bodies)?;
+            fit(flow.grid(), |a| flow.sides().periodic(a), &self.bodies)?;
             if let Some((one, _)) = self.escaped(flow) {
                 return Err(one.error());
             }
@@ -548,17 +548,24 @@ pub fn check_places<const D: usize, B: Bodies>(
     periodic: impl Fn(usize) -> bool,
     bodies: &B,
 ) -> Result<(), CouplingError> {
-    fit(grid, bodies)?;
+    fit(grid, &periodic, bodies)?;
     outside(grid, periodic, bodies).next().map_or(Ok(()), |one| Err(one.error()))
 }
 
-/// Requires that all bodies fit into the box.
-fn fit<const D: usize, B: Bodies>(grid: &CartesianGrid<D>, bodies: &B) -> Result<(), CouplingError> {
+/// Requires that all bodies fit into the box; along a periodic axis they may overlap with their own
+/// image by a cell.
+fn fit<const D: usize, B: Bodies>(
+    grid: &CartesianGrid<D>,
+    periodic: impl Fn(usize) -> bool,
+    bodies: &B,
+) -> Result<(), CouplingError> {
     for body in bodies.ids() {
         let bounds = bodies.aabb(body);
         for axis in 0..D {
             let (size, length) = (bounds.extent()[axis], grid.lengths()[axis]);
-            if size >= length {
+            // As long as a period, a body closes on itself; shapes are known in single precision.
+            let most = if periodic(axis) { length + grid.spacing()[axis] } else { length };
+            if size > most * (1.0 + f64::from(f32::EPSILON)) {
                 return Err(CouplingError::TooLarge { body, axis, size, length });
             }
         }

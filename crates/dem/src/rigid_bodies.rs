@@ -225,8 +225,10 @@ impl<L: ContactLaw> RigidBodies<L> {
         }
         let extent = constants.shape.aabb().posed(&pose).extent();
         for axis in 0..3 {
+            // Contact with its own image does nothing to a body that is held.
             if let Some(period) = self.periods.along(axis)
                 && extent[axis] > period
+                && constants.movable()
             {
                 return Err(DemError::Period { body, axis, size: extent[axis], period });
             }

@@ -49,9 +49,9 @@ pub enum IbmError {
         /// The spacing \[m\].
         spacing: f64,
     },
-    /// A body is longer than the period of the grid.
+    /// A body is longer than the period of the grid by more than a cell.
     #[error(
-        "body {} is {size:.3e} m long along axis {axis}, longer than the period of {period:.3e} m: make the body smaller or the box larger", body.0
+        "body {} is {size:.3e} m long along axis {axis}, longer than the period of {period:.3e} m by more than a cell: make the body smaller or the box larger", body.0
     )]
     TooLarge {
         /// The body.

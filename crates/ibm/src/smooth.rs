@@ -2,15 +2,19 @@
 mod clearance;
 mod curvature;
 mod markers;
+mod overlap;
 mod slip;
 mod stencils;
 
 use crate::crowd::Crowd;
 use crate::forcing::LayerSums;
+use crate::neighbour::Neighbour;
 use crate::solid_fraction::check;
 use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction, SolidNode, ViscousStep};
 use clearance::Clearance;
-use interfaces::{Bodies, BodyId, Kinematics, Point, Renumbering, Twist, Vector, VelocityField, Wrench};
+use interfaces::{
+    Bodies, BodyId, Kinematics, Point, Pose, Renumbering, Twist, Vector, VelocityField, Wrench,
+};
 use markers::Markers;
 
 /// Smooth direct forcing (Uhlmann 2005; several passes as in Wang et al. 2008; a smooth [`Kernel`] as Yang et al. 2009) with markers on the surface that make up for what
@@ -47,6 +51,8 @@ pub struct SmoothForcing {
     /// Those that have moved.
     moves: Vec<bool>,
     clearance: Clearance,
+    /// Periodic images of the body at hand.
+    neighbours: Vec<Neighbour>,
     /// Places of the markers of a body.
     places: Vec<Point>,
     /// A velocity per marker of a body.
@@ -75,6 +81,7 @@ impl SmoothForcing {
             renumbered: false,
             moves: Vec::new(),
             clearance: Clearance::default(),
+            neighbours: Vec::new(),
             places: Vec::new(),
             values: Default::default(),
             outside: Default::default(),
@@ -116,7 +123,8 @@ impl SmoothForcing {
         let pose = bodies.pose(b);
         let mut turned = markers.pose.is_none_or(|old| old.orientation != pose.orientation);
         // Made once, unless the body has come to where the cells are of another size.
-        if markers.elements.is_empty() || (cell / markers.cell - 1.0).abs() > 3.0 * UNEQUAL {
+        let made = markers.elements.is_empty() || (cell / markers.cell - 1.0).abs() > 3.0 * UNEQUAL;
+        if made {
             let extent = bodies.solid(b).aabb().extent();
             let size = extent.x.min(extent.y).min(if dim == 3 { extent.z } else { f64::INFINITY });
             if size < Self::LEAST_CELLS * h {
@@ -130,10 +138,26 @@ impl SmoothForcing {
             }
             turned = true;
         }
+        let moved = markers.pose != Some(pose);
+        let long = self.meets_itself(velocity, bodies, b);
+        // A function of the pose alone, so that a run that goes on has the same: of long bodies where they are, of others in a place of its own.
+        let markers = &mut self.bodies[b.0];
+        if !long && (made || markers.long) {
+            markers.turn(&middle(velocity));
+            self.find_overlaps(velocity, bodies, (b, middle(velocity)), false);
+            turned = true;
+        }
+        let markers = &mut self.bodies[b.0];
+        markers.long = long;
         if turned {
             markers.turn(&pose);
         }
+        if long && (made || moved) {
+            self.find_overlaps(velocity, bodies, (b, pose), true);
+            turned = true;
+        }
         let Self { places, clearance, crowd, .. } = self;
+        let markers = &mut self.bodies[b.0];
         // Where the viscosity is not known, nothing can be made up for.
         let share = if self.step.is_some() {
             let surface = markers.surface.iter().map(|arm| pose.position + arm);
@@ -147,9 +171,11 @@ impl SmoothForcing {
         if turned || markers.share != share {
             markers.stand(share, self.density * h / kernel.self_overlap(), dim);
         }
-        places.clear();
-        places.extend(markers.arms.iter().map(|arm| pose.position + arm));
-        markers.stencils.set(kernel, velocity, places);
+        markers.set_stencils(kernel, velocity, &pose, places);
+        if !markers.overlaps.is_empty() {
+            let Markers { stencils, overlaps, .. } = markers;
+            stencils.relax_by(overlaps);
+        }
         Ok(())
     }
 
@@ -179,6 +205,13 @@ impl SmoothForcing {
         out.iter_mut().for_each(|share| *share = 1.0 - *share);
         nodes.iter().for_each(|n| self.scratch[n.index] = 0.0);
     }
+}
+
+/// A place on the lattice, far from bounded sides, without a turn.
+fn middle(velocity: &dyn VelocityField) -> Pose {
+    let axes = &velocity.lattice(0).axes[..velocity.dim()];
+    let at = |a: usize| axes.get(a).map_or(0.0, |nodes| nodes.place(nodes.len() as isize / 2));
+    Pose::at([at(0), at(1), at(2)])
 }
 
 /// Distances of nodes that differ by no more than this are equal.

@@ -92,7 +92,7 @@ impl SolidFraction {
     ///
     /// # Errors
     /// [`IbmError::Lost`] for a body whose position is not finite, [`IbmError::TooLarge`] for one that
-    /// is longer than a period of the lattice.
+    /// is longer than a period of the lattice by more than a cell.
     pub fn update<B: Bodies + ?Sized>(&mut self, lattice: &Lattice, bodies: &B) -> Result<(), IbmError> {
         self.resize(lattice, bodies.n_bodies());
         for body in (0..bodies.n_bodies()).map(BodyId) {
@@ -126,6 +126,9 @@ impl SolidFraction {
         let at = at(bodies, body);
         if cover.at != at {
             self.projector.project(lattice, bodies, body, (self.rule, self.layer), &mut cover.nodes);
+            if closes(lattice, bodies, body) {
+                join(&mut cover.nodes);
+            }
             cover.at = at;
             self.updates += 1;
             cover.stamp = self.updates;
@@ -167,6 +170,31 @@ fn at<B: Bodies + ?Sized>(bodies: &B, body: BodyId) -> Option<(Pose, Aabb)> {
     Some((bodies.pose(body), bodies.solid(body).aabb()))
 }
 
+/// Whether a node may be in the body and in its periodic image.
+fn closes<B: Bodies + ?Sized>(lattice: &Lattice, bodies: &B, body: BodyId) -> bool {
+    let extent = bodies.aabb(body).extent();
+    let long = |a: usize| lattice.axes[a].period().is_some_and(|p| extent[a] + 2.0 * widest(lattice, a) > p);
+    (0..lattice.dim).any(long)
+}
+
+/// The widest cell along `axis` \[m\].
+fn widest(lattice: &Lattice, axis: usize) -> f64 {
+    let nodes = &lattice.axes[axis];
+    nodes.spacings(nodes.place(0), nodes.place(nodes.len() as isize))[1]
+}
+
+/// Makes one of nodes that are listed more than once, with the sum of their λ, at most 1: solid from a seam with the body's own image up to its other side.
+fn join(nodes: &mut Vec<SolidNode>) {
+    nodes.sort_unstable_by_key(|node| node.index);
+    nodes.dedup_by(|node, first| {
+        let same = node.index == first.index;
+        if same {
+            first.fraction = (first.fraction + node.fraction).min(1.0);
+        }
+        same
+    });
+}
+
 /// Can λ of a body be computed?
 pub(crate) fn check<B: Bodies + ?Sized>(lattice: &Lattice, bodies: &B, body: BodyId) -> Result<(), IbmError> {
     let pose = bodies.pose(body);
@@ -177,7 +205,7 @@ pub(crate) fn check<B: Bodies + ?Sized>(lattice: &Lattice, bodies: &B, body: Bod
     let extent = bodies.aabb(body).extent();
     for axis in 0..lattice.dim {
         if let Some(period) = lattice.axes[axis].period()
-            && extent[axis] > period * (1.0 + 1e-12)
+            && extent[axis] > period + widest(lattice, axis)
         {
             return Err(IbmError::TooLarge { body, axis, size: extent[axis], period });
         }

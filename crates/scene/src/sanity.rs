@@ -18,6 +18,9 @@ const DENSEST: f64 = 3e4;
 /// The net weight of a suspension of steel in water is 1.4 times that of the fluid.
 const HEAVIEST: f64 = 10.0;
 
+/// Gaps of fewer cells are not resolved: markers of either surface reach across (`ibm::SmoothFilm`).
+const UNRESOLVED: f64 = 3.0;
+
 fn norm(u: [f64; 3]) -> f64 {
     u.iter().map(|u| u * u).sum::<f64>().sqrt()
 }
@@ -303,6 +306,14 @@ impl Setup {
                 out.push(format!(
                     "along {name} the period is {:.1} times the largest body's size: it feels its own images; from 3 on less so",
                     axis.length() / widest
+                ));
+            }
+            let (gap, cell) = (axis.length() - widest, axis.length() / axis.cells() as f64);
+            let closed = gap <= f64::from(f32::EPSILON) * axis.length();
+            if matches!(pair[0], Side::Periodic) && !closed && gap < UNRESOLVED * cell {
+                out.push(format!(
+                    "along {name} the largest body is {:.2} cells shorter than the period: flow through the gap to its own image is not resolved; make the body as long as the period, which closes it, or the gap wider than {UNRESOLVED:.0} cells",
+                    gap / cell
                 ));
             }
             let open = |side: &Side| is_open(side);

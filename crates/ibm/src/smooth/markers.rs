@@ -2,9 +2,9 @@
 use super::curvature::curvature;
 use super::slip::Slip;
 use super::stencils::Stencils;
-use crate::surface_elements;
+use crate::{Kernel, surface_elements};
 use interfaces::{
-    BodyId, Kinematics, Lattice, Pose, Solid, SurfaceElement, Twist, Vector, VelocityField, Wrench,
+    BodyId, Kinematics, Lattice, Point, Pose, Solid, SurfaceElement, Twist, Vector, VelocityField, Wrench,
 };
 
 /// The markers of one body.
@@ -30,6 +30,10 @@ pub(super) struct Markers {
     /// ρ ΔV_m / c: the fluid mass that a marker moves \[kg\].
     pub(super) masses: Vec<f64>,
     pub(super) stencils: Stencils,
+    /// By how much the change of each marker is divided because it overlaps with others of the same body ([`super::overlap`]); empty where none is.
+    pub(super) overlaps: Vec<f64>,
+    /// Those were found with periodic images, where the body is.
+    pub(super) long: bool,
     pub(super) reaction: Wrench,
     /// What they read past the surface.
     pub(super) slip: Slip,
@@ -72,6 +76,19 @@ impl Markers {
             let wider = (narrower(inwards) / narrower(*depth)).powi(directions);
             self.masses.push(self.elements[m].area * wider * mass_per_area);
         }
+    }
+
+    /// Stencils of all markers for the body at this `pose`.
+    pub(super) fn set_stencils(
+        &mut self,
+        kernel: Kernel,
+        velocity: &dyn VelocityField,
+        pose: &Pose,
+        places: &mut Vec<Point>,
+    ) {
+        places.clear();
+        places.extend(self.arms.iter().map(|arm| pose.position + arm));
+        self.stencils.set(kernel, velocity, places);
     }
 
     /// What the markers of body `b` read of component `c`, without what their surface does besides moving with it.

@@ -162,6 +162,34 @@ impl Stencils {
         }
     }
 
+    /// Divides what passes change at every marker by a number of its own.
+    pub(super) fn relax_by(&mut self, overlaps: &[f64]) {
+        for relax in &mut self.relax {
+            relax.iter_mut().zip(overlaps).for_each(|(relax, overlap)| *relax /= overlap);
+        }
+    }
+
+    /// Overlap Σ_n (e_m·e_n) w_n of every marker m with all of the body, over periodic sides too: e are the stencils of component `c`, w the `weights` in cells. `scratch` is zero between uses.
+    pub(super) fn overlaps(
+        &self,
+        c: usize,
+        lattice: &Lattice,
+        weights: &[f64],
+        scratch: &mut [f64],
+        out: &mut Vec<f64>,
+    ) {
+        self.spread(c, lattice, weights, scratch);
+        self.read(c, lattice, scratch, out);
+        match (self.width, lattice.dim) {
+            (4, 2) => self.places::<4, 2>(c, lattice).clear(scratch),
+            (4, _) => self.places::<4, 3>(c, lattice).clear(scratch),
+            (5, 2) => self.places::<5, 2>(c, lattice).clear(scratch),
+            (5, _) => self.places::<5, 3>(c, lattice).clear(scratch),
+            (_, 2) => self.places::<6, 2>(c, lattice).clear(scratch),
+            _ => self.places::<6, 3>(c, lattice).clear(scratch),
+        }
+    }
+
     fn places<'a, const W: usize, const D: usize>(
         &'a self,
         c: usize,
@@ -208,6 +236,13 @@ impl<const W: usize, const D: usize> Places<'_, W, D> {
             for (along_y, y) in y.iter().zip(&self.weights[1][m]) {
                 f(x.map(|along_x| self.lattice.base + along_x + along_y + along_z), y * z);
             }
+        }
+    }
+
+    /// Zeroes the nodes of all markers.
+    fn clear(&self, u: &mut [f64]) {
+        for m in 0..self.first[0].len() {
+            self.rows(m, |row, _| row.into_iter().for_each(|node| u[node] = 0.0));
         }
     }
 

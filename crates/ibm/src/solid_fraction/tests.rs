@@ -137,13 +137,28 @@ fn two_bodies_in_one_cell() {
     assert!((sum / (PI / 2.0) - 1.0).abs() < 1e-3 && dense.iter().all(|l| *l <= 1.0), "{sum}");
 }
 
-/// A bar through the whole period, its ends in one cell.
+/// A bar through the whole period, its ends in one cell, or over one another by less than a cell: each node is there once, and solid across the seam.
 #[test]
-fn as_long_as_the_period_but_not_longer() {
+fn as_long_as_the_period_but_hardly_longer() {
     let lattice = lattice(2, [0.1; 3], 3.0);
     let bar = |half| Balls::of(Brick([half, 0.2, 0.0]), 0.8 * half, vec![Pose::at([0.333, 1.5, 0.0])]);
-    assert!((total(&lattice, &bar(1.5)) - 1.2).abs() < 1e-3);
-    let error = SolidFraction::new().update(&lattice, &bar(1.51)).unwrap_err();
+    for half in [1.495, 1.5, 1.5 + 1e-9, 1.51, 1.55] {
+        let (mut fraction, bodies) = (SolidFraction::new(), bar(half));
+        fraction.update(&lattice, &bodies).unwrap();
+        let nodes = fraction.nodes(BodyId(0));
+        assert!(
+            (nodes.iter().map(|n| n.fraction * n.volume).sum::<f64>() / 0.4 - half.min(1.5) * 2.0).abs()
+                < 3e-3
+        );
+        let mut seen: Vec<usize> = nodes.iter().map(|n| n.index).collect();
+        seen.sort_unstable();
+        seen.dedup();
+        assert_eq!(seen.len(), nodes.len());
+        let middle = nodes.iter().filter(|n| n.arm.y.abs() < 0.1);
+        let least = middle.fold(1.0, |least: f64, n| least.min(n.fraction));
+        assert!(least > if half < 1.5 { 0.89 } else { 1.0 - 1e-7 }, "{half}: {least}");
+    }
+    let error = SolidFraction::new().update(&lattice, &bar(1.551)).unwrap_err();
     assert!(matches!(error, IbmError::TooLarge { body: BodyId(0), axis: 0, .. }), "{error}");
 }
 

@@ -76,12 +76,12 @@ impl SurfaceLoads {
 
 const DEGREE: usize = 3;
 /// Nodes count up to so many cells beyond the clearance, in the plane and in space: there are about 20 and 40 of them then.
-const REACH: [f64; 2] = [3.2, 2.7];
+pub(crate) const REACH: [f64; 2] = [3.2, 2.7];
 /// Cells whose centre is nearer to the surface than this may be cut, and have a pressure that is only of first order …
-const PRESSED: f64 = 1.0;
+pub(crate) const PRESSED: f64 = 1.0;
 /// … and velocities nearer than this tell more of the surface than of the fluid. (Spheres 12 to 24 cells wide in cut cells: 0.5 and 0
 /// make the loads up to 3 % smaller.)
-const BESIDE: f64 = 0.3;
+pub(crate) const BESIDE: f64 = 0.3;
 
 /// Does `field` hold a value for every node?
 pub(crate) fn stored(lattice: &Lattice, field: &[f64]) -> Result<(), IbmError> {
@@ -247,37 +247,46 @@ impl Nearby {
     fn fit(&self, arm: Vector, fixed: Option<f64>) -> Option<Fit> {
         let at = bin(arm - self.first, &self.edge, self.bins);
         let beside = |a: usize| at[a].saturating_sub(1)..=(at[a] + 1).min(self.bins[a] - 1);
-        let mut samples = Vec::new();
-        let mut scale = Vector::zeros();
-        for k in beside(2) {
-            for j in beside(1) {
-                let row = self.bins[0] * (j + self.bins[1] * k);
-                let along = beside(0);
-                let nodes = self.starts[row + along.start()]..self.starts[row + along.end() + 1];
-                for (place, widths, value) in &self.nodes[nodes] {
-                    let away = place - arm;
-                    let cells: f64 = (0..self.dim).map(|a| (away[a] / widths[a]).powi(2)).sum();
-                    let near = 1.0 - cells / (self.reach * self.reach);
-                    if near > 0.0 {
-                        samples.push(Sample { at: away, weight: near * near, value: *value });
-                        scale += widths;
-                    }
-                }
-            }
-        }
-        // The polynomial's variables are lengths over the reach.
-        scale *= self.reach / samples.len().max(1) as f64;
-        for sample in &mut samples {
-            for a in 0..self.dim {
-                sample.at[a] /= scale[a];
-            }
-        }
-        let mut found = fit(&samples, self.dim, DEGREE, fixed)?;
-        for a in 0..self.dim {
-            found.gradient[a] /= if scale[a] > 0.0 { scale[a] } else { 1.0 };
-        }
-        Some(found)
+        let rows = beside(2).flat_map(|k| beside(1).map(move |j| (j, k)));
+        let nodes = rows.flat_map(|(j, k)| {
+            let (row, along) = (self.bins[0] * (j + self.bins[1] * k), beside(0));
+            &self.nodes[self.starts[row + along.start()]..self.starts[row + along.end() + 1]]
+        });
+        let around = nodes.map(|&(place, widths, value)| (place - arm, widths, value));
+        fit_around(around, self.reach, self.dim, fixed)
     }
+}
+
+/// The polynomial at the origin through the values of `nodes` within `reach` cells of it (place, edges of the control volume, value), which count
+/// (1 − r²/reach²)², r their distance in cells.
+pub(crate) fn fit_around(
+    nodes: impl Iterator<Item = (Vector, Vector, f64)>,
+    reach: f64,
+    dim: usize,
+    fixed: Option<f64>,
+) -> Option<Fit> {
+    let mut samples = Vec::new();
+    let mut scale = Vector::zeros();
+    for (away, widths, value) in nodes {
+        let cells: f64 = (0..dim).map(|a| (away[a] / widths[a]).powi(2)).sum();
+        let near = 1.0 - cells / (reach * reach);
+        if near > 0.0 {
+            samples.push(Sample { at: away, weight: near * near, value });
+            scale += widths;
+        }
+    }
+    // The polynomial's variables are lengths over the reach.
+    scale *= reach / samples.len().max(1) as f64;
+    for sample in &mut samples {
+        for a in 0..dim {
+            sample.at[a] /= scale[a];
+        }
+    }
+    let mut found = fit(&samples, dim, DEGREE, fixed)?;
+    for a in 0..dim {
+        found.gradient[a] /= if scale[a] > 0.0 { scale[a] } else { 1.0 };
+    }
+    Some(found)
 }
 
 fn bin(from: Vector, edge: &Vector, bins: [usize; 3]) -> [usize; 3] {

@@ -11,7 +11,7 @@ use fv_mesh::{
     Axis, CartesianGrid, CellWriter, Field, FlowStatistics, Hooked, OutputError, SampleError, Sampler, Sides,
     Velocity,
 };
-use ibm::Forcing;
+use ibm::{FluidSampler, Forcing};
 use interfaces::{Bodies, BodyId, Checkpoint, Closure, Lattice, Point, Wrench};
 use std::io::{self, Write};
 use turb::YPlus;
@@ -244,6 +244,10 @@ pub(crate) struct Seen<'a, const D: usize, A, P> {
 /// What is immersed, as observers ask for it.
 pub(crate) trait Guests {
     fn bodies(&self) -> &dyn Bodies;
+    /// Bodies that are walls of the flow, not forced on it.
+    fn walls(&self) -> Option<&dyn Bodies> {
+        None
+    }
     fn serial(&self, b: BodyId) -> u64;
     fn loads(&self, b: BodyId, dt: f64, walls: &[Wrench]) -> [Wrench; 2];
     fn contacts(&self) -> usize;
@@ -255,6 +259,9 @@ pub(crate) trait Guests {
 impl Guests for Still {
     fn bodies(&self) -> &dyn Bodies {
         &self.0
+    }
+    fn walls(&self) -> Option<&dyn Bodies> {
+        Some(&self.0)
     }
     fn serial(&self, b: BodyId) -> u64 {
         b.0 as u64
@@ -353,11 +360,23 @@ impl<const D: usize, A: Flow<D>, P: Guests> View for Seen<'_, D, A, P> {
         take: &mut dyn FnMut(usize, [f64; 3], f64),
     ) -> Result<(), SampleError> {
         let sampler = Sampler::new(self.flow.grid(), self.flow.sides());
+        let (flow, lattice) = (&self.flow, self.lattice());
+        // Walls cut the cells next to them; forcings leave fields that go on through bodies.
+        let walls = self.guests.walls().map(FluidSampler::new);
         for (i, x) in points.iter().enumerate() {
-            let at: [f64; D] = std::array::from_fn(|a| x[a]);
-            let velocity = sampler.velocity(self.flow.velocity(), at)?;
-            let pressure = sampler.at(self.flow.pressure(), at)?;
-            take(i, std::array::from_fn(|a| velocity.get(a).copied().unwrap_or(0.0)), pressure);
+            let (at, point): ([f64; D], _) = (std::array::from_fn(|a| x[a]), Point::from(*x));
+            let (mut pressure, mut velocity) = (None, None);
+            if let Some(walls) = walls {
+                // Fields are those of their lattices, so there is no error.
+                pressure = walls.pressure(&lattice, flow.pressure().data(), point).ok().flatten();
+                velocity = walls.velocity(flow.velocity(), point).ok().flatten().map(<[f64; 3]>::from);
+            }
+            let pressure = pressure.map_or_else(|| sampler.at(flow.pressure(), at), Ok)?;
+            let between = || -> Result<[f64; 3], SampleError> {
+                let velocity = sampler.velocity(flow.velocity(), at)?;
+                Ok(std::array::from_fn(|a| velocity.get(a).copied().unwrap_or(0.0)))
+            };
+            take(i, velocity.map_or_else(between, Ok)?, pressure);
         }
         Ok(())
     }

@@ -2,8 +2,8 @@
 use super::profile::Support;
 use interfaces::CutFace;
 
-/// Distances from the wall over a rectangular face: linear on the four triangles between the corners and the node in the middle, so
-/// they are continuous in each of the five, and of the same sign.
+/// Distances from the wall over a rectangular face: linear on the four triangles between the corners and the node in the middle, less what
+/// that exceeds the mean of a distance that bends (Simpson's rule), so they are continuous in each of the five, and of their signs where the wall touches the face.
 pub(super) struct FaceDistances {
     triangles: [[f64; 3]; 4],
     own: f64,
@@ -18,9 +18,14 @@ const FLAT: f64 = 1e-9;
 impl FaceDistances {
     /// From those of the corners, the first axis fastest, and of the node.
     pub(super) fn new(d: [f64; 4], own: f64) -> Self {
-        let triangles = [[0, 1], [1, 3], [3, 2], [2, 0]].map(|[i, j]| [d[i], d[j], own]);
+        let [least, most] = [f64::min, f64::max].map(|best| d.iter().fold(own, |end: f64, &d| best(end, d)));
+        // The mean over the triangles exceeds that of a quadratic (Simpson) by this much; less of it counts where the wall only touches the face.
+        let bend = (d.iter().sum::<f64>() - 4.0 * own) / 12.0;
+        let depth = most.min(-least).max(0.0);
+        let bend = if depth > 0.0 { bend * depth / (depth + bend.abs()) } else { 0.0 };
+        let triangles = [[0, 1], [1, 3], [3, 2], [2, 0]].map(|[i, j]| [d[i], d[j], own].map(|d| d - bend));
         let rise = [0.5 * (d[1] + d[3] - d[0] - d[2]), 0.5 * (d[2] + d[3] - d[0] - d[1])];
-        let least = d.iter().fold(own, |least, &d| least.min(d));
+        let least = least - bend;
         Self { triangles, own, least, rise }
     }
 

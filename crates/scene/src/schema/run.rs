@@ -132,7 +132,7 @@ static SLICE: Table = Table {
 };
 
 pub(super) static PROBES: Table = Table {
-    about: "Points whose velocity and pressure go to `probes/NAME.csv`.",
+    about: "Points whose velocity and pressure go to `probes/NAME.csv`; on and near walls at rest (cut links, steady flow) from the fluid on their side.",
     keys: &[
         required("name", Kind::Text, "Name of the file.", "\"wake\""),
         required("points", Kind::List(&POINT, 1, 10_000), "The points.", "[[0.15, 0.2], [0.25, 0.2]]"),

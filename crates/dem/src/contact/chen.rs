@@ -99,9 +99,10 @@ impl ContactLaw for Chen {
         .act(t, springs);
         // (√k + c√(1/m))²: as stiff as the dashpot makes it in effect.
         let stiffness = stiffness + viscosity * viscosity * (wa + wb);
-        let couple = if pressure > 0.0 {
-            t.overlap.moment * (-dashpot * t.rate / area)
-                + t.pivot.couple(dashpot, pressure / area, area, t.dt)
+        let couple = if let Some(pivot) = &t.pivot
+            && pressure > 0.0
+        {
+            t.overlap.moment * (-dashpot * t.rate / area) + pivot.couple(dashpot, pressure / area, area, t.dt)
         } else {
             Vector::zeros()
         };

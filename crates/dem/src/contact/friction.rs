@@ -41,6 +41,9 @@ impl Friction {
     #[inline(always)]
     pub(super) fn act(&self, t: &Touch<'_>, springs: &mut Springs) -> (Vector, Vector) {
         let force = self.force(t, &mut springs.along);
+        if t.pivot.is_none() {
+            return (force, Vector::zeros());
+        }
         let polar = t.overlap.pivot.trace();
         if polar <= 0.0 || self.limit <= 0.0 {
             springs.about = 0.0;

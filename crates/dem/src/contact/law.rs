@@ -86,8 +86,9 @@ pub struct Touch<'a> {
     /// By how much a force −∇V of 1 per m³ changes dV/dt per second: ∇V·m⁻¹∇V over all of both bodies' motions \[m⁴/kg\]. NaN for laws
     /// that do not ask for it.
     pub mobility: f64,
-    /// Relative spin about the patch. Zero for laws without [`ContactLaw::PIVOTS`].
-    pub pivot: Pivot,
+    /// Relative spin about the patch; `None` for balls and discs, whose spin does not move their surface, and for laws without
+    /// [`ContactLaw::PIVOTS`].
+    pub pivot: Option<Pivot>,
     /// Area of the smaller of both bodies' largest flat faces \[m²\]; 0 if one has none. Flat faces may meet, and the area of contact is
     /// there at once.
     pub face: f64,

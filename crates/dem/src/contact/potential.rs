@@ -218,7 +218,10 @@ impl ContactLaw for Potential {
             stiffness = stiffness.max(decay * area * area / t.mobility);
         }
         let mut force = o.gradient * -mean;
-        let mut couple = o.moment * -mean + t.pivot.couple(damping * area, mean, area, t.dt);
+        let mut couple = o.moment * -mean;
+        if let Some(pivot) = &t.pivot {
+            couple += pivot.couple(damping * area, mean, area, t.dt);
+        }
         if p.friction > 0.0 {
             let [wa, wb] = t.inverse_masses;
             let ratio = match p.restitution {

@@ -3,7 +3,7 @@ use super::RigidBodies;
 use super::body::{Constants, Kind};
 use super::meeting::shift;
 use super::{Contact, Partner};
-use crate::contact::{ContactLaw, Pivot, Push, Touch};
+use crate::contact::{ContactLaw, Push, Touch};
 use crate::overlap::{Overlap, closed};
 use crate::{Form, Material, PairProperties, Shape};
 use interfaces::{BodyId, Freedom, Point, Vector};
@@ -139,7 +139,7 @@ impl Geometry {
             arms: [arm, other(arm)],
             sizes: [size, other(size)],
             mobility: area * area * (inverse_masses[0] + inverse_masses[1]),
-            pivot: Pivot::default(),
+            pivot: None,
             face,
             plane,
             dt: f64::MIN_POSITIVE,

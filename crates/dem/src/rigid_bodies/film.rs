@@ -3,6 +3,7 @@ use super::RigidBodies;
 use super::body::{Constants, Kind};
 use super::contacts::View;
 use super::meeting::{Meeting, Other};
+use super::push::slip;
 use crate::Shape;
 use crate::contact::{ContactLaw, FilmForce, Gap, stiffness_of_decay};
 use crate::overlap::plane;
@@ -46,7 +47,7 @@ impl<L: ContactLaw> View<'_, L> {
             spin -= b.twist.angular;
         }
         if let Some(surfaces) = self.surfaces {
-            velocity += surfaces.slip(meeting, at, normal);
+            velocity += slip(surfaces, meeting, at, normal);
         }
         let wall = matches!(meeting.other, Other::Wall(_));
         let film = Gap { distance: gap, normal, velocity, spin, radius, curvatures, wall };

@@ -2,10 +2,11 @@
 use super::body::{Body, Constants};
 use super::contacts::{Patch, Record, View};
 use super::meeting::{Meeting, Other};
+use super::surfaces::Surfaces;
 use crate::contact::{ContactLaw, Pivot, Push, Touch};
 use crate::overlap::closed::Lens;
 use crate::{DemError, Overlap, OverlapSolver};
-use interfaces::{Vector, Wrench};
+use interfaces::{Point, Vector, Wrench};
 
 /// Contacts count as no nearer to a body's centre than this part of its inner radius, or L_c would vanish there.
 const SHORTEST_ARM: f64 = 0.05;
@@ -48,7 +49,7 @@ impl<L: ContactLaw> View<'_, L> {
         };
         let inverse = a.inverse_mass + inverse_b;
         let velocity = match self.surfaces {
-            Some(surfaces) => velocity + surfaces.slip(meeting, overlap.centroid, normal),
+            Some(surfaces) => velocity + slip(surfaces, meeting, overlap.centroid, normal),
             None => velocity,
         };
         let touch = Touch {
@@ -62,7 +63,7 @@ impl<L: ContactLaw> View<'_, L> {
             arms: [larger(arms[0], SHORTEST_ARM * a.radius), larger(arms[1], SHORTEST_ARM * radius_b)],
             sizes: [a.radius, radius_b],
             mobility: if L::MOBILITY { area * area * inverse } else { f64::NAN },
-            pivot: Pivot::default(),
+            pivot: None,
             face: 0.0,
             plane: false,
             dt,
@@ -141,7 +142,7 @@ impl<L: ContactLaw> View<'_, L> {
             arms: [length(&arm_a, first), f64::INFINITY],
             sizes: [first.size, f64::INFINITY],
             mobility: f64::NAN,
-            pivot: Pivot::default(),
+            pivot: None,
             face: first.face,
             plane: a.is_plane(),
             dt,
@@ -166,14 +167,14 @@ impl<L: ContactLaw> View<'_, L> {
         };
         touch.rate = overlap.rate(touch.velocity, touch.spin);
         if let Some(surfaces) = self.surfaces {
-            touch.velocity += surfaces.slip(meeting, overlap.centroid, overlap.normal);
+            touch.velocity += slip(surfaces, meeting, overlap.centroid, overlap.normal);
         }
         touch.inverse_masses = meeting.inverse_masses(inverse_b);
         if L::MOBILITY {
             touch.mobility = area * area * (a.inverse_mass + inverse_b) + turns;
         }
-        if L::PIVOTS {
-            touch.pivot = pivot(meeting, overlap, touch.spin);
+        if L::PIVOTS && !meeting.is_round() {
+            touch.pivot = Some(pivot(meeting, overlap, touch.spin));
         }
         self.answer(&touch, [a.material, material], before)
     }
@@ -196,6 +197,17 @@ impl<L: ContactLaw> View<'_, L> {
         };
         (push, memory)
     }
+}
+
+/// Velocity of the first surface of a pair against the second at `point`, besides that of the bodies.
+#[inline(always)]
+pub(super) fn slip(surfaces: &Surfaces, meeting: &Meeting<'_>, point: Point, normal: Vector) -> Vector {
+    let place = point - meeting.a.pose.position;
+    let other = match meeting.other {
+        Other::Body(_, at_b) => point - at_b,
+        Other::Wall(_) => point.coords,
+    };
+    surfaces.slip([meeting.pair.a, meeting.pair.b], [place, other], normal)
 }
 
 /// Spin of a pair about a patch.

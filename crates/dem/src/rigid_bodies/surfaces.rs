@@ -1,6 +1,6 @@
 //! Surfaces that slide along themselves: belts, walls that move in their own plane.
 use super::RigidBodies;
-use super::meeting::{Meeting, Other};
+use super::contacts::wall_of;
 use crate::DemError;
 use crate::contact::ContactLaw;
 use interfaces::{BodyId, Point, Renumbering, Vector};
@@ -62,26 +62,14 @@ impl Surfaces {
         second.is_some() || self.of_body(a).is_some()
     }
 
-    /// Velocity of the first surface of a pair against the second at `point`, besides that of the bodies; the part normal to the
-    /// contact, by which a surface blows or sucks, is left out.
-    #[inline(never)]
-    pub(super) fn slip(&self, meeting: &Meeting<'_>, point: Point, normal: Vector) -> Vector {
-        let mut slip = Vector::zeros();
-        if let Some(u) = self.of_body(meeting.pair.a as usize) {
-            slip += u(point - meeting.a.pose.position);
-        }
-        match meeting.other {
-            Other::Body(_, at_b) => {
-                if let Some(u) = self.of_body(meeting.pair.b as usize) {
-                    slip -= u(point - at_b);
-                }
-            }
-            Other::Wall(_) => {
-                if let Some(u) = self.of_wall(super::contacts::wall_of(meeting.pair.b)) {
-                    slip -= u(point.coords);
-                }
-            }
-        }
+    /// Velocity of the first surface of a `pair` against the second at the `places` in these, besides that of the bodies; the part normal
+    /// to the contact, by which a surface blows or sucks, is left out.
+    #[cold]
+    pub(super) fn slip(&self, [a, b]: [u32; 2], [at_a, at_b]: [Vector; 2], normal: Vector) -> Vector {
+        let second = self.of_body(b as usize).or_else(|| self.of_wall(wall_of(b)));
+        let [first, second] = [(self.of_body(a as usize), at_a), (second, at_b)]
+            .map(|(u, at)| u.map_or_else(Vector::zeros, |u| u(at)));
+        let slip = first - second;
         slip - normal * normal.dot(&slip)
     }
 }

@@ -192,8 +192,9 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
             }
             eddy = &self.filmed;
         }
-        let on_walls =
-            if on_walls.len() == self.rows.len() { &on_walls[..rows.min(on_walls.len())] } else { on_walls };
+        // Before the first update behind a restart rows are not listed: the model has ν_t of all.
+        let known = on_walls.len() == self.rows.len() || self.rows.is_empty();
+        let on_walls = if known { &on_walls[..rows.min(on_walls.len())] } else { on_walls };
         if !on_walls.is_empty() && on_walls.len() != rows {
             return failed("the eddy viscosity on walls", rows, on_walls.len());
         }

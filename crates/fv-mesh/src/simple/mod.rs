@@ -1,4 +1,5 @@
 //! The steady flow algorithm.
+mod checkpoint;
 mod first_guess;
 mod immersed;
 mod params;

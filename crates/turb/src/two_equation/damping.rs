@@ -16,6 +16,16 @@ pub(super) struct Damping {
 }
 
 impl Damping {
+    /// Last changes, then the parts of changes that are made; empty before the first iteration.
+    pub(super) fn numbers(&self) -> Vec<f64> {
+        [self.change.as_slice(), &self.part].concat()
+    }
+    /// Takes back [`numbers`](Self::numbers).
+    pub(super) fn set_numbers(&mut self, numbers: &[f64]) {
+        let (change, part) = numbers.split_at(numbers.len() / 2);
+        (self.change, self.part) = (change.to_vec(), part.to_vec());
+    }
+
     /// Before an iteration changes `list`.
     pub(super) fn remember(&mut self, list: &[f64]) {
         self.old.clear();

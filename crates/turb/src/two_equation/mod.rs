@@ -333,6 +333,13 @@ impl<L> Checkpoint for TwoEquation<L> {
         sink("eddy", &self.eddy);
         sink("walls", &self.layer.viscosity);
         sink("y_plus", &self.y_plus.numbers());
+        let damping = self.damping.each_ref().map(Damping::numbers);
+        // Memory of steady iterations alone.
+        if damping.iter().any(|numbers| !numbers.is_empty()) {
+            sink("damping_k", &damping[0]);
+            sink("damping_scale", &damping[1]);
+            sink("auxiliary", &self.work.auxiliary);
+        }
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         for (name, list) in [("k", &mut self.k), ("scale", &mut self.scale), ("eddy", &mut self.eddy)] {
@@ -340,6 +347,17 @@ impl<L> Checkpoint for TwoEquation<L> {
         }
         self.layer.restore(source("walls").ok_or_else(|| RestartError::Missing("walls".into()))?);
         self.y_plus = source("y_plus").and_then(YPlus::from_numbers).unwrap_or_default();
+        for (name, damping) in ["damping_k", "damping_scale"].into_iter().zip(&mut self.damping) {
+            let numbers = source(name).unwrap_or_default();
+            let expected = 2 * self.k.len();
+            if !(numbers.is_empty() || numbers.len() == expected) {
+                return Err(RestartError::Length { name: name.into(), expected, found: numbers.len() });
+            }
+            damping.set_numbers(numbers);
+        }
+        if source("auxiliary").is_some() {
+            RestartError::fill(source, "auxiliary", &mut self.work.auxiliary)?;
+        }
         Ok(())
     }
 }

@@ -321,6 +321,15 @@ impl<const D: usize> SimpleWalls<D> {
         self.beyond.iter().for_each(|&(ghost, cell)| data[ghost] = data[cell]);
     }
 
+    /// Friction of the last iteration as a list of numbers.
+    pub(super) fn friction_state(&self) -> Vec<f64> {
+        self.stresses.numbers()
+    }
+    /// Takes back what [`friction_state`](Self::friction_state) gave.
+    pub(super) fn set_friction_state(&mut self, numbers: &[f64]) {
+        self.stresses.set_numbers(numbers);
+    }
+
     /// Force of friction on each body \[N\], about its centre of mass.
     pub(super) fn friction(&self, density: f64) -> Vec<Wrench> {
         let mut out = vec![Wrench::default(); self.n_bodies];

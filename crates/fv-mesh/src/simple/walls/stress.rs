@@ -203,6 +203,27 @@ impl<const D: usize> Stresses<D> {
         probe
     }
 
+    /// State of every piece of wall: traction, force, friction over velocity, and the speeds of k and of both, which are no number where there is no k.
+    pub(super) fn numbers(&self) -> Vec<f64> {
+        let piece = |p: usize| {
+            let speeds = [self.speeds[p], self.shared[p]].map(|speed| speed.unwrap_or(f64::NAN));
+            let vectors = [self.traction[p], self.force[p]];
+            let vectors = vectors.into_iter().flat_map(|v| [v.x, v.y, v.z]);
+            vectors.chain([self.friction[p], speeds[0], speeds[1]])
+        };
+        (0..self.probes.len()).flat_map(piece).collect()
+    }
+
+    /// Takes back [`numbers`](Self::numbers).
+    pub(super) fn set_numbers(&mut self, numbers: &[f64]) {
+        for (p, &[tx, ty, tz, fx, fy, fz, friction, k, shared]) in numbers.as_chunks().0.iter().enumerate() {
+            self.traction[p] = Vector::new(tx, ty, tz);
+            self.force[p] = Vector::new(fx, fy, fz);
+            self.friction[p] = friction;
+            [self.speeds[p], self.shared[p]] = [k, shared].map(|speed| (!speed.is_nan()).then_some(speed));
+        }
+    }
+
     /// Looks at k.
     pub(super) fn see(&mut self, k: Option<&Field<D>>) {
         if !matches!(self.law, WallStress::Law { .. }) {

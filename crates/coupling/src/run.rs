@@ -270,7 +270,9 @@ pub fn run<S: Evolving>(
             }
             let [first, growth] = schedule.ramp;
             let share = (first * growth.powf(info.step as f64)).min(1.0);
-            let mut full = schedule.dt.unwrap_or_else(|| simulation.stable_dt(schedule.courant));
+            // Nothing limits the step of a fluid at rest without viscosity but the run itself.
+            let mut full =
+                schedule.dt.unwrap_or_else(|| simulation.stable_dt(schedule.courant).min(schedule.end));
             simulation.begin()?;
             if automatic {
                 before.take(simulation);

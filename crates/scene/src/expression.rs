@@ -155,6 +155,11 @@ impl Expression {
         self.fault.get().copied()
     }
 
+    /// Whether it depends on the variable with this number.
+    pub(crate) fn uses(&self, variable: usize) -> bool {
+        self.steps.iter().any(|step| matches!(step, Step::Variable(v) if *v == variable))
+    }
+
     /// Its value if it is the same everywhere.
     pub(crate) fn fixed(&self) -> Option<f64> {
         let varies = self.steps.iter().any(|step| matches!(step, Step::Variable(_)));

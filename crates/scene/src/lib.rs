@@ -93,7 +93,17 @@ pub enum SceneError {
 }
 
 /// Keys that may change when a run goes on.
-const LOOSE: [&str; 7] = ["title", "about", "output", "checkpoint", "references", "time.end", "time.steps"];
+const LOOSE: [&str; 9] = [
+    "title",
+    "about",
+    "output",
+    "checkpoint",
+    "references",
+    "time.end",
+    "time.steps",
+    "flow.tolerance",
+    "flow.iterations",
+];
 
 impl Scene {
     /// Reads the file at `path`, with the values that `overrides` set (`fluid.nu=2e-6`).

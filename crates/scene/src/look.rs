@@ -76,7 +76,7 @@ pub(crate) struct Whole<'a, S, K> {
 }
 
 /// A number that takes 64 bits as two that doubles hold exactly.
-fn halves(n: u64) -> [f64; 2] {
+pub(crate) fn halves(n: u64) -> [f64; 2] {
     [(n >> 32) as f64, (n & 0xffff_ffff) as f64]
 }
 

@@ -30,6 +30,13 @@ impl Formula {
     }
 }
 
+impl Formula {
+    /// Whether its value depends on a variable of this name.
+    pub(crate) fn uses(&self, variable: &str) -> bool {
+        self.variables.iter().position(|v| v == variable).is_some_and(|v| self.expression.uses(v))
+    }
+}
+
 /// All formulas that were read.
 pub(crate) type Formulas = RefCell<Vec<Formula>>;
 
@@ -63,6 +70,11 @@ impl<'a> Reader<'a> {
     }
     fn path_of(&self, key: &str) -> String {
         if self.path.is_empty() { key.into() } else { format!("{}.{key}", self.path) }
+    }
+
+    /// The first formula of the file, as far as it has been read, for which `holds` holds.
+    pub(crate) fn find_formula(&self, holds: impl Fn(&Formula) -> bool) -> Option<Formula> {
+        self.formulas.borrow().iter().find(|f| holds(f)).cloned()
     }
 
     pub(crate) fn has(&self, key: &str) -> bool {

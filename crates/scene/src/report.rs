@@ -16,6 +16,17 @@ fn shown(value: &Value, text: impl Fn(f64) -> String) -> String {
     value.as_f64().filter(|x| x.is_finite()).map_or_else(|| "–".into(), text)
 }
 
+/// Loads of so many bodies are in a summary.
+const MOST_BODIES: usize = 12;
+
+/// Steps made, or iterations of a steady flow.
+fn counted(r: &Value) -> String {
+    match r.get("iterations") {
+        Some(n) => format!("{n} iterations"),
+        None => r["steps"].to_string(),
+    }
+}
+
 impl Compared {
     /// With `digits` behind the point.
     fn line(&self, digits: usize) -> String {
@@ -70,11 +81,10 @@ impl RunResult {
             }
         }
         format!(
-            "| {} | {} | {}{} | {} | {:.0} % | {} |\n",
+            "| {} | {} | {} | {} | {:.0} % | {} |\n",
             r["scene"].as_str().unwrap_or_default(),
             cells.join(" × "),
-            r["steps"],
-            if r.get("residual").is_some() { " iterations" } else { "" },
+            counted(r),
             shown(&self.timings["cpu"], |x| format!("{x:.1}")),
             100.0 * self.output_share(),
             notes.join("; "),
@@ -84,27 +94,41 @@ impl RunResult {
     /// A few lines.
     pub fn summary(&self) -> String {
         let (r, t) = (&self.result, &self.timings);
+        let word = match self.ending {
+            Ending::Done => "converged after",
+            Ending::Stopped => "stopped after",
+            Ending::NotConverged => "not converged after",
+        };
+        let way = match r.get("iterations") {
+            Some(_) => format!("{word} {}", counted(r)),
+            None => format!("{} steps to t = {} s", counted(r), shown(&r["time"], |x| format!("{x:.6}"))),
+        };
         let mut out = format!(
-            "{}: {} steps to t = {} s, {} CPU s ({:.0} % of the wall time for files and pictures)\n",
+            "{}: {way}, {} CPU s ({:.0} % of the wall time for files and pictures)\n",
             r["title"].as_str().unwrap_or_default(),
-            r["steps"],
-            shown(&r["time"], |x| format!("{x:.6}")),
             shown(&t["cpu"], |x| format!("{x:.1}")),
             100.0 * self.output_share(),
         );
-        for body in r["forces"].as_array().into_iter().flatten().take(12) {
+        let loads = r["forces"].as_array().map(Vec::as_slice).unwrap_or_default();
+        let dim = r["dimension"].as_u64().unwrap_or(3) as usize;
+        for body in loads.iter().take(MOST_BODIES) {
             let (name, load) = (body["body"].as_str().unwrap_or_default(), &body["load"]);
             let force: Vec<String> =
-                (0..3).map(|a| shown(&load["last"][a], |x| format!("{x:.6e}"))).collect();
-            out += &format!("  body {name}: force {}", force.join(", "));
+                (0..dim).map(|a| shown(&load["last"][a], |x| format!("{x:.6e}"))).collect();
+            out +=
+                &format!("  body {name}: force {} N{}", force.join(", "), if dim == 2 { "/m" } else { "" });
             if let Some(c) = body["coefficients"]["mean"].as_array() {
-                let mean: Vec<String> = c.iter().take(2).map(|c| shown(c, |x| format!("{x:.5}"))).collect();
-                out += &format!("; mean coefficients {}", mean.join(", "));
+                let mean: Vec<String> = c.iter().take(dim).map(|c| shown(c, |x| format!("{x:.5}"))).collect();
+                let word = if r.get("iterations").is_some() { "coefficients" } else { "mean coefficients" };
+                out += &format!("; {word} {}", mean.join(", "));
             }
             if let Some(strouhal) = body["strouhal"].as_f64() {
                 out += &format!("; Strouhal {strouhal:.4}");
             }
             out.push('\n');
+        }
+        if loads.len() > MOST_BODIES {
+            out += &format!("  and {} bodies more in result.json\n", loads.len() - MOST_BODIES);
         }
         if let Some(y) = r.get("y_plus") {
             let of = |key: &str| shown(&y[key], |x| format!("{x:.1}"));

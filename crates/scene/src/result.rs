@@ -1,10 +1,11 @@
 //! What came out of a run.
 use crate::look::Extremes;
-use crate::setup::Setup;
+use crate::setup::{Algorithm, Setup};
 use crate::view::View;
 use crate::watch::{Audience, output};
 use coupling::{CouplingError, LedgerReport, Module};
 use example_support::cpu::Elapsed;
+use ibm::SolidFraction;
 use interfaces::BodyId;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -56,8 +57,46 @@ pub struct RunResult {
 }
 
 /// A number, or null for what is none.
-fn number(x: f64) -> Value {
+pub(crate) fn number(x: f64) -> Value {
     if x.is_finite() { json!(x) } else { Value::Null }
+}
+
+/// Fields besides velocity and pressure: the mean over the box by volume, and, with bodies, over the fluid; the extremes of cells that bodies leave whole, as those that they cut hold values
+/// beyond their surfaces.
+fn fields(view: &dyn View) -> serde_json::Map<String, Value> {
+    let others = view.others();
+    if others.is_empty() {
+        return serde_json::Map::new();
+    }
+    let lattice = view.lattice().dense();
+    let mut solid = vec![0.0; lattice.shape().iter().product()];
+    let bodies = view.bodies().n_bodies() > 0;
+    let mut fraction = SolidFraction::new();
+    // Where it cannot be computed, extremes are not known.
+    let known = !bodies || fraction.update(&lattice, view.bodies()).is_ok();
+    fraction.add_to_dense(&lattice, &mut solid);
+    let mut out = serde_json::Map::new();
+    for other in others {
+        let (mut whole, mut fluid) = ([0.0; 2], [0.0; 2]);
+        let [mut least, mut most] = [f64::INFINITY, f64::NEG_INFINITY];
+        for (cell, value) in other.values.enumerate() {
+            let volume = lattice.volume(lattice.node(cell));
+            for ([sum, weights], weight) in [(&mut whole, volume), (&mut fluid, volume * (1.0 - solid[cell]))]
+            {
+                *sum += weight * value;
+                *weights += weight;
+            }
+            if known && solid[cell] == 0.0 {
+                (least, most) = (least.min(value), most.max(value));
+            }
+        }
+        let mut field = json!({ "mean": number(whole[0] / whole[1]), "least": number(least), "most": number(most), "unit": other.unit });
+        if bodies {
+            field["mean_in_fluid"] = if known { number(fluid[0] / fluid[1]) } else { Value::Null };
+        }
+        out.insert(other.name.to_owned(), field);
+    }
+    out
 }
 
 impl RunResult {
@@ -84,11 +123,15 @@ impl RunResult {
             },
             "dimension": dim,
             "cells": (0..dim).map(|a| view.axis(a).cells()).collect::<Vec<_>>(),
-            "time": view.time(),
-            "end": setup.end,
-            "steps": view.steps(),
-            "step": { "shortest": number(shortest), "longest": number(longest), "courant": number(courant) },
         });
+        if setup.flow.algorithm == Algorithm::Simple {
+            result["iterations"] = view.steps().into();
+        } else {
+            result["time"] = number(view.time());
+            result["end"] = number(setup.end);
+            result["steps"] = view.steps().into();
+            result["step"] = json!({ "shortest": number(shortest), "longest": number(longest), "courant": number(courant) });
+        }
         if let Some(flow) = flow {
             let volume: f64 = (0..dim).map(|a| view.axis(a).length()).product();
             result["flow"] = json!({
@@ -100,21 +143,9 @@ impl RunResult {
         } else {
             result["kinetic_energy"] = number(view.kinetic_energy());
         }
-        let others: serde_json::Map<String, Value> = view
-            .others()
-            .into_iter()
-            .map(|other| {
-                let start = [0.0, f64::INFINITY, f64::NEG_INFINITY, 0.0];
-                let [sum, least, most, n] = other
-                    .values
-                    .fold(start, |[sum, least, most, n], v| [sum + v, least.min(v), most.max(v), n + 1.0]);
-                let of = json!({ "mean": number(sum / n), "least": number(least), "most": number(most), "unit": other.unit });
-                (other.name.to_owned(), of)
-            })
-            .collect();
-        if !others.is_empty() {
-            // Means over the cells, whatever their size.
-            result["fields"] = Value::Object(others);
+        let fields = fields(view);
+        if !fields.is_empty() {
+            result["fields"] = Value::Object(fields);
         }
         if let Some(y) = view.y_plus() {
             result["y_plus"] = json!({ "least": number(y.least), "mean": number(y.mean), "most": number(y.most), "warnings": y.warnings() });

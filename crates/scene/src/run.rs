@@ -168,13 +168,13 @@ impl Setup {
 pub(crate) struct Stage<'a> {
     pub(crate) setup: &'a Setup,
     pub(crate) options: &'a Options,
-    fingerprint: u64,
+    pub(crate) fingerprint: u64,
     warnings: &'a [String],
     pub(crate) stop: &'a AtomicBool,
 }
 
 /// Name of the saved state in the folder.
-const STATE: &str = "state.bin";
+pub(crate) const STATE: &str = "state.bin";
 
 impl Stage<'_> {
     fn bodies<const D: usize, F, L, S>(
@@ -235,7 +235,7 @@ impl Stage<'_> {
         std::fs::create_dir_all(folder).map_err(output("making the folder", folder))?;
         if !self.options.resume {
             // What an earlier run left is not this run's.
-            for old in [STATE, "state.bin.previous", "result.json", "timings.json"] {
+            for old in [STATE, "state.bin.previous", "result.json", "timings.json", "residuals.csv"] {
                 let _ = std::fs::remove_file(folder.join(old));
             }
         }
@@ -258,7 +258,7 @@ impl Stage<'_> {
         let state = self.folder().join(STATE);
         let mut extremes = Extremes::default();
         // Of the flow at rest: a run that goes on has the same.
-        let first = setup.first_step() / simulation.stable_dt(setup.courant);
+        let first = setup.first_step() / simulation.stable_dt(setup.courant).min(setup.end);
         let mut resume = None;
         if self.options.resume {
             // First the simulation and its time; then what the observers have kept, in files that go on from that time.
@@ -351,7 +351,7 @@ impl Stage<'_> {
         Ok(result.with_timings(watch.elapsed(), self.options.threads, seconds, &seen).write()?)
     }
 
-    fn not_resumed(&self, error: CheckpointError, state: &Path) -> RunError {
+    pub(crate) fn not_resumed(&self, error: CheckpointError, state: &Path) -> RunError {
         match error {
             CheckpointError::Mismatch(RestartError::Differs(_)) => RunError::OtherScene(state.into()),
             error => RunError::Resume(error),

@@ -1,8 +1,10 @@
 //! What looks doubtful about a scene.
+mod blockage;
 mod contacts;
 mod exits;
 
 use crate::setup::{Algorithm, BodySetup, Setup, is_open};
+use blockage::Blockage;
 use coupling::WeightBalance;
 use fv_mesh::{Axis, Convection, Profile, Side, WallStress};
 use interfaces::Aabb;
@@ -153,6 +155,14 @@ impl Setup {
     /// What looks doubtful.
     pub(crate) fn warnings(&self) -> Vec<String> {
         let mut out = Vec::new();
+        if !self.unused.is_empty() {
+            out.push(format!(
+                "{} is not used by flow.algorithm = \"{}\"; leave it out",
+                self.unused.join(", "),
+                self.flow.algorithm.word()
+            ));
+        }
+        out.extend_from_slice(&self.doubtful_inlets);
         self.doubt_measures(&mut out);
         self.doubt_contacts(&mut out);
         if self.fluid.is_some() {
@@ -166,7 +176,10 @@ impl Setup {
     }
 
     fn doubt_measures(&self, out: &mut Vec<String>) {
-        let starts = [("forces", self.forces.map(|f| f.start)), ("averages", self.averages.map(|a| a.start))];
+        let starts = [
+            ("forces", self.forces.filter(|f| !f.steady).map(|f| f.start)),
+            ("averages", self.averages.map(|a| a.start)),
+        ];
         for (key, start) in starts {
             if let Some(start) = start.filter(|start| *start >= self.end) {
                 let end = self.end;
@@ -321,13 +334,12 @@ impl Setup {
                 continue;
             }
             // The flow is along this axis.
-            let section: f64 = (0..dim).filter(|&c| c != a).map(|c| self.axes[c].length()).product();
-            let shadow = |b: &Aabb| (0..dim).filter(|&c| c != a).map(|c| b.extent()[c]).product::<f64>();
-            let blocked = bounds.iter().map(shadow).fold(0.0, f64::max) / section;
-            if blocked > [0.3, 0.1][dim - 2] {
+            let Blockage { share, at, bodies } = self.blockage(a);
+            if share > [0.3, 0.1][dim - 2] {
                 out.push(format!(
-                    "a body blocks {:.0} % of the section normal to {name}: its drag is that in a channel, not in an unbounded stream",
-                    100.0 * blocked
+                    "{} {:.0} % of the section normal to {name} at {name} = {at:.4e} m: drag there is that in a channel, not in an unbounded stream",
+                    if bodies == 1 { "a body blocks" } else { "bodies block" },
+                    100.0 * share
                 ));
             }
             for (end, side) in pair.iter().enumerate().filter(|(_, side)| open(side)) {

@@ -259,7 +259,13 @@ pub(crate) static SCENE: Table = Table {
             "How flow and bodies act on one another.",
             "{ balance = \"net-weight\" }",
         ),
-        required("time", Kind::Table(&run::TIME_TABLE), "How long, in which steps.", "{ end = 0.6 }"),
+        optional(
+            "time",
+            Kind::Table(&run::TIME_TABLE),
+            "none, for a steady flow",
+            "How long, in which steps.",
+            "{ end = 0.6 }",
+        ),
         optional(
             "output",
             Kind::Table(&run::OUTPUT),

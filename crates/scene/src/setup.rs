@@ -4,11 +4,13 @@ mod dry;
 mod factories;
 mod flow;
 mod grid;
+mod inlets;
 mod measures;
 mod models;
 mod physics;
 mod shapes;
 mod sides;
+mod steady;
 mod time;
 
 pub(crate) use bodies::{
@@ -64,6 +66,10 @@ pub(crate) struct Setup {
     /// Seconds of the wall clock between saved states.
     pub(crate) save_every: f64,
     pub(crate) save_at_end: bool,
+    /// Keys of the file that the algorithm does not use.
+    pub(crate) unused: Vec<String>,
+    /// What looks doubtful about the inlets.
+    pub(crate) doubtful_inlets: Vec<String>,
     /// All formulas of the file, to be asked whether they had a finite value wherever they were needed.
     pub(crate) formulas: Vec<Formula>,
 }
@@ -113,7 +119,8 @@ impl Setup {
             |key: &str| root.table(key).unwrap_or(Reader::new(&empty, Place::File(0..0), key, &unread));
         let (time, checkpoint) = (table("time"), table("checkpoint"));
         let output = table("output");
-        let Span { end, snapshots } = Span::read(&time, &output)?;
+        let steady = flow.algorithm == Algorithm::Simple;
+        let Span { end, snapshots } = if steady { Span::STEADY } else { Span::read(&time, &output)? };
         let moved = bodies.any_moves();
         let periodic_along = |a: usize| matches!(sides[a][0], Side::Periodic);
         let balance = match bodies.coupling.balance {
@@ -126,8 +133,8 @@ impl Setup {
         let mut setup = Self {
             title: root.text("title").map_or_else(|| name.clone(), Into::into),
             output: measures::output(&output, &name, &axes, snapshots)?,
-            probes: measures::probes(root, &context, &axes, &sides)?,
-            forces: root.table("forces").map(|t| measures::forces(&t, end)),
+            probes: measures::probes(root, &context, &axes, &sides, steady)?,
+            forces: root.table("forces").map(|t| measures::forces(&t, end, dim, steady)),
             averages: root.table("averages").map(|t| measures::averages(&t, end, dim)).transpose()?,
             references: measures::references(root)?,
             name,
@@ -145,6 +152,8 @@ impl Setup {
             turbulence: physics::turbulence(root, dim)?,
             scalars: physics::scalars(root, &context, &sides)?,
             models: Vec::new(),
+            unused: steady::unused(root, flow.algorithm),
+            doubtful_inlets: Vec::new(),
             formulas: Vec::new(),
             axes,
             sides,
@@ -155,6 +164,7 @@ impl Setup {
         let fields: Vec<&str> = fields.iter().map(String::as_str).collect();
         setup.models = models::read(root, &setup.axes, &setup.bodies, (snapshots, &fields))?;
         setup.agrees(root)?;
+        setup.doubtful_inlets = inlets::agrees(root, &setup.axes, &setup.sides, (!steady).then_some(end))?;
         Ok(setup)
     }
 
@@ -178,41 +188,20 @@ impl Setup {
             Some(flow) => flow.fail(key, message),
             None => root.fail("flow", message),
         };
+        if let Some(fluid) = root.table("fluid")
+            && self.fluid().viscosity == 0.0
+            && self.turbulence.as_ref().is_some_and(|t| t.model.averages())
+        {
+            let key = if fluid.has("nu") { "nu" } else { "mu" };
+            let message = "a turbulence model of two equations needs the viscosity of the fluid beside walls; give one above 0, or leave out turbulence";
+            return Err(fluid.fail(key, message));
+        }
         match self.flow.algorithm {
-            Algorithm::Simple if bodies && self.bodies.any_moves() => {
-                return Err(fail(
-                    "algorithm",
-                    "a steady flow has no bodies that move; make them `motion = \"fixed\"`, or take \"projection\"",
-                ));
-            }
-            Algorithm::Simple if self.turbulence.as_ref().is_some_and(|t| !t.model.averages()) => {
-                return Err(fail(
-                    "algorithm",
-                    "large eddies are not steady; take \"projection\", or a model of two equations such as \"sst\"",
-                ));
-            }
-            Algorithm::Simple if self.scalars.iter().any(|s| bodies && s.bodies.is_none()) => {
-                return Err(fail(
-                    "algorithm",
-                    "in a steady flow every scalar needs its value on bodies; give scalars.NAME.bodies, or take \"projection\"",
-                ));
-            }
-            Algorithm::Simple if self.scalars.iter().any(|s| !s.has_value()) => {
-                return Err(fail(
-                    "algorithm",
-                    "a steady scalar of which only gradients are given is known but for a constant; give its value at a side or on bodies",
-                ));
-            }
+            Algorithm::Simple => steady::agrees(root, self)?,
             Algorithm::Piso if self.turbulence.is_some() => {
                 return Err(fail(
                     "algorithm",
                     "turbulence models go with \"projection\" and \"simple\"; take one of these",
-                ));
-            }
-            Algorithm::Simple if self.averages.is_some() || !self.models.is_empty() => {
-                return Err(fail(
-                    "algorithm",
-                    "a steady flow has no history; leave out averages and models, or take \"projection\"",
                 ));
             }
             Algorithm::Piso if bodies && self.bodies.forcing() != ForcingChoice::Hfdib => {
@@ -227,7 +216,7 @@ impl Setup {
                     "\"piso\" has no stability limit to choose a step by; give time.dt",
                 ));
             }
-            _ => {}
+            Algorithm::Piso | Algorithm::Projection => {}
         }
         if let Some(Quantity::Field(name)) = self.output.images.as_ref().map(|i| &i.quantity) {
             let known = self.others();
@@ -254,6 +243,12 @@ impl Setup {
                 s.name
             );
             return Err(root.fail("scalars", message));
+        }
+        if !self.bodies.exits.is_empty() && !self.bodies.any_moves() {
+            return Err(root.fail(
+                "exits",
+                "bodies leave here, and none moves; leave this out, or give bodies that are not `motion = \"fixed\"`",
+            ));
         }
         if self.forces.is_some() && !bodies {
             return Err(root.fail("forces", "loads are those on bodies, and there are none; leave this out"));

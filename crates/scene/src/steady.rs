@@ -1,20 +1,23 @@
 //! Steady flow.
 use crate::build_error::BuildError;
 use crate::log::Log;
-use crate::look::Extremes;
+use crate::look::{Extremes, halves};
 use crate::physics::{Lift, Model, Scalars};
-use crate::result::{Ending, RunResult};
-use crate::run::{RunError, Stage};
+use crate::result::{Ending, RunResult, number};
+use crate::run::{RunError, STATE, Stage};
 use crate::setup::Setup;
 use crate::still::Still;
 use crate::view::{Seen, View};
+use crate::watch::{Table, output};
 use coupling::StepInfo;
 use example_support::cpu::Stopwatch;
 use example_support::progress::Progress;
 use fv_mesh::{FlowError, ScalarTransport, Simple, SimpleInfo, SimpleParams, TransportParams, WallStress};
 use ibm::cut_cells;
-use interfaces::{Kinematics, ThinPart, Wrench};
+use interfaces::{Checkpoint, Kinematics, RestartError, ThinPart, Wrench};
+use std::io;
 use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
 
 /// The steady algorithm, its turbulence model, and the loads of its walls.
 pub(crate) struct Steady<const D: usize> {
@@ -32,7 +35,7 @@ pub(crate) struct Steady<const D: usize> {
 }
 
 impl<const D: usize> Steady<D> {
-    /// One iteration; the largest of its residuals, and of the relative changes of scalars that drive the flow.
+    /// One iteration: its residuals, and the largest relative change of a scalar that drives the flow.
     pub(crate) fn iterate(&mut self) -> Result<(SimpleInfo, f64), FlowError> {
         let mut change = 0.0;
         if self.lift.is_some() {
@@ -46,7 +49,7 @@ impl<const D: usize> Steady<D> {
             Some(model) => self.flow.iterate_with(model)?,
             None => self.flow.iterate()?,
         };
-        Ok((info, info.largest().max(change)))
+        Ok((info, change))
     }
     /// Shows the scalars what the model says.
     fn mix(&mut self) -> Result<(), FlowError> {
@@ -109,33 +112,89 @@ impl Setup {
     }
 }
 
+/// All that is saved of a steady run.
+struct Saved<'a, const D: usize> {
+    flow: &'a mut Steady<D>,
+    residual: &'a mut f64,
+    fingerprint: u64,
+}
+
+impl<const D: usize> Checkpoint for Saved<'_, D> {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        sink("scene", &halves(self.fingerprint));
+        sink("residual", &[*self.residual]);
+        self.flow.flow.save(&mut |name, values| sink(&format!("flow.{name}"), values));
+        self.flow.scalars.save(&mut |name, values| sink(&format!("scalars.{name}"), values));
+        if let Some(model) = &self.flow.model {
+            model.save(&mut |name, values| sink(&format!("model.{name}"), values));
+        }
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        if RestartError::take(source, "scene", 2)? != halves(self.fingerprint) {
+            return Err(RestartError::Differs("the scene".into()));
+        }
+        *self.residual = RestartError::take(source, "residual", 1)?[0];
+        self.flow.flow.restore(&|name| source(&format!("flow.{name}")))?;
+        self.flow.scalars.restore(&|name| source(&format!("scalars.{name}")))?;
+        match &mut self.flow.model {
+            Some(model) => model.restore(&|name| source(&format!("model.{name}"))),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Head of `residuals.csv`.
+const RESIDUALS: &str = "# largest residuals of every iteration, each relative to the terms of its equation: momentum along x, y, z; continuity; turbulence model; relative change of scalars that drive the flow\niteration,x,y,z,continuity,closure,scalars";
+
 impl Stage<'_> {
-    /// Iterates to the steady flow.
+    /// Iterates to the steady flow, from a saved state on if the run is resumed.
     pub(crate) fn steady<const D: usize>(&self, mut flow: Steady<D>) -> Result<RunResult, RunError> {
         let watch = Stopwatch::start();
         let setup = self.setup;
         self.make_folder()?;
+        let state = self.folder().join(STATE);
+        let mut residual = f64::INFINITY;
+        if self.options.resume {
+            let (flow, residual) = (&mut flow, &mut residual);
+            let mut saved = Saved { flow, residual, fingerprint: self.fingerprint };
+            coupling::load(&state, &mut saved).map_err(|e| self.not_resumed(e, &state))?;
+        }
+        let begin = flow.flow.iterations();
+        let resume = self.options.resume.then_some(begin as f64);
         let mut audience = self.audience(None)?;
-        let mut log = Log::open(self.folder(), false)?;
-        log.line(&format!(
-            "iterating {}: {} cells, to residuals of {:e}",
-            setup.name,
-            setup.cells(),
-            setup.flow.tolerance
-        ))?;
+        let mut table = Table::open(&self.folder().join("residuals.csv"), RESIDUALS, resume)?;
+        let mut log = Log::open(self.folder(), self.options.resume)?;
+        let (tolerance, allowed) = (setup.flow.tolerance, setup.flow.iterations);
+        let cells = setup.cells();
+        log.line(&match resume {
+            None => format!("iterating {}: {cells} cells, to residuals of {tolerance:e}", setup.name),
+            Some(_) if residual <= tolerance => {
+                format!("{} has converged at iteration {begin} with residual {residual:.3e}: nothing is left to do", setup.name)
+            }
+            Some(_) => format!("going on with {} from iteration {begin}, residual {residual:.3e}: {cells} cells, to residuals of {tolerance:e}", setup.name),
+        })?;
         self.warn(&mut log)?;
         // Progress is the way of the residual's logarithm.
-        let target = -setup.flow.tolerance.log10();
+        let target = -tolerance.log10();
         let mut progress = (!self.options.quiet).then(|| Progress::new(0.0, target));
-        let mut ending = Ending::NotConverged;
-        let mut residual = f64::INFINITY;
-        for _ in 0..setup.flow.iterations {
+        let every = Duration::try_from_secs_f64(setup.save_every).unwrap_or(Duration::MAX);
+        let mut saved = Instant::now();
+        let save = |flow: &mut Steady<D>, mut residual: f64, table: &mut Table| {
+            table.flush()?;
+            let whole = Saved { flow, residual: &mut residual, fingerprint: self.fingerprint };
+            coupling::save(&state, &whole)
+                .map_err(|e| output("saving the state in", &state)(io::Error::other(e)))
+        };
+        let mut stopped = false;
+        while residual > tolerance && flow.flow.iterations() < allowed {
             if self.stop.load(Ordering::Relaxed) {
-                ending = Ending::Stopped;
+                stopped = true;
                 break;
             }
-            let (info, largest) = flow.iterate().map_err(BuildError::from)?;
-            residual = largest;
+            let (info, change) = flow.iterate().map_err(BuildError::from)?;
+            residual = info.largest().max(change);
+            let [x, y, z] = info.momentum;
+            table.row(info.iterations as f64, None, [x, y, z, info.continuity, info.closure, change])?;
             if let Some(progress) = &mut progress {
                 progress.tell(info.iterations as u64, (-residual.log10()).clamp(0.0, target), || {
                     format!("residual {residual:.2e}")
@@ -144,22 +203,33 @@ impl Stage<'_> {
             if info.iterations % 50 == 1 {
                 log.line(&format!("iteration {}: residual {residual:.3e}", info.iterations))?;
             }
-            if residual <= setup.flow.tolerance {
-                ending = Ending::Done;
-                break;
+            if saved.elapsed() >= every {
+                save(&mut flow, residual, &mut table)?;
+                saved = Instant::now();
             }
         }
+        let ending = match residual <= tolerance {
+            true => Ending::Done,
+            false if stopped => Ending::Stopped,
+            false => Ending::NotConverged,
+        };
+        if stopped || setup.save_at_end {
+            save(&mut flow, residual, &mut table)?;
+        }
+        table.flush()?;
+        let iterations = flow.flow.iterations();
         if let Some(progress) = progress.take() {
             let word = match ending {
+                Ending::Done if iterations == begin => "converged already: nothing was left to do",
                 Ending::Done => "converged",
                 Ending::Stopped => "stopped",
                 Ending::NotConverged => "not converged",
             };
-            progress.finish(flow.flow.iterations() as u64, word);
+            progress.finish(iterations as u64, word);
         }
-        log.line(&format!("{} iterations, residual {residual:.3e}", flow.flow.iterations()))?;
+        log.line(&format!("{iterations} iterations, residual {residual:.3e}"))?;
         flow.weigh();
-        if !matches!(ending, Ending::Stopped) {
+        if !stopped {
             flow.settle().map_err(BuildError::from)?;
         }
         let still = Still(setup.still());
@@ -173,7 +243,7 @@ impl Stage<'_> {
         let extremes = Extremes::default();
         let seconds = [audience.seconds, 0.0];
         let mut result = RunResult::new(setup, &mut seen, &extremes, None, &audience, ending, self.folder());
-        result.set("residual", residual.into());
+        result.set("residual", number(residual));
         if !given_off.is_empty() {
             result.set("given_off", given_off.into_iter().collect());
         }

@@ -14,6 +14,7 @@ pub(crate) use forces::ForcesWatch;
 pub(crate) use images::ImagesWatch;
 pub(crate) use models::ModelsWatch;
 pub(crate) use probes::ProbesWatch;
+pub(crate) use table::Table;
 pub(crate) use trajectories::TrajectoriesWatch;
 
 use crate::view::View;

@@ -4,7 +4,7 @@ use super::{Kind, METRES, POINT, Range, Table, optional, required};
 const SECONDS: Kind = Kind::Number(Range::Positive, "s");
 
 pub(super) static TIME_TABLE: Table = Table {
-    about: "How long, in which steps. (A steady flow is iterated, whatever stands here.)",
+    about: "How long, in which steps: needed unless the flow is steady (`flow.algorithm = \"simple\"`), which is iterated, whatever is given here.",
     keys: &[
         optional("end", SECONDS, "`steps` tells", "End of the run.", "0.6"),
         optional(
@@ -141,7 +141,7 @@ pub(super) static PROBES: Table = Table {
 };
 
 pub(super) static FORCES: Table = Table {
-    about: "Loads of the fluid on bodies go to `forces.csv` at every step, and their means, amplitudes and frequencies to the results. \
+    about: "Loads of the fluid on bodies go to `forces.csv` at every step, and their means, deviations, amplitudes and frequencies to the results. \
             With a speed and an area there are coefficients C = 2F/(ρU²A), too.",
     keys: &[
         optional(
@@ -156,6 +156,13 @@ pub(super) static FORCES: Table = Table {
             LENGTH_OR_AREA,
             "no coefficients",
             "Reference area A (plane scenes: a length).",
+            "0.1",
+        ),
+        optional(
+            "length",
+            Kind::Number(Range::Positive, "m"),
+            "the area of a plane scene; none in space",
+            "Reference length D of Strouhal numbers fD/U.",
             "0.1",
         ),
         optional(

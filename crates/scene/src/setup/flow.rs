@@ -12,6 +12,17 @@ pub(crate) enum Algorithm {
     Simple,
 }
 
+impl Algorithm {
+    /// Its word in the file.
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Self::Projection => "projection",
+            Self::Piso => "piso",
+            Self::Simple => "simple",
+        }
+    }
+}
+
 /// How the flow is computed.
 #[derive(Clone, Debug)]
 pub(crate) struct FlowSetup {
@@ -40,6 +51,17 @@ pub(super) fn fluid(root: &Reader<'_>) -> Result<Option<Fluid>, Problem> {
         return Err(
             t.fail("mu", format!("{viscosity} m²/s follows for the kinematic viscosity; give a finite one"))
         );
+    }
+    // Quotients by a number below the normal ones have no digits, or no finite value.
+    if viscosity > 0.0 && viscosity < f64::MIN_POSITIVE {
+        let key = if t.has("nu") { "nu" } else { "mu" };
+        let least = f64::MIN_POSITIVE;
+        return Err(t.fail(
+            key,
+            format!(
+                "{viscosity:e} m²/s follows for the kinematic viscosity; give 0, or {least:e} m²/s at least"
+            ),
+        ));
     }
     Ok(Some(Fluid { density, viscosity }))
 }

@@ -68,6 +68,10 @@ pub(crate) struct Forces {
     pub(crate) reference: Option<(f64, f64)>,
     pub(crate) start: f64,
     pub(crate) every: Option<f64>,
+    /// Of a steady flow: there is one load.
+    pub(crate) steady: bool,
+    /// D of Strouhal numbers \[m\].
+    pub(crate) length: Option<f64>,
 }
 
 /// Means in time.
@@ -224,6 +228,7 @@ pub(super) fn probes(
     context: &Context<'_>,
     axes: &[Axis],
     sides: &[[Side; 2]],
+    steady: bool,
 ) -> Result<Vec<ProbeSetup>, Problem> {
     let mut out: Vec<ProbeSetup> = Vec::new();
     for t in root.tables("probes") {
@@ -251,16 +256,19 @@ pub(super) fn probes(
             }
             points.push(std::array::from_fn(|a| row.get(a).copied().unwrap_or(0.0)));
         }
-        out.push(ProbeSetup { name, points, every: t.number("every") });
+        out.push(ProbeSetup { name, points, every: t.number("every").filter(|_| !steady) });
     }
     Ok(out)
 }
 
-pub(super) fn forces(t: &Reader<'_>, end: f64) -> Forces {
+pub(super) fn forces(t: &Reader<'_>, end: f64, dim: usize, steady: bool) -> Forces {
+    let area = t.number("area");
     Forces {
-        reference: t.number("velocity").zip(t.number("area")),
-        start: t.number("start").unwrap_or(0.5 * end),
-        every: t.number("every"),
+        reference: t.number("velocity").zip(area),
+        start: t.number("start").filter(|_| !steady).unwrap_or(0.5 * end),
+        every: t.number("every").filter(|_| !steady),
+        steady,
+        length: t.number("length").or(area.filter(|_| dim == 2)),
     }
 }
 

@@ -15,6 +15,9 @@ pub(super) struct Span {
 }
 
 impl Span {
+    /// Of a steady scene: one instant.
+    pub(super) const STEADY: Self = Self { end: 1.0, snapshots: 1 };
+
     /// Of the tables `time` and `output`. So many `steps` have to be cut into equal numbers of them.
     pub(super) fn read(time: &Reader<'_>, output: &Reader<'_>) -> Result<Self, Problem> {
         let (end, steps, dt) = (time.number("end"), time.whole("steps"), time.number("dt"));

@@ -19,11 +19,12 @@ pub(crate) struct ForcesWatch {
     sums: Vec<Sums>,
 }
 
-/// What is kept of one body: sums over time since means began, of fx, fy, fz and the torque's components.
+/// What is kept of one body over the time since means began, of fx, fy, fz and the torque's components.
 #[derive(Clone, Copy, Debug)]
 struct Sums {
     seconds: f64,
-    first: [f64; 6],
+    mean: [f64; 6],
+    /// ∫ (f − mean)² dt, which rounding does not spoil where loads hardly vary (Welford 1962, weighted: West 1979).
     square: [f64; 6],
     low: [f64; 6],
     high: [f64; 6],
@@ -39,7 +40,7 @@ impl Default for Sums {
     fn default() -> Self {
         Self {
             seconds: 0.0,
-            first: [0.0; 6],
+            mean: [0.0; 6],
             square: [0.0; 6],
             low: [f64::INFINITY; 6],
             high: [f64::NEG_INFINITY; 6],
@@ -53,13 +54,14 @@ impl Sums {
     fn add(&mut self, load: [f64; 6], time: f64, dt: f64) {
         self.seconds += dt;
         for i in 0..6 {
-            self.first[i] += dt * load[i];
-            self.square[i] += dt * load[i] * load[i];
+            let off = load[i] - self.mean[i];
+            self.mean[i] += off * dt / self.seconds;
+            self.square[i] += dt * off * (load[i] - self.mean[i]);
             self.low[i] = self.low[i].min(load[i]);
             self.high[i] = self.high[i].max(load[i]);
         }
         // Where the lift crosses its mean upwards, found linearly within the step.
-        let now = load[1] - self.first[1] / self.seconds;
+        let now = load[1] - self.mean[1];
         let before = self.crossings[3];
         if before < 0.0 && now >= 0.0 {
             let at = time - dt * now / (now - before);
@@ -73,7 +75,7 @@ impl Sums {
     }
     fn numbers(&self) -> [f64; NUMBERS] {
         let mut out = [0.0; NUMBERS];
-        let parts = [&self.first, &self.square, &self.low, &self.high, &self.last];
+        let parts = [&self.mean, &self.square, &self.low, &self.high, &self.last];
         for (k, part) in parts.into_iter().enumerate() {
             out[6 * k..6 * k + 6].copy_from_slice(part);
         }
@@ -84,7 +86,7 @@ impl Sums {
     fn of(n: &[f64; NUMBERS]) -> Self {
         let part = |k: usize| std::array::from_fn(|i| n[6 * k + i]);
         Self {
-            first: part(0),
+            mean: part(0),
             square: part(1),
             low: part(2),
             high: part(3),
@@ -162,29 +164,60 @@ impl Watch for ForcesWatch {
             if sums.seconds == 0.0 {
                 return json!({ "last": column(&|i| sums.last[i]) });
             }
-            let mean = |i: usize| sums.first[i] / sums.seconds;
+            if self.forces.steady {
+                return json!({ "last": column(&|i| sums.last[i]), "mean": column(&|i| sums.mean[i]) });
+            }
+            let variance = |i: usize| sums.square[i] / sums.seconds;
             json!({
                 "last": column(&|i| sums.last[i]),
-                "mean": column(&mean),
-                "rms": column(&|i| (sums.square[i] / sums.seconds - mean(i) * mean(i)).max(0.0).sqrt()),
+                "mean": column(&|i| sums.mean[i]),
+                // About the mean: C′ of the literature (Norberg 2003).
+                "deviation": column(&|i| variance(i).sqrt()),
+                "rms": column(&|i| sums.mean[i].hypot(variance(i).sqrt())),
                 "amplitude": column(&|i| 0.5 * (sums.high[i] - sums.low[i])),
                 "lowest": column(&|i| sums.low[i]),
                 "highest": column(&|i| sums.high[i]),
             })
         };
         let body = |(name, sums): (&String, &Sums)| {
-            let mut out = json!({ "body": name, "seconds": sums.seconds, "load": of(sums, 1.0, 6) });
+            let mut out = json!({ "body": name, "load": of(sums, 1.0, 6) });
+            if !self.forces.steady {
+                out["seconds"] = json!(sums.seconds);
+            }
             if let Some(scale) = scale {
                 out["coefficients"] = of(sums, scale, 3);
             }
             if let Some(frequency) = sums.frequency() {
                 out["frequency"] = json!(frequency);
-                if let Some((u, a)) = self.forces.reference {
-                    out["strouhal"] = json!(frequency * a / u);
+                if let (Some((u, _)), Some(length)) = (self.forces.reference, self.forces.length) {
+                    out["strouhal"] = json!(frequency * length / u);
                 }
             }
             out
         };
         Some(json!(self.names.iter().zip(&self.sums).map(body).collect::<Vec<Value>>()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sine about a mean that is 10⁹ times larger, in steps that differ: mean, deviation about it and amplitude.
+    #[test]
+    fn loads_that_hardly_vary_have_their_deviation() {
+        let (mean, amplitude) = (1e6, 1e-3);
+        let mut sums = Sums::default();
+        let steps = 4000;
+        let mut time = 0.0;
+        for i in 0..steps {
+            let dt = if i % 2 == 0 { 0.5e-3 } else { 1.5e-3 };
+            time += dt;
+            let load = mean + amplitude * (std::f64::consts::TAU * 5.0 * (time - 0.5 * dt)).sin();
+            sums.add([load; 6], time, dt);
+        }
+        assert!((sums.mean[0] / mean - 1.0).abs() < 1e-14, "{}", sums.mean[0]);
+        let deviation = (sums.square[0] / sums.seconds).sqrt();
+        assert!((deviation / (amplitude / 2.0_f64.sqrt()) - 1.0).abs() < 1e-3, "{deviation}");
     }
 }

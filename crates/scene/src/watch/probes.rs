@@ -8,6 +8,7 @@ use interfaces::{Checkpoint, RestartError};
 use serde_json::{Value, json};
 use std::io;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 /// Writes velocity and pressure at points to `probes/NAME.csv`.
 pub(crate) struct ProbesWatch {
@@ -44,6 +45,17 @@ impl ProbesWatch {
     }
 }
 
+/// u, v, w, p of every point now.
+fn sample(view: &dyn View, setup: &ProbeSetup, out: &mut [f64]) -> Result<(), CouplingError> {
+    let mut take = |i: usize, u: [f64; 3], p: f64| {
+        out[4 * i..4 * i + 4].copy_from_slice(&[u[0], u[1], u[2], p]);
+    };
+    view.sample(&setup.points, &mut take).map_err(|e| CouplingError::Output {
+        what: format!("the probes {}", setup.name),
+        source: io::Error::other(e),
+    })
+}
+
 impl Checkpoint for ProbesWatch {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         sink("last", &self.last);
@@ -67,15 +79,19 @@ impl Watch for ProbesWatch {
             if !pace.due(info.time, info.dt) {
                 continue;
             }
-            let mut take = |i: usize, u: [f64; 3], p: f64| {
-                last[4 * i..4 * i + 4].copy_from_slice(&[u[0], u[1], u[2], p])
-            };
-            view.sample(&setup.points, &mut take).map_err(|e| CouplingError::Output {
-                what: format!("the probes {}", setup.name),
-                source: io::Error::other(e),
-            })?;
+            sample(view, setup, last)?;
             let values = last.chunks_exact(4).flat_map(|v| v[..dim].iter().chain(&v[3..]).copied());
             table.row(info.time, None, values)?;
+        }
+        Ok(())
+    }
+    /// The results are of the end, whenever the last row was written.
+    fn finish(&mut self, view: &mut dyn View, _: &AtomicBool) -> Result<(), CouplingError> {
+        let mut offset = 0;
+        for (setup, ..) in &self.probes {
+            let last = &mut self.last[offset..offset + 4 * setup.points.len()];
+            offset += last.len();
+            sample(view, setup, last)?;
         }
         Ok(())
     }

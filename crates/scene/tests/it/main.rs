@@ -6,8 +6,10 @@ mod files;
 mod heat;
 mod ledger;
 mod models;
+mod numbers;
 mod physics;
 mod spoilt;
+mod steady;
 mod told;
 
 use scene::{Options, RunResult, Scene, json_schema, manual};

@@ -75,9 +75,9 @@ fn a_warm_sphere_with_large_eddies_goes_on_as_if_it_had_not_stopped() {
     let rest = run(&halves, &[], true);
     assert_eq!(all, rest);
     let temperature = &all["fields"]["temperature"];
-    // Cells at the surface whose centre is inside have what the profile has there, beyond the 1 of the surface.
+    // Cells that the surface cuts hold what the profile has at their centre, beyond the 1 of the surface: they do not count.
     let [mean, most] = ["mean", "most"].map(|what| temperature[what].as_f64().unwrap());
-    assert!((0.01..0.3).contains(&mean) && (0.999..1.6).contains(&most), "{temperature}");
+    assert!((0.01..0.3).contains(&mean) && (0.8..=1.0).contains(&most), "{temperature}");
     assert!(all["fields"]["eddy_viscosity"]["most"].as_f64().unwrap() > 1e-4);
     assert!(whole.join("images/00002.png").exists());
     [whole, halves].iter().for_each(|out| std::fs::remove_dir_all(out).unwrap());

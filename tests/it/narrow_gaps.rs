@@ -1,4 +1,5 @@
-//! Smooth forcing of surfaces that are a fraction of a cell from their own periodic images, from one another or from a side.
+//! Smooth forcing of surfaces that are a fraction of a cell from their own periodic images, from
+//! one another or from a side.
 use crate::with_threads;
 use siltflow::coupling::{Particles, Simulation, WeightBalance};
 use siltflow::dem::{Cuboid, Disc, Material, Polygon, RigidBodies, Sphere};
@@ -22,7 +23,8 @@ fn fastest<const D: usize>(flow: &Projection<D>, at: impl Fn([f64; D]) -> bool) 
         .fold(0.0, |most: f64, (_, u)| if u.is_nan() { f64::NAN } else { most.max(u.abs()) })
 }
 
-/// 1 × 1 m in 24 cells, x periodic, a lid above that moves at 1 m/s, over a fixed block whose top is at 0.5 m and that is `gap` cells shorter than the period.
+/// 1 × 1 m in 24 cells, x periodic, a lid above that moves at 1 m/s, over a fixed block whose top
+/// is at 0.5 m and that is `gap` cells shorter than the period.
 fn covered(gap: f64) -> Forced<2> {
     let n = 24;
     let grid = CartesianGrid::new([n, n], [1.0, 1.0]).unwrap();
@@ -37,7 +39,8 @@ fn covered(gap: f64) -> Forced<2> {
     Simulation::new(flow, particles, WeightBalance::None).unwrap()
 }
 
-/// Couette flow over a block that closes on itself, or nearly so, whatever the step. Measured: 0.02 in the solid 1.2 cells below its surface, as in a block that is clear of its image.
+/// Couette flow over a block that closes on itself, or nearly so, whatever the step. Measured: 0.02
+/// in the solid 1.2 cells below its surface, as in a block that is clear of its image.
 #[test]
 fn a_block_and_its_images_are_a_wall() {
     with_threads(1, || {
@@ -61,8 +64,9 @@ fn a_block_and_its_images_are_a_wall() {
     });
 }
 
-/// A force of 1 N/kg along y in a periodic box that a block and its images close but for a slot: a slot of three cells lets through three quarters of what fully developed flow would (it is not yet), two cells half
-/// of that, closed ones less than 1/250 of the free fall.
+/// A force of 1 N/kg along y in a periodic box that a block and its images close but for a slot: a
+/// slot of three cells lets through three quarters of what fully developed flow would (it is not
+/// yet), two cells half of that, closed ones less than 1/250 of the free fall.
 #[test]
 fn slots_let_through_what_they_should() {
     with_threads(1, || {
@@ -100,7 +104,8 @@ fn slots_let_through_what_they_should() {
     });
 }
 
-/// Bodies 8 cells across under a lid, 1.5 times as heavy as the fluid: fixed and free side by side, and at a side.
+/// Bodies 8 cells across under a lid, 1.5 times as heavy as the fluid: fixed and free side by side,
+/// and at a side.
 fn beside<const D: usize>(gap: f64, free: &[bool], at_side: bool, round: bool) -> Forced<D> {
     let h = 1.0 / 20.0;
     let grid = CartesianGrid::new([20; D], [1.0; D]).unwrap();

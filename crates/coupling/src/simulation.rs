@@ -122,7 +122,8 @@ pub struct Simulation<const D: usize, P = (), A = Projection<D>> {
     balance: WeightBalance,
     drive: Option<Drive>,
     force: Vector,
-    /// Increase of the Courant number per step length, per time, over the last step and the one before it \[1/s²\].
+    /// Increase of the Courant number per step length, per time, over the last step and the one
+    /// before it \[1/s²\].
     slopes: [f64; 2],
     timings: Timings,
 }
@@ -182,8 +183,10 @@ impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Simulation<D, P, A> {
         Ok(())
     }
 
-    /// The longest step \[s\] that ends with a Courant number ≤ `courant` if its rate r = Σ max|u_a|/h_a grows by no more than over the last step and by what this differs from the
-    /// step before: the root of dt (r + s dt) = C, s = max(s₁, 0) + |s₁ − s₂|. (A linear extrapolation s = s₁ alone is exceeded wherever r has a minimum.)
+    /// The longest step \[s\] that ends with a Courant number ≤ `courant` if its rate r = Σ
+    /// max|u_a|/h_a grows by no more than over the last step and by what this differs from the step
+    /// before: the root of dt (r + s dt) = C, s = max(s₁, 0) + |s₁ − s₂|. (A linear extrapolation s
+    /// = s₁ alone is exceeded wherever r has a minimum.)
     fn convective_dt(&self, courant: f64) -> f64 {
         let [last, before] = self.slopes;
         let (rate, growth) = (self.flow.courant(1.0), last.max(0.0) + (last - before).abs());

@@ -140,7 +140,8 @@ impl SmoothForcing {
         }
         let moved = markers.pose != Some(pose);
         let long = self.meets_itself(velocity, bodies, b);
-        // A function of the pose alone, so that a run that goes on has the same: of long bodies where they are, of others in a place of its own.
+        // Overlaps depend on the pose alone, so that a restart finds the same: long bodies are
+        // evaluated at their place, others at a fixed one.
         let markers = &mut self.bodies[b.0];
         if !long && (made || markers.long) {
             markers.turn(&middle(velocity));

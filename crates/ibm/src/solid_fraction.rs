@@ -183,7 +183,8 @@ fn widest(lattice: &Lattice, axis: usize) -> f64 {
     nodes.spacings(nodes.place(0), nodes.place(nodes.len() as isize))[1]
 }
 
-/// Makes one of nodes that are listed more than once, with the sum of their λ, at most 1: solid from a seam with the body's own image up to its other side.
+/// Makes one of nodes that are listed more than once, with the sum of their λ, at most 1: solid
+/// from a seam with the body's own image up to its other side.
 fn join(nodes: &mut Vec<SolidNode>) {
     nodes.sort_unstable_by_key(|node| node.index);
     nodes.dedup_by(|node, first| {

@@ -20,7 +20,8 @@ const DENSEST: f64 = 3e4;
 /// The net weight of a suspension of steel in water is 1.4 times that of the fluid.
 const HEAVIEST: f64 = 10.0;
 
-/// Gaps of fewer cells are not resolved: markers of either surface reach across (`ibm::SmoothFilm`).
+/// Gaps of fewer cells are not resolved: markers of either surface reach across
+/// (`ibm::SmoothFilm`).
 const UNRESOLVED: f64 = 3.0;
 
 fn norm(u: [f64; 3]) -> f64 {

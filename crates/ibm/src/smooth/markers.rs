@@ -30,9 +30,10 @@ pub(super) struct Markers {
     /// ρ ΔV_m / c: the fluid mass that a marker moves \[kg\].
     pub(super) masses: Vec<f64>,
     pub(super) stencils: Stencils,
-    /// By how much the change of each marker is divided because it overlaps with others of the same body ([`super::overlap`]); empty where none is.
+    /// Divisor of each marker's change where markers of the body overlap ([`super::overlap`]);
+    /// empty if none do.
     pub(super) overlaps: Vec<f64>,
-    /// Those were found with periodic images, where the body is.
+    /// Whether the overlaps include periodic images.
     pub(super) long: bool,
     pub(super) reaction: Wrench,
     /// What they read past the surface.

@@ -1,23 +1,32 @@
 //! Relaxation of passes where sheets of markers of one body overlap.
 //!
-//! A pass changes the velocity by Eᵀ D (U − E u), D being the markers' volumes over c. With the overlaps K = E Eᵀ, whose entries are not negative, ρ = K D 1 is the number of sheets around each
-//! marker: 1 on a single smooth one; 2 where two surfaces of a body, or a surface and its own periodic image, are close; more at edges of such gaps. Passes leave the share (1 − λ)ⁿ of a mode, λ being the
-//! eigenvalues of D K. With λ above 1 a pass overshoots, an odd number of them reverses the mode, and with the pressure of the next step the run diverges, earlier the shorter the step.
+//! A pass changes the velocity by Eᵀ D (U − E u), D being the markers' volumes over c. With the
+//! overlaps K = E Eᵀ, whose entries are not negative, ρ = K D 1 is the number of sheets around each
+//! marker: 1 on a single smooth one; 2 where two surfaces of a body, or a surface and its own
+//! periodic image, are close; more at edges of such gaps. Passes leave the share (1 − λ)ⁿ of a
+//! mode, λ being the eigenvalues of D K. With λ above 1 a pass overshoots, an odd number of them
+//! reverses the mode, and with the pressure of the next step the run diverges, earlier the shorter
+//! the step.
 //!
-//! With D / max(1, ρ) for D no mode overshoots: (D/max(1, ρ)) K (D 1) = D ρ/max(1, ρ) ≤ D 1, so 1 bounds the spectral radius (Collatz–Wielandt). Other bodies need no part in it: they are forced one
-//! after the other, and a product of contractions is one.
+//! With D / max(1, ρ) for D no mode overshoots: (D/max(1, ρ)) K (D 1) = D ρ/max(1, ρ) ≤ D 1, so 1
+//! bounds the spectral radius (Collatz–Wielandt). Other bodies need no part in it: they are forced
+//! one after the other, and a product of contractions is one.
 use super::SmoothForcing;
 use crate::neighbour::Neighbour;
 use interfaces::{Bodies, BodyId, Pose, VelocityField};
 
-/// From so many overlapping sheets on they are relaxed. Single convex bodies have up to 1.3 (a cube of four cells at its corners), and are right as they are; two coincident sheets have 2.
+/// Least number of overlapping sheets that is relaxed. Single convex bodies have up to 1.3 (a cube
+/// of four cells at its corners), two coincident sheets 2. Moved by a third down, cubes are relaxed
+/// (`passes_do_not_overshoot_where_sheets_overlap`); up, blocks half a cell from their images
+/// overshoot (same test).
 const SHEETS: f64 = 1.5;
 
-/// Coordinates of shapes are known to so many parts of the period: files hold them in single precision.
+/// Precision of coordinates in parts of the period: files of shapes hold single-precision numbers.
 const PRECISION: f64 = 4.0 * f32::EPSILON as f64;
 
 impl SmoothForcing {
-    /// Whether markers of body `b` reach others of its own over a periodic side, as it is turned or without a turn.
+    /// Whether markers of body `b` reach others of its own over a periodic side, as it is turned or
+    /// without a turn.
     pub(super) fn meets_itself(&self, velocity: &dyn VelocityField, bodies: &dyn Bodies, b: BodyId) -> bool {
         let (dim, bounds) = (velocity.dim(), bodies.aabb(b));
         let extent = bounds.extent().sup(&bodies.solid(b).aabb().extent());
@@ -28,8 +37,9 @@ impl SmoothForcing {
         })
     }
 
-    /// Finds the overlaps of the markers of body `b` at this pose, for which they are turned already, and at their full depth, where they overlap most. With `images` those on surfaces that its own periodic images
-    /// cover are left out: the surface is closed there.
+    /// Finds the overlaps of the markers of body `b` at this pose, for which they are turned
+    /// already, and at their full depth, where they overlap most. With `images` those on surfaces
+    /// that its own periodic images cover are left out: the surface is closed there.
     pub(super) fn find_overlaps(
         &mut self,
         velocity: &dyn VelocityField,

@@ -169,7 +169,8 @@ impl Stencils {
         }
     }
 
-    /// Overlap Σ_n (e_m·e_n) w_n of every marker m with all of the body, over periodic sides too: e are the stencils of component `c`, w the `weights` in cells. `scratch` is zero between uses.
+    /// Overlap Σ_n (e_m·e_n) w_n of every marker m with all of the body, over periodic sides too: e
+    /// are the stencils of component `c`, w the `weights` in cells. `scratch` is zero between uses.
     pub(super) fn overlaps(
         &self,
         c: usize,

@@ -351,7 +351,8 @@ fn markers_stand_deeper_where_another_surface_is_near() {
     assert_eq!([0, 1].map(|b| forcing.bodies[b].share), [0.0, 0.0]);
 }
 
-/// The largest eigenvalue λ of the pass operator EᵀDE for component `c`, by powers: passes leave (1 − λ)ⁿ of its mode.
+/// The largest eigenvalue λ of the pass operator EᵀDE for component `c`, by powers: passes leave (1
+/// − λ)ⁿ of its mode.
 fn spectral_radius(bodies: &Balls, lattice: &Lattice, c: usize) -> f64 {
     let mut velocity = Collocated::new(lattice.clone(), |_| [0.0; 3]);
     // Golden-ratio sequence: all modes are in it.
@@ -375,8 +376,9 @@ fn spectral_radius(bodies: &Balls, lattice: &Lattice, c: usize) -> f64 {
     radius
 }
 
-/// Blocks that are shorter than the period by so many cells, along one axis, two or all, and balls: without relaxation λ is up to 1.99 (plane) and 2.2, and an odd number of passes reverses what it should
-/// remove. Single convex bodies stay as they are.
+/// Blocks that are shorter than the period by so many cells, along one axis, two or all, and balls:
+/// without relaxation λ is up to 1.99 (plane) and 2.2, and an odd number of passes reverses what it
+/// should remove. Single convex bodies stay as they are.
 #[test]
 fn passes_do_not_overshoot_where_sheets_overlap() {
     let period = 3.0;
@@ -418,7 +420,8 @@ impl Solid for Fin {
     }
 }
 
-/// Both faces of a thin plate are sheets that overlap; so are markers of a body that has turned towards its image.
+/// Both faces of a thin plate are sheets that overlap; so are markers of a body that has turned
+/// towards its image.
 #[test]
 fn thin_plates_and_turned_bodies_are_relaxed() {
     let h = 0.1;

@@ -137,7 +137,8 @@ fn two_bodies_in_one_cell() {
     assert!((sum / (PI / 2.0) - 1.0).abs() < 1e-3 && dense.iter().all(|l| *l <= 1.0), "{sum}");
 }
 
-/// A bar through the whole period, its ends in one cell, or over one another by less than a cell: each node is there once, and solid across the seam.
+/// A bar through the whole period, its ends in one cell, or over one another by less than a cell:
+/// each node is there once, and solid across the seam.
 #[test]
 fn as_long_as_the_period_but_hardly_longer() {
     let lattice = lattice(2, [0.1; 3], 3.0);

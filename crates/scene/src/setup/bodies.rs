@@ -219,11 +219,14 @@ fn agrees(root: &Reader<'_>, bodies: &Bodies, fluid: Option<Fluid>) -> Result<()
             "cut links are for bodies at rest; take \"smooth\", or make every body's motion \"fixed\"".into(),
         ));
     }
-    if forcing == ForcingChoice::CutLinks
-        && !bodies.list.is_empty()
-        && fluid.is_some_and(|f| f.viscosity == 0.0)
-    {
-        return Err(root.fail("fluid", "walls by cut links need a viscosity; give `nu` above 0"));
+    let any = !(bodies.list.is_empty() && bodies.inflows.is_empty());
+    if any && forcing != ForcingChoice::Hfdib && fluid.is_some_and(|f| f.viscosity == 0.0) {
+        let what = if forcing == ForcingChoice::CutLinks {
+            "walls by cut links"
+        } else {
+            "bodies by smooth forcing"
+        };
+        return Err(root.fail("fluid", format!("{what} need a viscosity; give `nu` above 0")));
     }
     let chen = bodies.law == ContactLawChoice::Chen;
     let across = bodies.lubrication.is_some() || bodies.repulsion.is_some();

@@ -35,6 +35,9 @@ pub(crate) struct FlowSetup {
     pub(crate) iterations: usize,
 }
 
+/// Least viscosity above 0 \[m²/s\], 10⁻¹² of that of liquid helium: below it products of viscous times and of their quotients leave the range of numbers.
+const LEAST_VISCOSITY: f64 = 1e-20;
+
 /// The fluid, if there is one.
 pub(super) fn fluid(root: &Reader<'_>) -> Result<Option<Fluid>, Problem> {
     let Some(t) = root.table("fluid") else { return Ok(None) };
@@ -52,10 +55,9 @@ pub(super) fn fluid(root: &Reader<'_>) -> Result<Option<Fluid>, Problem> {
             t.fail("mu", format!("{viscosity} m²/s follows for the kinematic viscosity; give a finite one"))
         );
     }
-    // Quotients by a number below the normal ones have no digits, or no finite value.
-    if viscosity > 0.0 && viscosity < f64::MIN_POSITIVE {
+    if viscosity > 0.0 && viscosity < LEAST_VISCOSITY {
         let key = if t.has("nu") { "nu" } else { "mu" };
-        let least = f64::MIN_POSITIVE;
+        let least = LEAST_VISCOSITY;
         return Err(t.fail(
             key,
             format!(

@@ -129,6 +129,7 @@ fn what_changes_in_time_is_refused() {
         ("coupling.forcing=\"hfdib\"", "coupling.forcing", "cut cells"),
         ("fluid.nu=0.0", "fluid", "give `nu` above 0"),
         ("fluid.nu=1e-310", "fluid.nu", "m²/s at least"),
+        ("fluid.nu=1e-200", "fluid.nu", "m²/s at least"),
         ("fluid.density=0.0", "fluid.density", ""),
     ] {
         let found = problems(CHANNEL, set);
@@ -239,7 +240,7 @@ fn an_inlet_that_lets_some_fluid_out_converges() {
     }
 }
 
-/// Without a viscosity: a body of fluid between slipping sides gains what the force gives; a disc that nothing holds back falls as potential flow lets it.
+/// Without a viscosity fluid between slipping sides gains what the force gives.
 #[test]
 fn an_inviscid_fluid_goes_on_in_time() {
     let text = r#"
@@ -257,6 +258,9 @@ output = { images = false, fields = false, snapshots = 2 }
     // Limits of automatic steps: the Courant number alone.
     let courant = found["step"]["courant"].as_f64().unwrap();
     assert!(courant < 0.401 && found["steps"].as_u64().unwrap() > 7, "{courant} {}", found["steps"]);
+    let disc = "bodies=[{shape={type=\"disc\",radius=0.2},density=2.0,position=[0.5,0.5]}]";
+    let smooth = problems(text, disc);
+    assert!(smooth.contains("bodies by smooth forcing need a viscosity"), "{smooth}");
     let sst = problems(text, "turbulence=\"sst\"");
     assert!(sst.contains("give one above 0"), "{sst}");
     std::fs::remove_dir_all(&out).unwrap();

@@ -91,26 +91,40 @@ impl<L: ContactLaw> View<'_, L> {
     ) -> Result<f64, DemError> {
         let same = record.before.iter().take_while(|p| p.near == record.near).count();
         let before = &record.before[..same];
-        let lens;
-        let shared = if meeting.is_round() {
-            lens = meeting.lens();
-            lens.as_slice()
-        } else {
-            solver.set_pivots(L::PIVOTS);
-            meeting.solve(solver)?
-        };
+        if meeting.is_round() {
+            let Some(overlap) = meeting.lens() else { return Ok(0.0) };
+            // One patch, then as now.
+            return self.push_one(meeting, &overlap, overlap.volume, before.first(), record, dt);
+        }
+        solver.set_pivots(L::PIVOTS);
+        let shared = meeting.solve(solver)?;
         let volume = shared.iter().map(|o| o.volume).sum();
         let mut stiffest = 0.0;
         for overlap in shared {
             let before = remembered(before, shared, overlap);
-            if meeting.is_through(overlap, before) {
-                return Err(self.passed_through(meeting.pair, overlap.volume));
-            }
-            let (push, memory) = self.push_patch(meeting, overlap, volume, before, dt);
-            stiffest = larger(push.stiffness, stiffest);
-            record.add(overlap, overlap.area(), &push, memory);
+            stiffest = larger(self.push_one(meeting, overlap, volume, before, record, dt)?, stiffest);
         }
         Ok(stiffest)
+    }
+
+    /// Forces of one patch; returns its stiffness over mass.
+    #[inline(always)]
+    fn push_one(
+        &self,
+        meeting: &Meeting<'_>,
+        overlap: &Overlap,
+        volume: f64,
+        before: Option<&Patch<L::Memory>>,
+        record: &mut Record<'_, L::Memory>,
+        dt: f64,
+    ) -> Result<f64, DemError> {
+        if meeting.is_through(overlap, before) {
+            return Err(self.passed_through(meeting.pair, overlap.volume));
+        }
+        let area = overlap.area();
+        let (push, memory) = self.push_patch(meeting, overlap, [area, volume], before, dt);
+        record.add(overlap, area, &push, memory);
+        Ok(push.stiffness)
     }
 
     /// What a patch does to the first of a pair (its stiffness over mass \[1/s²\]), and what the law keeps of it.
@@ -119,12 +133,11 @@ impl<L: ContactLaw> View<'_, L> {
         &self,
         meeting: &Meeting<'_>,
         overlap: &Overlap,
-        volume: f64,
+        [area, volume]: [f64; 2],
         before: Option<&Patch<L::Memory>>,
         dt: f64,
     ) -> (Push, L::Memory) {
         let (a, first) = (meeting.a, meeting.constants());
-        let area = overlap.area();
         let arm_a = overlap.centroid - a.pose.position;
         let length = |arm: &Vector, constants: &Constants| arm.norm().max(SHORTEST_ARM * constants.inner);
         let mobility = |body: &Body, constants: &Constants, arm: &Vector| {

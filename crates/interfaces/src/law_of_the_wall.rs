@@ -43,23 +43,53 @@ impl LawOfTheWall {
         -(-(y_plus / Self::LOGARITHMIC).powi(4)).exp_m1()
     }
 
-    /// u_* \[m/s\] that k and the tangential velocity `u` \[m/s\] at distance `y` \[m\] tell together:
+    /// Velocity scale of the layer \[m/s\] by k and the tangential velocity `u` \[m/s\] at distance `y` \[m\]:
     ///
     /// ```text
-    /// u_* = u_k^(1 − s) u_u^s,   s = w (1 − e^−(u_k y/30ν)⁴),   u/u_u = u+(u_u y/ν)
+    /// û = u_k + L max(1 − (u_k/u_u)², 0) (u_u − u_k),   L = 1 − e^(−(u_u y/30ν)⁴),   u/u_u = u+(u_u y/ν)
     /// ```
     ///
-    /// u_k = `of_k` the [friction velocity](Self::friction_velocity) of k, u_u that of the velocity (Spalding 1961, *J. Appl. Mech.* 28, 455–458), w = `weight` in 0 … 1. In
-    /// equilibrium they are the same; where the flow along the wall speeds up or slows down the stress changes within half a cell, k comes late, and u_k
-    /// misses the friction by three times as much as u_u. In the viscous sublayer u_k is taken, which resolved layers have.
-    pub fn shared_friction_velocity(&self, of_k: f64, [y, u]: [f64; 2], nu: f64, weight: f64) -> f64 {
-        let share = weight * Self::logarithmic(of_k * y / nu);
-        // Next to none is none, which costs nothing.
-        if share < 1e-3 {
-            return of_k;
+    /// u_k = `of_k` the [friction velocity](Self::friction_velocity) of k, u_u that of the velocity (Spalding 1961, *J. Appl. Mech.* 28, 455–458). It is u_k
+    /// in the viscous sublayer and in equilibrium, and goes over to u_u by the share of k, 1 − (u_k/u_u)², that a logarithmic layer lacks: by k alone the
+    /// wall of a first cell that the stream has passed before it produced any k has the friction of a laminar layer, or a part of the turbulent one.
+    /// A `weight` of 0 leaves the velocity out: û is u_k.
+    pub fn layer_velocity(&self, of_k: f64, place: [f64; 2], nu: f64, weight: f64) -> f64 {
+        if weight > 0.0 { self.of_layer(of_k, place, nu)[0] } else { of_k }
+    }
+
+    /// û, and u_u where the layer may be logarithmic, otherwise û again.
+    fn of_layer(&self, of_k: f64, [y, u]: [f64; 2], nu: f64) -> [f64; 2] {
+        // y+ is at most √(u y/ν), as u+ is at most y+; next to none is none, which costs nothing.
+        if Self::logarithmic(of_k * y / nu).max(Self::logarithmic((u * y / nu).sqrt())) < 1e-3 {
+            return [of_k; 2];
         }
         let of_u = self.y_plus(u * y / nu) * nu / y;
-        of_k.powf(1.0 - share) * of_u.powf(share)
+        if of_k >= of_u {
+            return [of_k, of_u];
+        }
+        let missing = Self::logarithmic(of_u * y / nu) * (1.0 - (of_k / of_u).powi(2));
+        [of_k + missing * (of_u - of_k), of_u]
+    }
+
+    /// u_* \[m/s\] that k and the tangential velocity `u` \[m/s\] at distance `y` \[m\] give together:
+    ///
+    /// ```text
+    /// u_* = û^(1 − s) u_u^s,   s = w (1 − e^−(û y/30ν)⁴)
+    /// ```
+    ///
+    /// û the [velocity scale](Self::layer_velocity) of the layer, w = `weight` in 0 … 1. In
+    /// equilibrium u_k, u_u and û are the same; where the flow along the wall speeds up or slows down the stress changes within half a cell, k comes late, and u_k
+    /// misses the friction by three times as much as u_u. In the viscous sublayer u_k is taken, which resolved layers have.
+    pub fn shared_friction_velocity(&self, of_k: f64, place: [f64; 2], nu: f64, weight: f64) -> f64 {
+        if weight == 0.0 {
+            return of_k;
+        }
+        let [layer, of_u] = self.of_layer(of_k, place, nu);
+        let share = weight * Self::logarithmic(layer * place[0] / nu);
+        if share < 1e-3 {
+            return layer;
+        }
+        layer.powf(1.0 - share) * of_u.powf(share)
     }
 
     /// u+ at y+.
@@ -124,21 +154,42 @@ mod tests {
     fn the_velocity_has_a_share_where_the_layer_is_logarithmic() {
         let (law, nu, weight) = (LawOfTheWall::USUAL, 1e-6, 0.4);
         let of_u: f64 = 0.05;
-        for (y_plus, share) in [(1.0, 0.0), (30.0, weight * (1.0 - (-1.0_f64).exp())), (200.0, weight)] {
+        for (y_plus, share) in [(1.0, 0.0), (100.0, weight), (200.0, weight)] {
             let of_k = 0.04;
             let y = y_plus * nu / of_k;
             let u = of_u * law.u_plus(of_u * y / nu);
             let found = law.shared_friction_velocity(of_k, [y, u], nu, weight);
-            let wanted = of_k * (of_u / of_k).powf(share);
+            let layer: f64 = of_k + (1.0 - (of_k / of_u).powi(2)) * (of_u - of_k) * f64::from(y_plus > 2.0);
+            let wanted = layer.powf(1.0 - share) * of_u.powf(share);
             assert!((found / wanted - 1.0).abs() < 1e-9, "{y_plus}: {found} {wanted}");
+            assert!((law.layer_velocity(of_k, [y, u], nu, weight) / layer - 1.0).abs() < 1e-9);
             // Both tell the same.
             let same = law.shared_friction_velocity(of_u, [y, u], nu, weight);
             assert!((same / of_u - 1.0).abs() < 1e-9);
             assert_eq!(law.shared_friction_velocity(of_k, [y, u], nu, 0.0), of_k);
         }
-        assert_eq!(law.shared_friction_velocity(0.0, [0.1, 1.0], nu, weight), 0.0);
         // A flow at rest.
         assert_eq!(law.shared_friction_velocity(1.0, [0.1, 0.0], nu, weight), 0.0);
+    }
+
+    /// Without any k the layer is that of the velocity where this is logarithmic, laminar where it is a sublayer, and never beyond either.
+    #[test]
+    fn a_layer_without_k_is_that_of_the_velocity() {
+        let (law, nu, of_u) = (LawOfTheWall::USUAL, 1e-6, 0.05);
+        for (y_plus, least, most) in
+            [(3.0, 0.0, 0.0), (20.0, 0.1, 0.3), (60.0, 0.999, 1.0), (1e3, 0.999_999, 1.0)]
+        {
+            let y = y_plus * nu / of_u;
+            let place = [y, of_u * law.u_plus(y_plus)];
+            let found = law.shared_friction_velocity(0.0, place, nu, 0.4) / of_u;
+            assert!((least - 1e-9..=most + 1e-9).contains(&found), "{y_plus}: {found}");
+            for part in [0.01, 0.3, 0.9, 1.0, 1.5] {
+                let layer = law.layer_velocity(part * of_u, place, nu, 0.4) / of_u;
+                assert!((part - 1e-12..=part.max(1.0) + 1e-9).contains(&layer), "{y_plus} {part}: {layer}");
+            }
+            // What k says of a layer in equilibrium stays, to the last digits.
+            assert!((law.layer_velocity(of_u, place, nu, 0.4) / of_u - 1.0).abs() < 1e-9);
+        }
     }
 
     #[test]

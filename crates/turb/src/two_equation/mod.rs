@@ -321,7 +321,7 @@ impl<L: Law> Closure for TwoEquation<L> {
         self.work.runs = runs;
         solved?;
         self.layer.refresh(walls, &self.k, nu);
-        self.y_plus = self.layer.y_plus(walls, nu);
+        self.y_plus = self.layer.y_plus(walls, nu, L::SCALE.least_y_plus());
         Ok(())
     }
 }

@@ -172,8 +172,9 @@ impl<L: Law> TwoEquation<L> {
             self.law.k_terms(&local, local.eddy * local.strain * local.strain).put(&mut terms, i);
         }
         for w in &self.layer.cells {
-            let local = self.local(w.cell, distance[w.cell], nu);
+            let mut local = self.local(w.cell, distance[w.cell], nu);
             let resolved = local.eddy * local.strain * local.strain;
+            local.k = mix(w.free, w.k, local.k);
             let produced = w.production + (1.0 - w.share) * resolved;
             let mut of_cell = self.law.k_terms(&local, mix(w.free, produced, resolved));
             of_cell.sink += w.conductance / flow.cell_volume(w.cell);

@@ -157,7 +157,7 @@ fn rows_get_wall_functions() {
     let mut mean = WallLayer::new(WallFunctions { shear: WallShear::Mean, ..f });
     mean.update(&rows, &[k, k, 5.0], nu, Scale::Omega).unwrap();
     assert!(mean.cells.iter().all(|w| (w.shear.unwrap() * 2.0 * y / u_t - 1.0).abs() < 1e-14));
-    let statistics = layer.y_plus(&rows, nu);
+    let statistics = layer.y_plus(&rows, nu, 0.0);
     assert!((statistics.mean / y_plus - 1.0).abs() < 1e-12 && statistics.rows == 3);
     let bad = layer.update(&[WallRow { cell: 9, y, ..WallRow::default() }], &[k; 3], nu, Scale::Omega);
     assert!(matches!(bad, Err(SolveError::Value { .. })));
@@ -175,23 +175,56 @@ fn friction_is_shared_by_k_and_the_velocity() {
         let mut layer = WallLayer::new(functions);
         layer.see(&[row], &[k], nu).unwrap();
         layer.update(&[row], &[k], nu, Scale::Omega).unwrap();
-        let plus = layer.y_plus(&[row], nu).mean;
+        let plus = layer.y_plus(&[row], nu, 0.0).mean;
         ((nu + layer.viscosity[0]) * u_t / y / (u_tau * u_tau), plus / y_plus, layer.cells[0].production)
     };
     let alone = |speed: f64| speed * 1.25 * f.u_plus(1.25 * y_plus) / f.u_plus(speed * y_plus);
-    for (velocity_weight, speed) in [(0.0, 1.0), (0.4, 1.25_f64.powf(0.4)), (1.0, 1.25)] {
+    // A logarithmic layer lacks 0.36 of its k.
+    let layer: f64 = 1.0 + (1.0 - 1.25_f64.powi(-2)) * 0.25;
+    let shared = layer.powf(0.6) * 1.25_f64.powf(0.4);
+    for (velocity_weight, layer, speed) in [(0.0, 1.0, 1.0), (0.4, layer, shared), (1.0, layer, 1.25)] {
+        let k = layer * layer * k;
         let (found, plus, produced) = of(WallFunctions { velocity_weight, ..f }, row);
         assert!((found / alone(speed) - 1.0).abs() < 1e-9, "{velocity_weight}: {found}");
         assert!((plus * plus / found - 1.0).abs() < 1e-9);
         // As much as that friction produces with the shear of the same share.
-        let wanted = speed * f.production(Scale::Omega, f.omega(y, k, nu), k, found * u_tau * u_tau);
+        let wanted = speed / layer * f.production(Scale::Omega, f.omega(y, k, nu), k, found * u_tau * u_tau);
         assert!((produced / wanted - 1.0).abs() < 1e-9);
     }
     let known = 1.1 * u_tau * u_tau;
     let (_, plus, produced) = of(f, WallRow { friction: Some(known), ..row });
     assert!((plus * plus - 1.1).abs() < 1e-9);
-    let wanted = 1.25_f64.powf(0.4) * f.production(Scale::Omega, f.omega(y, k, nu), k, known);
+    let k = layer * layer * k;
+    let wanted = shared / layer * f.production(Scale::Omega, f.omega(y, k, nu), k, known);
     assert!((produced / wanted - 1.0).abs() < 1e-9);
+}
+
+/// A first cell at y+ of hundreds that the stream has passed before it produced any k has turbulent friction, and produces the k of its layer.
+#[test]
+fn a_turbulent_first_cell_without_k_produces_it() {
+    let f = WallFunctions::default();
+    let (nu, u_tau, k) = (1e-6, 0.05, 1e-9);
+    for (y_plus, least) in [(3.0, 0.0), (40.0, 0.9), (300.0, 0.999), (3000.0, 0.999)] {
+        let y = y_plus * nu / u_tau;
+        let row = WallRow { cell: 0, y, area: 1.0, u_t: u_tau * f.u_plus(y_plus), ..WallRow::default() };
+        for scale in [Scale::Omega, Scale::Epsilon] {
+            let mut layer = WallLayer::new(f);
+            layer.see(&[row], &[k], nu).unwrap();
+            layer.update(&[row], &[k], nu, scale).unwrap();
+            let cell = layer.cells[0];
+            let stress = (nu + layer.viscosity[0]) * row.u_t / y;
+            if least == 0.0 {
+                // In a resolved sublayer the stress is that of the fluid.
+                assert!((stress / (nu * row.u_t / y) - 1.0).abs() < 1e-3 && cell.production < 1e-9);
+                continue;
+            }
+            assert!(stress > least * u_tau * u_tau, "{y_plus}: {stress}");
+            assert!(cell.k > least * least * u_tau * u_tau / 0.3, "{y_plus}: {}", cell.k);
+            // What the shear of the logarithmic layer produces.
+            let produced = cell.production / (u_tau.powi(3) / (f.kappa * y));
+            assert!((0.8 * least..1.15).contains(&produced), "{y_plus} {scale:?}: {produced}");
+        }
+    }
 }
 
 /// A row that sees the flow elsewhere has the friction of there; half of the model's own equations go half in.
@@ -227,7 +260,7 @@ fn rows_may_see_the_flow_elsewhere() {
     // Other rows: ν_t on the wall is theirs, not none.
     layer.see(&rows[1..], &[k; 2], nu).unwrap();
     assert!(layer.viscosity.len() == 1 && layer.viscosity[0] > nu);
-    assert!((layer.y_plus(&rows[1..], nu).mean / 120.0 - 1.0).abs() < 1e-9);
+    assert!((layer.y_plus(&rows[1..], nu, 0.0).mean / 120.0 - 1.0).abs() < 1e-9);
 }
 
 /// Cells in solids, and such as have come out of one.

@@ -128,6 +128,14 @@ impl WallFunctions {
         self.law().shared_friction_velocity(of_k, place, nu, self.velocity_weight) * place[0] / nu
     }
 
+    /// k of the layer \[m²/s²\]: û²/√C_μ where the velocity at `place` belongs to a logarithmic layer that k has not followed
+    /// ([`LawOfTheWall::layer_velocity`]), otherwise `k`. A turbulent first cell without k so has the ω or ε, and produces k by the shear, of its layer.
+    pub fn layer_k(&self, place: [f64; 2], k: f64, nu: f64) -> f64 {
+        let of_k = self.y_star(1.0, k, nu) * nu;
+        let layer = self.law().layer_velocity(of_k, place, nu, self.velocity_weight);
+        if layer > of_k { layer * layer / self.c_mu.sqrt() } else { k }
+    }
+
     fn law(&self) -> LawOfTheWall {
         LawOfTheWall { kappa: self.kappa, e: self.e }
     }

@@ -1,5 +1,6 @@
 //! Wall functions on rows.
 use super::functions::share;
+use super::statistics::WallSample;
 use crate::two_equation::NOTHING;
 use crate::{Scale, WallFunctions, WallShear, YPlus};
 use interfaces::{SolveError, WallRow};
@@ -40,6 +41,8 @@ pub(crate) struct WallCell {
     pub(crate) shear: Option<f64>,
     /// Share of the model's own equations.
     pub(crate) free: f64,
+    /// [`WallFunctions::layer_k`] \[m²/s²\].
+    pub(crate) k: f64,
 }
 
 impl WallLayer {
@@ -115,12 +118,15 @@ impl WallLayer {
         blends.clear();
         for w in cells.iter_mut() {
             let own = &order[w.first..][..w.rows];
-            let (k, area) = (k[w.cell], own.iter().map(|&r| rows[r].area).sum::<f64>());
+            let (own_k, area) = (k[w.cell], own.iter().map(|&r| rows[r].area).sum::<f64>());
             let mut value = 0.0;
-            (w.share, w.production, w.conductance, w.shear, w.free) = (0.0, 0.0, 0.0, Some(0.0), 0.0);
+            (w.share, w.production, w.conductance, w.shear, w.free, w.k) =
+                (0.0, 0.0, 0.0, Some(0.0), 0.0, 0.0);
             for &r in own {
                 let row = &rows[r];
                 let part = if area > 0.0 { row.area / area } else { 1.0 / own.len() as f64 };
+                let k = f.layer_k([row.y, row.u_t], own_k, nu);
+                w.k += part * k;
                 let share = share(f.y_star(row.y, k, nu), *laminar);
                 let friction = friction(row, nu + viscosity[r]);
                 let given = match scale {
@@ -130,9 +136,9 @@ impl WallLayer {
                 value += part * given;
                 w.share += part * share;
                 // By the shear of the law with the velocity's share in it: so k follows a flow that speeds up.
-                let (place, k_there) = seen(row, k);
-                let of_k = f.y_star(place[0], k_there, nu);
-                let shear = if of_k > 0.0 { f.shared_y_star(place, k_there, nu) / of_k } else { 1.0 };
+                let (place, k_there) = seen(row, own_k);
+                let of_layer = f.y_star(place[0], f.layer_k(place, k_there, nu), nu);
+                let shear = if of_layer > 0.0 { f.shared_y_star(place, k_there, nu) / of_layer } else { 1.0 };
                 w.production += part * share * shear * f.production(scale, given, k, friction);
                 w.conductance += (1.0 - share) * row.area * nu / row.y;
                 let shear = match f.shear {
@@ -170,12 +176,15 @@ impl WallLayer {
         Ok(())
     }
 
-    /// y+ of the rows.
-    pub(crate) fn y_plus(&self, rows: &[WallRow], nu: f64) -> YPlus {
-        YPlus::of(rows.iter().zip(&self.viscosity).map(|(row, nu_t)| {
+    /// y+ of the rows, of a model that holds from y+ `from` on.
+    pub(crate) fn y_plus(&self, rows: &[WallRow], nu: f64, from: f64) -> YPlus {
+        let laminar = nu * self.functions.viscosity_ratio(self.laminar);
+        let samples = rows.iter().zip(&self.viscosity).map(|(row, nu_t)| {
             let y = row.seen.map_or(row.y, |seen| seen.y);
-            (y * friction(row, nu + nu_t).sqrt() / nu, row.area)
-        }))
+            let y_plus = y * friction(row, nu + nu_t).sqrt() / nu;
+            WallSample { y_plus, area: row.area, laminar: *nu_t < laminar }
+        });
+        YPlus::of(samples, from)
     }
 }
 

@@ -123,7 +123,9 @@ pub(super) struct Stresses<const D: usize> {
     pub(super) traction: Vec<Vector>,
     friction: Vec<f64>,
     /// C_μ^¼ √k there, where k is known \[m/s\].
-    speeds: Vec<Option<f64>>,
+    of_k: Vec<Option<f64>>,
+    /// By how much the velocity scale of the layer is above that ([`LawOfTheWall::layer_velocity`]) \[m/s\].
+    raised: Vec<f64>,
     /// That which k and the velocity share.
     shared: Vec<Option<f64>>,
     /// Per probe: the force per density \[m⁴/s²\] on it in the last iteration.
@@ -141,7 +143,8 @@ impl<const D: usize> Stresses<D> {
             shares: std::array::from_fn(|_| Vec::new()),
             traction: vec![Vector::zeros(); n],
             friction: vec![0.0; n],
-            speeds: vec![None; n],
+            of_k: vec![None; n],
+            raised: vec![0.0; n],
             shared: vec![None; n],
             force: vec![Vector::zeros(); n],
         };
@@ -203,37 +206,38 @@ impl<const D: usize> Stresses<D> {
         probe
     }
 
-    /// State of every piece of wall: traction, force, friction over velocity, and the speeds of k and of both, which are no number where there is no k.
+    /// State of every piece of wall: traction, force, friction over velocity, increase of the
+    /// layer's velocity scale, and the speeds of k and of both, NaN without k.
     pub(super) fn numbers(&self) -> Vec<f64> {
         let piece = |p: usize| {
-            let speeds = [self.speeds[p], self.shared[p]].map(|speed| speed.unwrap_or(f64::NAN));
+            let speeds = [self.of_k[p], self.shared[p]].map(|speed| speed.unwrap_or(f64::NAN));
             let vectors = [self.traction[p], self.force[p]];
             let vectors = vectors.into_iter().flat_map(|v| [v.x, v.y, v.z]);
-            vectors.chain([self.friction[p], speeds[0], speeds[1]])
+            vectors.chain([self.friction[p], self.raised[p], speeds[0], speeds[1]])
         };
         (0..self.probes.len()).flat_map(piece).collect()
     }
 
     /// Takes back [`numbers`](Self::numbers).
     pub(super) fn set_numbers(&mut self, numbers: &[f64]) {
-        for (p, &[tx, ty, tz, fx, fy, fz, friction, k, shared]) in numbers.as_chunks().0.iter().enumerate() {
+        for (p, &[tx, ty, tz, fx, fy, fz, friction, raised, k, shared]) in numbers.as_chunks().0.iter().enumerate() {
             self.traction[p] = Vector::new(tx, ty, tz);
             self.force[p] = Vector::new(fx, fy, fz);
-            self.friction[p] = friction;
-            [self.speeds[p], self.shared[p]] = [k, shared].map(|speed| (!speed.is_nan()).then_some(speed));
+            (self.friction[p], self.raised[p]) = (friction, raised);
+            [self.of_k[p], self.shared[p]] = [k, shared].map(|speed| (!speed.is_nan()).then_some(speed));
         }
     }
 
-    /// Looks at k.
+    /// Samples k.
     pub(super) fn see(&mut self, k: Option<&Field<D>>) {
         if !matches!(self.law, WallStress::Law { .. }) {
             return;
         }
-        for (speed, probe) in self.speeds.iter_mut().zip(&self.probes) {
+        for (of_k, probe) in self.of_k.iter_mut().zip(&self.probes) {
             let k = k.map(|k| {
                 self.cells[probe.cells.0..probe.cells.1].iter().map(|&(o, w)| w * k.data()[o]).sum()
             });
-            *speed = k.map(LawOfTheWall::friction_velocity);
+            *of_k = k.map(LawOfTheWall::friction_velocity);
         }
     }
 
@@ -241,29 +245,47 @@ impl<const D: usize> Stresses<D> {
     pub(super) fn update(&mut self, velocity: &[Field<D>; D], k: Option<&Field<D>>, nu: f64) {
         let WallStress::Law { law, velocity_weight, .. } = self.law else { return };
         self.see(k);
-        for (p, probe) in self.probes.iter().enumerate() {
-            let scale = self.speed(p) / nu;
-            // In fluid at rest the law is that of the viscous sublayer.
-            let law_at = |y: f64| if scale > 0.0 { law.u_plus(scale * y) } else { y };
-            let logarithmic = self.logarithmic(p, nu);
-            let mut u = Vector::zeros();
-            for c in 0..D {
-                let (first, last) = probe.ranges[c];
-                let [mut sum, mut plus] = [0.0; 2];
-                for term in &self.terms[first..last] {
-                    let weight = term.weight * if term.sliver { 1.0 - logarithmic } else { 1.0 };
-                    sum += weight * (velocity[c].data()[term.node] - probe.velocity[c]);
-                    plus += weight * law_at(term.y);
-                }
-                u[c] = sum / plus * law_at(probe.y);
+        for p in 0..self.probes.len() {
+            let before = self.raised[p];
+            self.sample(p, velocity, nu, (law, velocity_weight));
+            // The velocity is sampled by the scale of the layer, which it may raise.
+            if self.raised[p] != before {
+                self.sample(p, velocity, nu, (law, velocity_weight));
             }
-            u -= probe.normal * probe.normal.dot(&u);
-            let place = [probe.y, u.norm()];
-            let speed = self.speeds[p].map(|k| law.shared_friction_velocity(k, place, nu, velocity_weight));
-            self.friction[p] = friction(law, place, speed, nu);
-            self.traction[p] = u * self.friction[p];
-            self.shared[p] = speed;
         }
+    }
+
+    /// Samples the velocity by piece `p`, and sets its friction.
+    fn sample(
+        &mut self,
+        p: usize,
+        velocity: &[Field<D>; D],
+        nu: f64,
+        (law, velocity_weight): (LawOfTheWall, f64),
+    ) {
+        let probe = &self.probes[p];
+        let scale = self.speed(p) / nu;
+        // In fluid at rest the law is that of the viscous sublayer.
+        let law_at = |y: f64| if scale > 0.0 { law.u_plus(scale * y) } else { y };
+        let logarithmic = self.logarithmic(p, nu);
+        let mut u = Vector::zeros();
+        for c in 0..D {
+            let (first, last) = probe.ranges[c];
+            let [mut sum, mut plus] = [0.0; 2];
+            for term in &self.terms[first..last] {
+                let weight = term.weight * if term.sliver { 1.0 - logarithmic } else { 1.0 };
+                sum += weight * (velocity[c].data()[term.node] - probe.velocity[c]);
+                plus += weight * law_at(term.y);
+            }
+            u[c] = sum / plus * law_at(probe.y);
+        }
+        u -= probe.normal * probe.normal.dot(&u);
+        let place = [probe.y, u.norm()];
+        self.raised[p] = self.of_k[p].map_or(0.0, |k| law.layer_velocity(k, place, nu, velocity_weight) - k);
+        let speed = self.of_k[p].map(|k| law.shared_friction_velocity(k, place, nu, velocity_weight));
+        self.friction[p] = friction(law, place, speed, nu);
+        self.traction[p] = u * self.friction[p];
+        self.shared[p] = speed;
     }
 
     /// Of every piece of wall the u_τ by which it has its friction \[m/s\]: that which k and the velocity share, or that of the friction itself where there is no k.
@@ -272,9 +294,9 @@ impl<const D: usize> Stresses<D> {
         self.shared.iter().enumerate().map(move |(p, shared)| shared.unwrap_or_else(|| own(p)))
     }
 
-    /// u_τ beside a piece of wall \[m/s\].
+    /// Velocity scale of the layer beside a piece of wall \[m/s\].
     fn speed(&self, piece: usize) -> f64 {
-        self.speeds[piece].unwrap_or_else(|| self.traction[piece].norm().sqrt())
+        self.of_k[piece].map_or_else(|| self.traction[piece].norm().sqrt(), |k| k + self.raised[piece])
     }
 
     /// Is the layer beside a piece of wall logarithmic? From 0 in the viscous sublayer to 1.

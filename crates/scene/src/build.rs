@@ -7,7 +7,9 @@ use crate::still::Still;
 use coupling::WithScalars;
 use dem::placing::{PlacingError, Region};
 use dem::{Chen, ContactLaw, Entrant, Inflow, Lubricated, Population, Repulsive, RigidBodies};
-use fv_mesh::{Axis, CartesianGrid, Diffusion, FlowError, Piso, PisoParams, Projection, Side, TimeScheme};
+use fv_mesh::{
+    Axis, CartesianGrid, Convection, Diffusion, FlowError, Piso, PisoParams, Projection, Side, TimeScheme,
+};
 use ibm::{Hfdib, IbmError, SmoothFilm, SmoothForcing, cut_walls};
 use interfaces::{BodyId, Freedom, Kinematics, Periods, Twist};
 
@@ -28,6 +30,18 @@ fn free_memory() -> Option<f64> {
 const DOUBLES: [f64; 2] = [30.0, 40.0];
 
 impl Setup {
+    /// The convection scheme, and why it is the default one.
+    fn convection(&self) -> String {
+        match (self.flow.default_convection, self.flow.convection) {
+            (Some(why), _) => why.into(),
+            (None, Convection::Central) => "central".into(),
+            (None, Convection::Upwind) => "upwind".into(),
+            (None, Convection::LinearUpwind) => "linear-upwind".into(),
+            (None, Convection::Quick) => "quick".into(),
+            (None, Convection::Limited) => "limited".into(),
+        }
+    }
+
     /// Memory for fields and solvers, roughly \[bytes\].
     pub(crate) fn memory(&self) -> f64 {
         if self.fluid.is_none() {
@@ -312,6 +326,7 @@ impl Setup {
         let names: Vec<&str> = self.scalars.iter().map(|s| s.name.as_str()).collect();
         vec![
             ("flow", fluid, if fluid { algorithm } else { "no `fluid`: bodies alone" }.into()),
+            ("convection", fluid, if fluid { self.convection() } else { "no fluid".into() }),
             ("turbulence model", self.turbulence.is_some(), turbulence),
             ("scalars", !names.is_empty(), if names.is_empty() { "none".into() } else { names.join(", ") }),
             ("immersed boundary", any && fluid, forcing.into()),

@@ -138,6 +138,13 @@ impl RunResult {
                 of("most"),
                 of("mean")
             );
+            let part = |key: &str| shown(&y[key], |x| format!("{:.0} %", 100.0 * x));
+            out += &format!(
+                "  of the walls {} laminar, {} below and {} above the model's y+\n",
+                part("laminar"),
+                part("below_range"),
+                part("above_range")
+            );
             for warning in y["warnings"].as_array().into_iter().flatten().filter_map(Value::as_str) {
                 out += &format!("  warning: {warning}\n");
             }

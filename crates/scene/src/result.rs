@@ -148,7 +148,17 @@ impl RunResult {
             result["fields"] = Value::Object(fields);
         }
         if let Some(y) = view.y_plus() {
-            result["y_plus"] = json!({ "least": number(y.least), "mean": number(y.mean), "most": number(y.most), "warnings": y.warnings() });
+            result["y_plus"] = json!({
+                "least": number(y.least),
+                "mean": number(y.mean),
+                "most": number(y.most),
+                "range": y.range,
+                "below_range": number(y.below),
+                "above_range": number(y.beyond),
+                "between_laws": number(y.between),
+                "laminar": number(y.laminar),
+                "warnings": y.warnings(),
+            });
         }
         let names: Vec<&str> = setup.bodies.list.iter().map(|b| b.name.as_str()).collect();
         let bodies: Vec<Value> = (0..view.bodies().n_bodies())

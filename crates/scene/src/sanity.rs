@@ -209,6 +209,9 @@ impl Setup {
         if let (Some(model), Some(y)) = (&self.turbulence, self.y_plus()) {
             let by_law = model.model.averages() && matches!(model.walls, WallStress::Law { .. });
             let told = match (by_law, y) {
+                (_, ..30.0) if model.model.needs_log_layer() => Some(
+                    "models with ε have no terms for the viscous sublayer and want 30 to 300; take wider cells there, or \"sst\" or \"k-omega\"",
+                ),
                 (true, 12.0..=1000.0) => None,
                 (true, ..12.0) => Some(
                     "laws of the wall want 30 to 300; take wider cells there, or walls = \"no-slip\" and y+ of 1 for bodies at rest",

@@ -105,7 +105,8 @@ impl Setup {
         let context = Context { folder, dim };
         let sides = sides::read(root, &context)?;
         let fluid = flow::fluid(root)?;
-        let flow = flow::read(root)?;
+        let turbulence = physics::turbulence(root, dim)?;
+        let flow = flow::read(root, turbulence.as_ref().is_some_and(|t| t.model.averages()))?;
         let gravity = root.vector_of("gravity", dim)?.unwrap_or_default();
         let bodies = bodies::read(root, &context, &axes, &sides, (fluid, gravity))?;
         let force = root.formulas("force", &["t"], dim)?;
@@ -149,7 +150,7 @@ impl Setup {
             ramp: time.flag("ramp").unwrap_or(bodies.any_free() && fluid.is_some() && !time.has("steps")),
             save_every: checkpoint.number("every").unwrap_or(10.0),
             save_at_end: checkpoint.flag("at_end").unwrap_or(true),
-            turbulence: physics::turbulence(root, dim)?,
+            turbulence,
             scalars: physics::scalars(root, &context, &sides)?,
             models: Vec::new(),
             unused: steady::unused(root, flow.algorithm),

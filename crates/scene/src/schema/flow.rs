@@ -331,8 +331,8 @@ pub(super) static FLOW: Table = Table {
                 ("quick", "third-order interpolation"),
                 ("limited", "van Leer's limiter"),
             ]),
-            "central",
-            "The convection scheme.",
+            "central; with a RANS model limited, or quick with simple",
+            "The convection scheme. Flows with a RANS model (SST, k–ω, k–ε, realizable) need one that is upwind-biased: a square cylinder at Re 22 000 has Cd 1.36 with central and 1.85 with limited (measured: 2.05 to 2.23).",
             "\"quick\"",
         ),
         optional(

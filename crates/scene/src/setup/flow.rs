@@ -28,6 +28,8 @@ impl Algorithm {
 pub(crate) struct FlowSetup {
     pub(crate) algorithm: Algorithm,
     pub(crate) convection: Convection,
+    /// Why it is that one, if the scene does not say.
+    pub(crate) default_convection: Option<&'static str>,
     pub(crate) diffusion: Option<Diffusion>,
     pub(crate) pressure: PressureSolver,
     /// Of a steady flow.
@@ -68,22 +70,34 @@ pub(super) fn fluid(root: &Reader<'_>) -> Result<Option<Fluid>, Problem> {
     Ok(Some(Fluid { density, viscosity }))
 }
 
-pub(super) fn read(root: &Reader<'_>) -> Result<FlowSetup, Problem> {
+/// The flow's algorithm and schemes; `averages` if a turbulence model of mean flows is there.
+pub(super) fn read(root: &Reader<'_>, averages: bool) -> Result<FlowSetup, Problem> {
     let t = root.table("flow");
     let word = |key: &str| t.as_ref().and_then(|t| t.text(key));
+    let algorithm = match word("algorithm") {
+        Some("piso") => Algorithm::Piso,
+        Some("simple") => Algorithm::Simple,
+        _ => Algorithm::Projection,
+    };
+    // Mean flows leave no turbulence on the grid for a scheme without damping to keep: its waves in wakes and at the edges of layers are errors.
+    let (convection, default_convection) = match (word("convection"), averages, algorithm) {
+        (Some("central"), ..) => (Convection::Central, None),
+        (Some("upwind"), ..) => (Convection::Upwind, None),
+        (Some("linear-upwind"), ..) => (Convection::LinearUpwind, None),
+        (Some("quick"), ..) => (Convection::Quick, None),
+        (Some("limited"), ..) => (Convection::Limited, None),
+        (_, true, Algorithm::Simple) => {
+            (Convection::Quick, Some("quick, upwind-biased, as the model resolves no eddies"))
+        }
+        (_, true, _) => {
+            (Convection::Limited, Some("limited, upwind-biased, as the model resolves no eddies"))
+        }
+        (_, false, _) => (Convection::Central, Some("central, which keeps kinetic energy")),
+    };
     Ok(FlowSetup {
-        algorithm: match word("algorithm") {
-            Some("piso") => Algorithm::Piso,
-            Some("simple") => Algorithm::Simple,
-            _ => Algorithm::Projection,
-        },
-        convection: match word("convection") {
-            Some("upwind") => Convection::Upwind,
-            Some("linear-upwind") => Convection::LinearUpwind,
-            Some("quick") => Convection::Quick,
-            Some("limited") => Convection::Limited,
-            _ => Convection::Central,
-        },
+        algorithm,
+        convection,
+        default_convection,
         diffusion: match word("diffusion") {
             Some("explicit") => Some(Diffusion::Explicit),
             Some("implicit") => Some(Diffusion::Implicit),

@@ -42,6 +42,8 @@ y = "wall"
 [fluid]
 density = 1.0
 nu = 1e-3
+[flow]
+convection = "central"
 [scalars.momentum]
 diffusivity = 1e-3
 turbulent_prandtl = 1.0

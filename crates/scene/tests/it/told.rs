@@ -190,3 +190,36 @@ fn thin_walls_are_found_by_the_plan() {
         assert!(warnings.contains("body blade is thin at ("), "{warnings}");
     }
 }
+
+/// Mean flows are convected by an upwind-biased scheme unless the scene says otherwise; large eddies and resolved flows keep the central one. The plan tells
+/// which, and why.
+#[test]
+fn rans_models_take_an_upwind_biased_scheme_by_default() {
+    let plan = |more: &[&str]| scene(STREAM, more).plan().unwrap().to_string();
+    let because = "upwind-biased, as the model resolves no eddies";
+    for model in ["sst", "k-omega", "k-epsilon", "realizable"] {
+        let turbulence = format!("turbulence=\"{model}\"");
+        assert!(plan(&[&turbulence]).contains(&format!("limited, {because}")), "{}", plan(&[&turbulence]));
+        let steady = plan(&[&turbulence, "flow.algorithm=\"simple\""]);
+        assert!(steady.contains(&format!("quick, {because}")), "{steady}");
+        let given = plan(&[&turbulence, "flow.convection=\"central\""]);
+        assert!(!given.contains(because) && given.contains("central"), "{given}");
+    }
+    assert!(plan(&[]).contains("central, which keeps kinetic energy"), "{}", plan(&[]));
+}
+
+/// Models with ε beside first cells in the buffer layer or the viscous sublayer are warned of before the run.
+#[test]
+fn models_without_a_sublayer_want_wide_first_cells() {
+    let warnings = |model: &str, nu: &str| {
+        let turbulence = format!("turbulence=\"{model}\"");
+        scene(STREAM, &[&turbulence, nu, "sides.y=\"wall\""]).plan().unwrap().warnings.join("\n")
+    };
+    for model in ["k-epsilon", "realizable"] {
+        for nu in ["fluid.nu=1e-2", "fluid.nu=1e-3", "fluid.nu=1e-4"] {
+            let told = warnings(model, nu);
+            assert!(told.contains("no terms for the viscous sublayer"), "{model} {nu}: {told}");
+        }
+    }
+    assert!(!warnings("sst", "fluid.nu=1e-3").contains("no terms for the viscous sublayer"));
+}

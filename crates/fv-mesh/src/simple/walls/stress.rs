@@ -220,7 +220,9 @@ impl<const D: usize> Stresses<D> {
 
     /// Takes back [`numbers`](Self::numbers).
     pub(super) fn set_numbers(&mut self, numbers: &[f64]) {
-        for (p, &[tx, ty, tz, fx, fy, fz, friction, raised, k, shared]) in numbers.as_chunks().0.iter().enumerate() {
+        for (p, &[tx, ty, tz, fx, fy, fz, friction, raised, k, shared]) in
+            numbers.as_chunks().0.iter().enumerate()
+        {
             self.traction[p] = Vector::new(tx, ty, tz);
             self.force[p] = Vector::new(fx, fy, fz);
             (self.friction[p], self.raised[p]) = (friction, raised);

@@ -26,8 +26,8 @@ pub(crate) struct Walls<const D: usize> {
     pub(crate) impulses: Vec<Wrench>,
     /// Velocities of the faces' nodes while the faces carry the flux, that flux otherwise.
     nodes: [Vec<f64>; D],
-    /// dt/ρ of the last projection, if the fluxes in `nodes` are those that it made free of divergence.
-    pub(crate) projected: Option<f64>,
+    /// Whether the fluxes in `nodes` are those that the last projection made free of divergence.
+    pub(crate) projected: bool,
 }
 
 /// One step's numbers.
@@ -60,7 +60,7 @@ impl<const D: usize> Walls<D> {
             pressure,
             impulses: vec![Wrench::default(); cuts.n_bodies],
             nodes: std::array::from_fn(|c| vec![0.0; cuts.components[c].faces.len()]),
-            projected: None,
+            projected: false,
             cuts,
         })
     }
@@ -109,18 +109,25 @@ impl<const D: usize> Walls<D> {
         }
     }
 
-    /// Gives the faces the flux whose divergence the last projection removed: that of u* less dt/ρ times the gradient of its `phi` on the open part;
-    /// without one the flux of the velocity.
-    pub(crate) fn show_conserved(&self, phi: &[f64], velocity: &mut [Field<D>; D]) {
+    /// Corrects the fluxes through the faces by `answer` = dt/ρ times the gradient of `phi` on the open part.
+    pub(crate) fn project(&mut self, answer: f64, phi: &[f64]) {
+        for (c, fluxes) in self.nodes.iter_mut().enumerate() {
+            for (flux, slope) in fluxes.iter_mut().zip(self.pressure.gradients(c, phi)) {
+                *flux -= answer * slope;
+            }
+        }
+        self.projected = true;
+    }
+
+    /// Gives the faces the flux whose divergence the last projection removed; without one the flux of
+    /// the velocity.
+    pub(crate) fn show_conserved(&self, velocity: &mut [Field<D>; D]) {
         for (c, component) in velocity.iter_mut().enumerate() {
-            let faces = &self.cuts.components[c].faces;
             let u = component.data_mut();
-            let fluxes: Vec<f64> = match self.projected {
-                Some(answer) => {
-                    let gradients = self.pressure.gradients(c, phi);
-                    self.nodes[c].iter().zip(gradients).map(|(flux, slope)| flux - answer * slope).collect()
-                }
-                None => faces.iter().map(|face| face.mean_velocity(u)).collect(),
+            let faces = &self.cuts.components[c].faces;
+            let fluxes = match self.projected {
+                true => self.nodes[c].clone(),
+                false => faces.iter().map(|face| face.mean_velocity(u)).collect(),
             };
             faces.iter().zip(fluxes).for_each(|(face, flux)| u[face.index] = flux);
         }
@@ -136,7 +143,9 @@ impl<const D: usize> Walls<D> {
     pub(crate) fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         for (c, links) in self.links.iter().enumerate() {
             sink(&format!("walls{c}"), &links.plain);
+            sink(&format!("walls fluxes{c}"), &self.nodes[c]);
         }
+        sink("walls projected", &[f64::from(u8::from(self.projected))]);
         sink("walls", &self.pressure.missing);
         if let Some(recent) = &self.pressure.recent {
             recent.save(sink);
@@ -148,10 +157,12 @@ impl<const D: usize> Walls<D> {
         &mut self,
         source: &dyn Fn(&str) -> Option<&'a [f64]>,
     ) -> Result<(), RestartError> {
-        self.projected = None;
+        self.projected = false;
         for (c, links) in self.links.iter_mut().enumerate() {
             RestartError::fill(source, &format!("walls{c}"), &mut links.plain)?;
+            RestartError::fill(source, &format!("walls fluxes{c}"), &mut self.nodes[c])?;
         }
+        self.projected = RestartError::take(source, "walls projected", 1)?[0] != 0.0;
         RestartError::fill(source, "walls", &mut self.pressure.missing)?;
         self.pressure.recent.as_mut().map_or(Ok(()), |recent| recent.restore(source))
     }

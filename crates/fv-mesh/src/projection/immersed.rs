@@ -45,7 +45,7 @@ impl<const D: usize> Projection<D> {
             }
         }
         if let Some(walls) = &mut self.walls {
-            walls.projected = None;
+            walls.projected = false;
             walls.start(&mut velocity.components, pressure);
         }
         self.state.fill_velocity();
@@ -60,7 +60,7 @@ impl<const D: usize> Projection<D> {
         match &self.walls {
             None => self.state.statistics(),
             Some(walls) => self.state.statistics_of_fluxes(|state| {
-                walls.show_conserved(&self.phi, &mut state.velocity.components);
+                walls.show_conserved(&mut state.velocity.components);
                 state.fill_velocity();
             }),
         }

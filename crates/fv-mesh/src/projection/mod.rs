@@ -160,7 +160,7 @@ impl<const D: usize> Projection<D> {
         // The last tendency and pressure belong to another flow.
         self.state.last_dt = 0.0;
         if let Some(walls) = &mut self.walls {
-            walls.projected = None;
+            walls.projected = false;
         }
     }
 
@@ -326,7 +326,7 @@ impl<const D: usize> Projection<D> {
             None => kernels::add_dense(grid, &self.phi, pressure),
         }
         if let Some(walls) = &mut self.walls {
-            walls.projected = Some(answer);
+            walls.project(answer, &self.phi);
             walls.hold_solid(fluid.density, velocity);
             walls.pressure.smooth_orphans(pressure);
         }

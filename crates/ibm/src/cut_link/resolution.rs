@@ -2,7 +2,7 @@
 use super::distances::{Distances, Ticks};
 use crate::IbmError;
 use crate::neighbour::Neighbour;
-use interfaces::{Bodies, BodyId, Point, ThinPart, Vector, VelocityField};
+use interfaces::{Aabb, Bodies, BodyId, Point, Solid, ThinPart, Vector, VelocityField};
 
 /// Faces of the cells along every axis: the corners of the cells.
 pub(crate) fn vertices(velocity: &dyn VelocityField) -> [Ticks; 3] {
@@ -66,7 +66,12 @@ pub(crate) fn thin_parts<B: Bodies + ?Sized>(
             continue;
         }
         let at = |arm: Vector| Point::from(pose.orientation.inverse_transform_vector(&arm));
-        let normal = pose.orientation * solid.normal(at(near.arm), distances.band);
+        // Shapes need not have a normal exactly on their surface, where differences of the distance have.
+        let normal = match near.distance > 0.0 {
+            true => solid.normal(at(near.arm), distances.band),
+            false => ByDistance(solid).normal(at(near.arm), distances.band),
+        };
+        let normal = pose.orientation * normal;
         let width = (1.0 - ROUND) * normal.abs().component_mul(&gaps).max();
         if near.distance >= width {
             continue;
@@ -121,6 +126,18 @@ const ROUND: f64 = 1e-6;
 
 /// Samples of a chord.
 const SAMPLES: usize = 16;
+
+/// A solid that is known by its distances alone.
+struct ByDistance<'a>(&'a dyn Solid);
+
+impl Solid for ByDistance<'_> {
+    fn signed_distance(&self, x: Point, band: f64) -> f64 {
+        self.0.signed_distance(x, band)
+    }
+    fn aabb(&self) -> Aabb {
+        self.0.aabb()
+    }
+}
 
 /// Surface of one body.
 #[derive(Default)]

@@ -103,7 +103,7 @@ impl<const D: usize> Boundaries<D> {
     }
 
     /// Closes what immersed walls close of the sides: `open(a, index)` is the open share of the face of axis `a` with this
-    /// storage index. Inlets and convective outlets let flow pass in the open part, faces of given pressure are open or not.
+    /// storage index. What enters and leaves passes the open part.
     ///
     /// # Errors
     /// [`FlowError::MassBalance`] if what enters cannot leave.
@@ -123,9 +123,7 @@ impl<const D: usize> Boundaries<D> {
                         state.kind[l] = FaceKind::Closed;
                         (state.normal[l], state.given[l]) = (0.0, 0.0);
                     }
-                    if matches!(state.kind[l], FaceKind::Inlet | FaceKind::Convective) {
-                        state.open[l] = share;
-                    }
+                    state.open[l] = share;
                 }
             }
         }

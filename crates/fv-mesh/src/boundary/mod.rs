@@ -2,6 +2,7 @@
 mod boundaries;
 mod ends;
 mod extrapolation;
+mod face_excess;
 mod ghosts;
 mod lines;
 mod outlet_momentum;

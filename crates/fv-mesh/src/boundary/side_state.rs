@@ -1,5 +1,5 @@
 //! What happens at one side, line by line.
-use super::outlet_momentum::FaceExcess;
+use super::face_excess::FaceExcess;
 use super::{Extrapolation, Lines, Patch, Profile, Side, Sides};
 use crate::grid::GHOSTS;
 use crate::metrics::Metrics;
@@ -45,7 +45,7 @@ pub(super) struct SideState<const D: usize> {
     pub(super) normal: Vec<f64>,
     /// What is given of it, before inlets are balanced.
     pub(super) given: Vec<f64>,
-    /// Share of every inlet that immersed walls leave open; empty without them.
+    /// Share of every face that immersed walls leave open; empty without them.
     pub(super) open: Vec<f64>,
     /// By how much it changed in this step through what is given.
     pub(super) normal_change: Vec<f64>,
@@ -208,6 +208,14 @@ impl<const D: usize> SideState<D> {
             }
         }
     }
+}
+
+/// Do immersed walls cut the face of line `l` or one next to it, by the open shares of all faces of the side?
+pub(super) fn is_beside_cut(open: &[f64], lines: &Lines, l: usize) -> bool {
+    let steps = [0, 1, if lines.count[1] > 1 { lines.count[0] } else { 0 }];
+    let below = |step: usize| l.checked_sub(step).and_then(|l| open.get(l));
+    let around = steps.into_iter().flat_map(|step| [below(step), open.get(l + step)]);
+    around.flatten().any(|open| *open < 1.0)
 }
 
 /// A point of an inlet.

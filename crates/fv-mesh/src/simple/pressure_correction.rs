@@ -124,7 +124,8 @@ impl<const D: usize> PressureCorrection<D> {
         self.beta[c][face] *= open;
     }
 
-    /// Passes β to the solver. On faces of given pressure, where φ = 0, it is what their momentum answers to a pressure.
+    /// Passes β to the solver. On faces of given pressure, where φ = 0, it is the response of their momentum to a pressure, also where immersed walls cut them: the
+    /// open share of it would not converge beside slivers.
     pub(crate) fn update(&mut self, boundaries: &mut Boundaries<D>) -> Result<(), FlowError> {
         for c in 0..D {
             if !self.metrics.periodic[c] {

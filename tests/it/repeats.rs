@@ -98,7 +98,7 @@ fn dye() -> Scalar<2> {
     Scalar::new(&grid, sides, 1e-3).unwrap()
 }
 
-/// The plate, turned by 45° in a stream, as cut links.
+/// A plate, turned by 45° in a stream, as cut links.
 #[test]
 fn a_stream_that_starts_at_a_wall() {
     let summary = check(0.2, || {

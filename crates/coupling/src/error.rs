@@ -145,7 +145,7 @@ pub enum CouplingError {
     },
 }
 
-/// How a body went out of the box.
+/// Kind of opening through which a body has left the box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Escape {
     /// Through a wall or a plane of symmetry.

@@ -293,7 +293,7 @@ pub fn run<S: Evolving>(
                 };
                 before.give_back(simulation)?;
                 simulation.begin()?;
-                // What starts at once has the same velocity after any step; where it has more after a shorter one, the steps are halved.
+                // An impulsive start gives the same velocity after any step; if a shorter step gives more, it is halved.
                 let shorter = dt * schedule.courant / courant;
                 full = if tried == 0 { shorter } else { shorter.min(0.5 * dt) } / share;
                 tried += 1;

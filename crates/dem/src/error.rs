@@ -22,7 +22,7 @@ pub enum DemError {
     /// Too few points for a convex hull.
     #[error("{points} points have no convex hull with volume; give four or more")]
     TooFewPoints {
-        /// How many there are.
+        /// Their number.
         points: usize,
     },
     /// A point is not finite, or absurd.

@@ -100,7 +100,7 @@ pub enum IbmError {
         part.body, part.thickness, part.place_text(), part.needed, 100.0 * part.share
     )]
     Thin {
-        /// Where, and how thin.
+        /// Its place and thickness.
         part: ThinPart,
     },
     /// A control volume holds no cells, or reaches the sides of the flow.

@@ -36,7 +36,7 @@ struct Vicinity<'a> {
 }
 
 impl<'a> FluidSampler<'a> {
-    /// Of fields around these bodies.
+    /// Sampler of fields around these bodies.
     pub fn new(bodies: &'a dyn Bodies) -> Self {
         Self { bodies, clearance: 0.0 }
     }

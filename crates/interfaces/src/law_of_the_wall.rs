@@ -187,7 +187,7 @@ mod tests {
                 let layer = law.layer_velocity(part * of_u, place, nu, 0.4) / of_u;
                 assert!((part - 1e-12..=part.max(1.0) + 1e-9).contains(&layer), "{y_plus} {part}: {layer}");
             }
-            // What k says of a layer in equilibrium stays, to the last digits.
+            // In equilibrium the scale is that of k, to the last digits.
             assert!((law.layer_velocity(of_u, place, nu, 0.4) / of_u - 1.0).abs() < 1e-9);
         }
     }

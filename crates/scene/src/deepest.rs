@@ -17,7 +17,7 @@ pub(crate) struct Deepest {
     youngs_modulus: f64,
     time: f64,
     point: [f64; 3],
-    /// What a body keeps when numbers close up.
+    /// Number of a body that stays when others are removed.
     body: f64,
     /// The same of its partner, or, of a wall, its number counted down from −1.
     partner: f64,
@@ -71,7 +71,7 @@ impl Deepest {
         setup.bodies.list.get(serial).map_or_else(|| format!("body {serial}"), |b| format!("body {}", b.name))
     }
 
-    /// What is wrong with it, if it is deep.
+    /// Warning, if it is deep.
     pub(crate) fn warning(&self, setup: &Setup) -> Option<String> {
         let Self { depth, youngs_modulus, time, point: [x, y, z], body, partner, .. } = *self;
         self.is_deep().then(|| {

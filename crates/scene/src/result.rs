@@ -72,7 +72,7 @@ fn fields(view: &dyn View) -> serde_json::Map<String, Value> {
     let mut solid = vec![0.0; lattice.shape().iter().product()];
     let bodies = view.bodies().n_bodies() > 0;
     let mut fraction = SolidFraction::new();
-    // Where it cannot be computed, extremes are not known.
+    // Extremes are unknown if λ cannot be computed.
     let known = !bodies || fraction.update(&lattice, view.bodies()).is_ok();
     fraction.add_to_dense(&lattice, &mut solid);
     let mut out = serde_json::Map::new();

@@ -68,7 +68,7 @@ pub(crate) struct Setup {
     pub(crate) save_at_end: bool,
     /// Keys of the file that the algorithm does not use.
     pub(crate) unused: Vec<String>,
-    /// What looks doubtful about the inlets.
+    /// Warnings about the inlets.
     pub(crate) doubtful_inlets: Vec<String>,
     /// All formulas of the file, to be asked whether they had a finite value wherever they were needed.
     pub(crate) formulas: Vec<Formula>,

@@ -5,7 +5,7 @@ use interfaces::Vector;
 /// Radius of friction against spin about the normal, ∫|y| dA/A, over the radius of gyration √(∫ y² dA/A), of a disc: 2√2/3.
 const FRICTION_RADIUS: f64 = 0.942_809_041_582_063_4;
 
-/// What friction keeps per patch.
+/// Elastic deformation along a patch, kept from sub-step to sub-step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Springs {
     /// Elastic tangential force on the first body \[N\].

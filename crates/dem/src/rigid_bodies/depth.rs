@@ -1,4 +1,4 @@
-//! How deep overlaps are, and the stiffness that makes them shallow.
+//! Depth of overlaps, and the stiffness that makes them shallow.
 use super::RigidBodies;
 use super::body::{Constants, Kind};
 use super::meeting::shift;
@@ -18,9 +18,9 @@ pub const DEEP: f64 = 0.1;
 pub struct Depth {
     /// The body, and what it overlaps.
     pub body: BodyId,
-    /// What it overlaps.
+    /// The body or wall that it overlaps.
     pub partner: Partner,
-    /// Where \[m\].
+    /// Place \[m\].
     pub point: Point,
     /// δ: exact of balls and discs; of other bodies from volume and area, V/A of flat faces and 2V/A else \[m\].
     pub depth: f64,
@@ -42,7 +42,7 @@ pub struct RestingDepth {
     pub youngs_modulus: f64,
 }
 
-/// How deep a body of this `shape` and `material` rests on a wall that bears a `load` \[N\] through it by `law`: by a flat face if it has
+/// Depth at which a body of this `shape` and `material` rests on a wall that bears a `load` \[N\] through it by `law`: by a flat face if it has
 /// one, else as a sphere as large as the body. `None` without a force.
 pub fn resting_depth<L: ContactLaw>(
     law: &L,
@@ -93,14 +93,14 @@ impl Geometry {
         Self { area, volume, arm, face, mass: c.inertia.mass, size: c.size, plane, wall }
     }
 
-    /// Of a sphere (in a plane scene a disc) as large as the body `depth` deep in a wall or in its like; or of a flat `face`, if that
+    /// Overlap of a sphere (in a plane scene a disc) as large as the body `depth` deep in a wall or in its like; or of a flat `face`, if that
     /// is above 0.
     fn of_depth(c: &Constants, depth: f64, face: f64, [plane, wall]: [bool; 2]) -> Self {
         if face > 0.0 {
             let arm = (c.inner - 0.5 * depth).max(0.5 * c.inner);
             return Self::new(c, [face, face * depth, arm, face], [plane, wall]);
         }
-        // Of one of both, where two alike meet.
+        // Depth of one of both, where two alike meet.
         let r = c.size;
         let own = (if wall { depth } else { 0.5 * depth }).min(r);
         let (at, n) = (Point::origin(), Vector::x());
@@ -115,7 +115,7 @@ impl Geometry {
         Self::new(c, whole, [plane, wall])
     }
 
-    /// What the law says of it at rest.
+    /// Force by the law, at rest.
     pub(super) fn push<L: ContactLaw>(&self, law: &L, properties: &PairProperties) -> (Push, [f64; 2]) {
         let Self { area, volume, arm, face, mass, size, plane, wall } = *self;
         let overlap = Overlap {

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 /// Sub-steps per half period of the stiffest contact foreseen.
 const STEPS_PER_CONTACT: f64 = 33.0;
-/// What is still accepted of [`LEAST_STEPS`].
+/// Share of [`LEAST_STEPS`] that is still accepted.
 const FEWEST_STEPS: f64 = 22.0;
 /// Overlap, in radii of the smaller body, up to which that stiffness is foreseen.
 const FORESEEN_DEPTH: f64 = 0.05;

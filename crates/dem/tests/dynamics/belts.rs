@@ -9,7 +9,7 @@ const BELT: f64 = 0.5;
 fn material() -> Material {
     Material { friction: 0.3, youngs_modulus: 1e7, restitution: 0.2, ..Material::default() }
 }
-/// What carries the body.
+/// The moving surface under the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Belt {
     /// A wall of one velocity, and one whose velocity is a function of the place.

@@ -18,7 +18,7 @@ fn rest<L: ContactLaw>(law: L, shape: &Arc<dyn Shape>, m: Material) -> dem::Dept
     bodies.deepest().unwrap()
 }
 
-/// What a body's static load foresees is how deep it rests, and with the stiffness that is proposed it rests half as deep as a deep
+/// The static load of a body foresees the depth at which it rests, and with the stiffness that is proposed it rests half as deep as a deep
 /// overlap begins.
 #[test]
 fn depth_is_foreseen_and_its_remedy_works() {

@@ -21,7 +21,7 @@ fn cuboid(edges: [f64; 3]) -> Arc<dyn Shape> {
     Arc::new(Cuboid::new(edges).unwrap())
 }
 
-/// What a body is dropped on, its top at height 0.
+/// The floor, its top at height 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Floor {
     Wall,

@@ -8,7 +8,7 @@ use crate::grid::GHOSTS;
 pub(super) struct FaceExcess {
     /// d \[m/s\].
     pub(super) value: Vec<f64>,
-    /// What acts along either lateral axis.
+    /// Coefficients along either lateral axis.
     pub(super) lateral: [Lateral; 2],
     /// 1/Δt, or what the relaxation of a steady iteration adds \[1/s\].
     pub(super) inertia: Vec<f64>,

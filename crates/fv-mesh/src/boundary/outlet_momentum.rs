@@ -7,7 +7,7 @@ use crate::grid::GHOSTS;
 use crate::metrics::Metrics;
 use crate::{Field, Fluid};
 
-/// What the faces of given pressure are advanced with.
+/// State and step with which the faces of given pressure are advanced.
 #[derive(Clone, Copy)]
 pub(crate) struct OutletStep<'a, const D: usize> {
     pub(crate) metrics: &'a Metrics<D>,

@@ -51,7 +51,7 @@ pub(super) struct SideState<const D: usize> {
     pub(super) normal_change: Vec<f64>,
     /// Pressure on the side where it is given.
     pub(super) pressure: Vec<f64>,
-    /// Of the faces where it is given.
+    /// Velocity excess of the faces of given pressure.
     pub(super) excess: FaceExcess,
     /// Of the other components.
     pub(super) laws: [Law; D],
@@ -210,7 +210,8 @@ impl<const D: usize> SideState<D> {
     }
 }
 
-/// Do immersed walls cut the face of line `l` or one next to it, by the open shares of all faces of the side?
+/// Whether immersed walls cut the face of line `l` or one next to it, by the open shares of all
+/// faces of the side.
 pub(super) fn is_beside_cut(open: &[f64], lines: &Lines, l: usize) -> bool {
     let steps = [0, 1, if lines.count[1] > 1 { lines.count[0] } else { 0 }];
     let below = |step: usize| l.checked_sub(step).and_then(|l| open.get(l));

@@ -20,7 +20,7 @@ pub(super) struct Regions {
     pub(super) passages: Vec<Vec<Passage>>,
 }
 
-/// How the pressure acts on a face that is not wholly open.
+/// Action of the pressure on a face that is not wholly open.
 #[derive(Clone, Copy)]
 pub(super) struct Passage {
     /// Dense numbers of the cells below and above.

@@ -129,7 +129,7 @@ fn walls_are_restarted_bit_for_bit() {
 }
 
 /// The divergence that is measured is that of the fluxes through open parts, which a projection removes: to round-off by K⁻¹, to its
-/// tolerance by iterations. (That of the velocities of the nodes is 0.2 to 5 1/s here.)
+/// tolerance by iterations.
 #[test]
 fn divergence_is_that_of_the_open_parts() {
     let across = || {

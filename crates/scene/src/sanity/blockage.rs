@@ -58,7 +58,7 @@ impl Setup {
             let held = Held { body, bounds: body.shape.aabb().posed(&body.pose) };
             if matches!(body.motion, Motion::Free(_)) { &mut free } else { &mut fixed }.push(held);
         }
-        // Of those that move one by one the largest is enough.
+        // The largest is enough of bodies that move one by one.
         let size = |h: &Held<'_>| (0..dim).filter(|&c| c != a).map(|c| h.bounds.extent()[c]).product::<f64>();
         let largest = free.into_iter().max_by(|x, y| size(x).total_cmp(&size(y)));
         let groups = [fixed, largest.into_iter().collect()];

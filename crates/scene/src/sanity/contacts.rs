@@ -1,4 +1,4 @@
-//! What looks doubtful about contacts.
+//! Warnings about contacts.
 use crate::setup::{BodySetup, ContactLawChoice, Motion, Setup, WallSetup};
 use dem::{ContactLaw, DEEP, RestingDepth, Rolling, resting_depth};
 use fv_mesh::Side;
@@ -103,7 +103,7 @@ impl Setup {
         self.gravity * (inertia.mass - displaced)
     }
 
-    /// How many bodies are on one another where all that are pressed the same way lie in a heap over the whole box.
+    /// Number of layers if all bodies that are pressed the same way lie in a heap over the whole box.
     fn layers(&self, body: &BodySetup, net: &Vector) -> f64 {
         let down = net.iamax();
         let across: f64 =

@@ -300,7 +300,7 @@ fn walls(axes: &[Axis], sides: &[[Side; 2]]) -> Result<Vec<WallSetup>, dem::DemE
             if let Some(velocity) = velocity {
                 let (mut point, mut normal) = (Point::origin(), Vector::zeros());
                 (point[a], normal[a]) = (at, sign);
-                // What leads out of the plane is an error of the sides.
+                // A velocity out of the plane is an error of the sides.
                 let velocity = velocity - normal * normal.dot(&velocity);
                 let name = format!("sides.{}_{end}", ["x", "y", "z"][a]);
                 out.push(WallSetup { name, plane: HalfSpace::new(point, normal)?, velocity });

@@ -17,11 +17,11 @@ struct Inlet<'a> {
     profile: &'a Profile,
     lower: [f64; 3],
     upper: [f64; 3],
-    /// Of a patch: its number.
+    /// Number of the patch.
     patch: Option<usize>,
 }
 
-/// What passes an inlet.
+/// Flow through an inlet.
 #[derive(Default)]
 struct Passage {
     /// The largest mean velocity into the box of any instant, and the largest speed through the side \[m/s\].

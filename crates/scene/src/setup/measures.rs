@@ -68,7 +68,7 @@ pub(crate) struct Forces {
     pub(crate) reference: Option<(f64, f64)>,
     pub(crate) start: f64,
     pub(crate) every: Option<f64>,
-    /// Of a steady flow: there is one load.
+    /// Measures of a steady flow: one load.
     pub(crate) steady: bool,
     /// D of Strouhal numbers \[m\].
     pub(crate) length: Option<f64>,

@@ -33,7 +33,8 @@ impl ModelChoice {
     pub(crate) fn averages(self) -> bool {
         !matches!(self, Self::Smagorinsky(_) | Self::Wale(_))
     }
-    /// Has it no terms for the viscous sublayer, so that its first cells have to be in the logarithmic layer?
+    /// Whether it lacks terms for the viscous sublayer, so that first cells have to be in the
+    /// logarithmic layer.
     pub(crate) fn needs_log_layer(self) -> bool {
         matches!(self, Self::KEpsilon | Self::Realizable)
     }

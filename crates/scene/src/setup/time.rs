@@ -15,7 +15,7 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// Of a steady scene: one instant.
+    /// Time of a steady scene: one instant.
     pub(super) const STEADY: Self = Self { end: 1.0, snapshots: 1 };
 
     /// Of the tables `time` and `output`. So many `steps` have to be cut into equal numbers of them.

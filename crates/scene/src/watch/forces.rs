@@ -19,7 +19,7 @@ pub(crate) struct ForcesWatch {
     sums: Vec<Sums>,
 }
 
-/// What is kept of one body over the time since means began, of fx, fy, fz and the torque's components.
+/// Statistics of one body's load (fx, fy, fz and the torque's components) since means began.
 #[derive(Clone, Copy, Debug)]
 struct Sums {
     seconds: f64,

@@ -54,7 +54,7 @@ fn moving_sides_take_bodies_along() {
     std::fs::remove_dir_all(&out).unwrap();
 }
 
-/// What slides out of its plane is an error.
+/// A velocity out of the plane is an error.
 #[test]
 fn planes_slide_only() {
     let plane = ", planes = [{ point = [0.0, 0.0], normal = [0.0, 1.0], velocity = [0.5, 0.1] }]";

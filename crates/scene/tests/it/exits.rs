@@ -211,7 +211,7 @@ fn the_plan_tells_of_exits() {
         let found = warnings(text, more);
         assert!(found.contains(expected), "{more:?}: {found}");
     }
-    // What acts is not doubted; without contact a body comes to the wall.
+    // No warning of exits that act; without contact a body comes to the wall.
     for (text, more) in [(FALL, &[][..]), (CHANNEL, &[]), (FALL, &[walls, "contact.law=\"none\""])] {
         let found = warnings(text, more);
         assert!(!found.contains("exits.") && !found.contains("exit is ahead"), "{more:?}: {found}");

@@ -95,7 +95,7 @@ fn a_run_that_has_converged_has_nothing_left_to_do() {
     [out, fresh].iter().for_each(|out| std::fs::remove_dir_all(out).unwrap());
 }
 
-/// What means something only in time is refused, with its key.
+/// Keys that have no meaning in a steady flow are refused by name.
 #[test]
 fn what_changes_in_time_is_refused() {
     let inlet = "sides.x_min={type=\"inlet\",velocity=[\"1+0.1*sin(t)\",0.0]}";

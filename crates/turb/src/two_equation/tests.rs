@@ -220,7 +220,7 @@ fn a_turbulent_first_cell_without_k_produces_it() {
             }
             assert!(stress > least * u_tau * u_tau, "{y_plus}: {stress}");
             assert!(cell.k > least * least * u_tau * u_tau / 0.3, "{y_plus}: {}", cell.k);
-            // What the shear of the logarithmic layer produces.
+            // Production by the shear of the logarithmic layer.
             let produced = cell.production / (u_tau.powi(3) / (f.kappa * y));
             assert!((0.8 * least..1.15).contains(&produced), "{y_plus} {scale:?}: {produced}");
         }

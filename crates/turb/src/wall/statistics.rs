@@ -47,7 +47,7 @@ const BEYOND: f64 = 300.0;
 const NOTICEABLE: f64 = 0.05;
 
 impl YPlus {
-    /// Of the rows of a model that holds from y+ `from` on.
+    /// Statistics of the rows of a model that holds from y+ `from` on.
     pub(crate) fn of(rows: impl Iterator<Item = WallSample>, from: f64) -> Self {
         let mut s = Self { least: f64::INFINITY, range: [from, BEYOND], ..Self::default() };
         let mut area = 0.0;

@@ -72,10 +72,9 @@ impl RunResult {
         if self.ending != Ending::Stopped {
             notes.extend(self.compared.iter().map(|c| c.line(5)));
             if let Some(l) = r.get("ledger") {
-                let of = |key: &str| l[key].as_f64().unwrap_or(0.0);
-                let work = of("work").abs().max(of("driving_work").abs()).max(of("side_work").abs());
-                if work > 0.0 {
-                    notes.push(format!("energy {:+.3} %", 100.0 * of("energy_residual") / work));
+                let (work, residual) = (work(l), l["energy_residual"].as_f64());
+                if let Some(residual) = residual.filter(|_| work > 0.0) {
+                    notes.push(format!("energy {:+.3} %", 100.0 * residual / work));
                 }
                 notes.push(shown(&l["momentum_whole_run"], |x| format!("momentum {x:.0e}")));
             }
@@ -155,10 +154,10 @@ impl RunResult {
         if let Some(l) = r.get("ledger") {
             let of = |key: &str| shown(&l[key], |x| format!("{x:.2e}"));
             out += &format!(
-                "  books: momentum {} of the impulses, energy residual {} J of {} J of work\n",
+                "  books: momentum {} of the impulses, energy residual {} J of {:.2e} J of work\n",
                 of("momentum_whole_run"),
                 of("energy_residual"),
-                of("work"),
+                work(l),
             );
         }
         for c in &self.compared {
@@ -169,4 +168,10 @@ impl RunResult {
         }
         out + &format!("  files in {}\n", self.folder.display())
     }
+}
+
+/// Largest of the works of gravity, driving force and sides in a ledger, to which the residual of its energy is compared \[J\].
+fn work(ledger: &Value) -> f64 {
+    let works = ["work", "driving_work", "side_work"].map(|key| ledger[key].as_f64().unwrap_or(0.0).abs());
+    works.into_iter().fold(0.0, f64::max)
 }

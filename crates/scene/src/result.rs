@@ -147,7 +147,7 @@ impl RunResult {
         if !fields.is_empty() {
             result["fields"] = Value::Object(fields);
         }
-        if let Some(y) = view.y_plus() {
+        if let Some(y) = view.y_plus().filter(|y| y.rows > 0) {
             result["y_plus"] = json!({
                 "least": number(y.least),
                 "mean": number(y.mean),

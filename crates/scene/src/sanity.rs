@@ -153,6 +153,14 @@ impl Setup {
         (first.is_finite() && friction > 0.0).then(|| first * friction / fluid.viscosity)
     }
 
+    /// Whether a model of two equations meets bodies that give it their distance alone.
+    fn bodies_lack_wall_functions(&self) -> bool {
+        self.turbulence.as_ref().is_some_and(|t| t.model.averages())
+            && self.flow.algorithm != Algorithm::Simple
+            && !self.bodies.list.is_empty()
+            && !self.walls_move()
+    }
+
     /// What looks doubtful.
     pub(crate) fn warnings(&self) -> Vec<String> {
         let mut out = Vec::new();
@@ -206,7 +214,13 @@ impl Setup {
                 axis.largest_ratio()
             ));
         }
-        if let (Some(model), Some(y)) = (&self.turbulence, self.y_plus()) {
+        if let Some(model) = self.turbulence.as_ref().filter(|_| self.bodies_lack_wall_functions()) {
+            out.push(format!(
+                "bodies by cut links are no walls to {} in unsteady flow: they have viscous friction, and k is not damped beside them; \
+                 take coupling.forcing = \"smooth\" or \"hfdib\", or flow.algorithm = \"simple\"",
+                model.model.name()
+            ));
+        } else if let (Some(model), Some(y)) = (&self.turbulence, self.y_plus()) {
             let by_law = model.model.averages() && matches!(model.walls, WallStress::Law { .. });
             let told = match (by_law, y) {
                 (_, ..30.0) if model.model.needs_log_layer() => Some(

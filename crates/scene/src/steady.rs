@@ -174,9 +174,7 @@ impl Stage<'_> {
             Some(_) => format!("going on with {} from iteration {begin}, residual {residual:.3e}: {cells} cells, to residuals of {tolerance:e}", setup.name),
         })?;
         self.warn(&mut log)?;
-        // Progress is the way of the residual's logarithm.
-        let target = -tolerance.log10();
-        let mut progress = (!self.options.quiet).then(|| Progress::new(0.0, target));
+        let mut progress = (!self.options.quiet).then(|| Progress::steady(tolerance));
         let every = Duration::try_from_secs_f64(setup.save_every).unwrap_or(Duration::MAX);
         let mut saved = Instant::now();
         let save = |flow: &mut Steady<D>, mut residual: f64, table: &mut Table| {
@@ -196,9 +194,8 @@ impl Stage<'_> {
             let [x, y, z] = info.momentum;
             table.row(info.iterations as f64, None, [x, y, z, info.continuity, info.closure, change])?;
             if let Some(progress) = &mut progress {
-                progress.tell(info.iterations as u64, (-residual.log10()).clamp(0.0, target), || {
-                    format!("residual {residual:.2e}")
-                });
+                progress
+                    .tell(info.iterations as u64, -residual.log10(), || format!("residual {residual:.2e}"));
             }
             if info.iterations % 50 == 1 {
                 log.line(&format!("iteration {}: residual {residual:.3e}", info.iterations))?;

@@ -37,8 +37,27 @@ impl fmt::Display for Status {
     }
 }
 
+/// Count of a run's progress.
+#[derive(Clone, Copy)]
+enum Kind {
+    /// Steps in time \[s\].
+    Unsteady,
+    /// Iterations towards a steady state, measured by the logarithm of the residual.
+    Steady,
+}
+
+impl Kind {
+    fn unit(self) -> &'static str {
+        match self {
+            Self::Unsteady => "steps",
+            Self::Steady => "iterations",
+        }
+    }
+}
+
 /// The progress of a run from its first instant to its last.
 pub struct Progress {
+    kind: Kind,
     bar: Option<ProgressBar>,
     begin: f64,
     end: f64,
@@ -55,6 +74,15 @@ pub struct Progress {
 impl Progress {
     /// Begins at simulated time `begin`; the run is over at `end`.
     pub fn new(begin: f64, end: f64) -> Self {
+        Self::of(Kind::Unsteady, begin, end)
+    }
+
+    /// Iterations to a steady state, over where −log₁₀ of the residual is that of the `tolerance`.
+    pub fn steady(tolerance: f64) -> Self {
+        Self::of(Kind::Steady, 0.0, -tolerance.log10())
+    }
+
+    fn of(kind: Kind, begin: f64, end: f64) -> Self {
         let bar = stderr().is_terminal().then(|| {
             let bar =
                 ProgressBar::with_draw_target(Some(TICKS as u64), ProgressDrawTarget::stderr_with_hz(60));
@@ -63,6 +91,7 @@ impl Progress {
         });
         let now = Instant::now();
         Self {
+            kind,
             bar,
             begin,
             end,
@@ -89,7 +118,7 @@ impl Progress {
         }
     }
 
-    /// The same for runs that tell something else: `text` at the simulated `time`.
+    /// The same with another `text`, at the simulated `time` or at −log₁₀ of a steady run's residual.
     #[inline]
     pub fn tell(&mut self, step: u64, time: f64, text: impl FnOnce() -> String) {
         let now = Instant::now();
@@ -117,10 +146,13 @@ impl Progress {
         if self.bar.is_none() && !line {
             return;
         }
-        let position = format!("t = {:.4} of {:.4} s", time, self.end);
+        let position = match self.kind {
+            Kind::Unsteady => format!("t = {time:.4} of {:.4} s  step {step}", self.end),
+            Kind::Steady => format!("iteration {step}"),
+        };
         let left = (self.end - time) / self.simulated_per_second;
         let left = Duration::try_from_secs_f64(left).map_or_else(|_| "?".into(), readable);
-        let message = format!("step {step}  {text}  {:.0} steps/s  {left} left", self.steps_per_second);
+        let message = format!("{text}  {:.0} {}/s  {left} left", self.steps_per_second, self.kind.unit());
         match &self.bar {
             Some(bar) => {
                 bar.set_prefix(position);
@@ -140,8 +172,9 @@ impl Progress {
         }
         let wall = self.started.elapsed();
         let rate = steps as f64 / wall.as_secs_f64().max(1e-9);
+        let unit = self.kind.unit();
         // Nobody may be reading any more.
-        let _ = writeln!(stderr(), "{message}: {steps} steps in {} ({rate:.0} steps/s)", readable(wall));
+        let _ = writeln!(stderr(), "{message}: {steps} {unit} in {} ({rate:.0} {unit}/s)", readable(wall));
     }
 }
 

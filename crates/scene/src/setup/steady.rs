@@ -4,13 +4,14 @@ use crate::problem::Problem;
 use crate::reader::Reader;
 
 /// Keys that an algorithm does not use: the algorithm, the table, the keys.
-const UNUSED: [(Algorithm, &str, &[&str]); 8] = [
+const UNUSED: [(Algorithm, &str, &[&str]); 9] = [
     (Algorithm::Simple, "time", &["steps", "dt", "courant", "ramp"]),
     (Algorithm::Simple, "flow", &["diffusion", "pressure"]),
     (Algorithm::Simple, "forces", &["start", "every"]),
     (Algorithm::Simple, "output", &["snapshots", "image_every", "ledger"]),
     (Algorithm::Simple, "coupling", &["strategy", "balance", "virtual_mass", "passes", "kernel"]),
     (Algorithm::Projection, "flow", &["tolerance", "iterations"]),
+    (Algorithm::Projection, "turbulence", &["walls"]),
     (Algorithm::Piso, "flow", &["diffusion", "pressure", "tolerance", "iterations"]),
     (Algorithm::Piso, "time", &["courant"]),
 ];

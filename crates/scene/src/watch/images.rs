@@ -1,6 +1,6 @@
 //! Pictures of the fields.
 use super::{Solids, Taken, Watch, output};
-use crate::setup::{Images, Quantity, Setup};
+use crate::setup::{Algorithm, Images, Quantity, Setup};
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
 use example_support::picture::section::{Layer, Section, Sheet};
@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 pub(crate) struct ImagesWatch {
     folder: PathBuf,
     title: String,
+    steady: bool,
     images: Images,
     /// Is there no fluid?
     alone: bool,
@@ -29,6 +30,7 @@ impl ImagesWatch {
         Ok(Self {
             folder,
             title: setup.title.clone(),
+            steady: setup.flow.algorithm == Algorithm::Simple,
             images,
             alone: setup.fluid.is_none(),
             sheet: Sheet::default(),
@@ -181,7 +183,10 @@ impl Watch for ImagesWatch {
             signed,
         };
         let path = self.folder.join(format!("{index:05}.png"));
-        let title = format!("{}   t = {:.4} s", self.title, info.time);
+        let title = match self.steady {
+            true => format!("{}   after {} iterations", self.title, info.step),
+            false => format!("{}   t = {:.4} s", self.title, info.time),
+        };
         section.draw(&mut self.sheet, &path, &layer, &title).map_err(output("drawing", &path))
     }
 }

@@ -259,6 +259,12 @@ fn a_model_of_two_equations_sees_a_body_that_moves() {
         let found = problems(text, more);
         assert!(found.contains(told), "{more}: {found}");
     }
+    // By cut links the body is no wall to the model, and there is no other: no y+.
+    let fixed = text.replace("{ type = \"prescribed\", shift = [0.0, \"0.3*sin(3*t)\"] }", "\"fixed\"");
+    let run =
+        Scene::parse("fixed.toml", &fixed, &[]).unwrap().run(&quiet(&out), &AtomicBool::new(false)).unwrap();
+    std::fs::remove_dir_all(&out).unwrap();
+    assert!(run.result["y_plus"].is_null(), "{}", run.result["y_plus"]);
 }
 
 /// A warm disc that swings in a closed box, by the paper's forcing.

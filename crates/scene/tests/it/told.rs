@@ -112,6 +112,14 @@ fn what_looks_doubtful_is_told() {
         (&[&disc(0.1, 0.5)], "cells across"),
         (&["turbulence=\"sst\"", "fluid.nu=1e-3", "flow.convection=\"limited\""], "at y+ of about 1.6"),
         (
+            &["turbulence=\"sst\"", &disc(0.1, 0.5)],
+            "bodies by cut links are no walls to k–ω SST in unsteady flow",
+        ),
+        (
+            &["turbulence={ model = \"sst\", walls = \"slip\" }"],
+            "turbulence.walls is not used by flow.algorithm = \"projection\"",
+        ),
+        (
             &["turbulence=\"sst\"", &disc(0.1, 0.5), "scalars.c={ diffusivity = 0.01, bodies = 1.0 }"],
             "without a law of the wall",
         ),

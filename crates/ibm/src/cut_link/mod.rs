@@ -88,8 +88,9 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
         if known { near.distance } else { self.distance(b, arm) }
     }
 
-    /// Where the surface of body `b` cuts the way from `arm` (in the fluid) along `step`, as a share of it: the root of
-    /// the distance, by false position (Anderson & Björck 1973, BIT 13, 253).
+    /// Share of the way from `arm` (in the fluid) along `step` before the surface of body `b`, with the
+    /// distances `ends` at its ends: the root of the distance, by false position (Anderson & Björck
+    /// 1973, BIT 13, 253), [`grazed`].
     fn crossing(&self, b: BodyId, arm: Vector, step: Vector, ends: [f64; 2]) -> f64 {
         let (solid, turn) = (self.bodies.solid(b), self.bodies.pose(b).orientation.inverse());
         let (from, way) = (Point::from(turn * arm), turn * step);
@@ -119,8 +120,21 @@ impl<B: Bodies + ?Sized> Cutter<'_, B> {
                 (high, at_high) = (t, d);
             }
         }
-        t.clamp(0.0, 1.0)
+        grazed(t.clamp(0.0, 1.0), ends)
     }
+}
+
+/// Share of a way before the wall that it crosses at the share `t`, with the distances `ends` of its
+/// ends.
+///
+/// A way that enters a body and goes on along its surface ends at the wall at t if its end inside is
+/// a little below the surface, and at that end, whose velocity is the wall's, if it is a little
+/// above. So that loads and fluxes do not jump in between, the wall goes to the end as the crossing q
+/// by the straight line between the distances does, t + (1 − t) Q⁴ with Q = (q − t)/(1 − t): Q is 0
+/// for flat walls and of the order of the curvature times the way's length for smooth ones.
+fn grazed(t: f64, ends: [f64; 2]) -> f64 {
+    let straight = ends[0] / (ends[0] - ends[1]);
+    if straight > t && t < 1.0 { t + (1.0 - t) * ((straight - t) / (1.0 - t)).powi(4) } else { t }
 }
 
 /// Steps of a search for a root, and when it is found, as a share of the difference between the ends.

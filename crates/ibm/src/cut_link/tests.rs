@@ -1,3 +1,5 @@
+mod random_walls;
+
 use super::*;
 use crate::testing::{Balls, Brick, Staggered};
 use interfaces::{CutFace, Kinematics, Pose};

@@ -124,13 +124,25 @@ fn a_quarter_of_a_sphere_bears_a_quarter() {
     assert!((unfolded - loads).norm() < 1e-4 * loads.norm(), "{unfolded} {loads}");
 }
 
-/// A simple-cubic array of spheres: K is 15.4 at φ 0.343 (Zick & Homsy 1982). Measured: −1.69, −0.79 and −0.45 % at 12, 17 and 24 cells per
-/// diameter, of second order.
+/// Drag factors K of simple-cubic arrays of spheres (Zick & Homsy 1982, Table 2) at solid fractions from
+/// 0.064 to 0.343; second order in the cell. Measured: −0.85 % at 8 cells per diameter, −0.96 % at
+/// 12, and −1.69 and −0.79 % at 12 and 17 of the densest, whose gap is two cells wide at 12.
+///
+/// Residuals of the flow on cells a third as large, weighted with velocity and pressure (the Stokes
+/// operator is self-adjoint), split the excess of the densest: second differences and pressure
+/// gradients away from the wall 0.98 %, the divergence of whole cells 0.25 %, cut links 0.14 %, cut
+/// faces 0.2 % (0.29 % with exact fluxes).
 #[test]
 fn flow_through_an_array_of_spheres() {
+    for (fraction, theirs, cells, most) in
+        [(0.064, 2.810, 16, 0.0095), (0.216, 7.442, 16, 0.0105), (0.343, 15.4, 20, 0.0085)]
+    {
+        let k = SphereArray::new(fraction, cells).unwrap().drag_factor(STEADY).unwrap();
+        assert!((k / theirs - 1.0).abs() < most, "{fraction} {cells}: {k}");
+    }
     let mut array = SphereArray::new(0.343, 14).unwrap();
     let k = array.drag_factor(STEADY).unwrap();
-    assert!((k / 15.4 - 1.0).abs() < 0.018, "{k}");
+    assert!((k / 15.4 - 1.0).abs() < 0.0175, "{k}");
     // The sphere bears the force on the box.
     let impulse = array.flow.wall_impulses()[0].force / (SphereArray::FORCE * array.flow.last_dt());
     assert!((impulse.x - 1.0).abs() < 1e-3 && impulse.yz().norm() < 1e-3, "{impulse}");
@@ -217,9 +229,7 @@ fn load_in_a_stream<const D: usize>(solid: impl Solid + 'static, angle: f64, ste
 }
 
 /// Surfaces through nodes, edges and corners of the grid: loads of symmetric bodies are symmetric to 10⁻⁹ of the drag, which does not
-/// jump with the size of the body once the flow has developed (3 s; after 0.3 s squares change by 2·10⁻³ to 7·10⁻³ as nodes on their faces
-/// come into the fluid, where the pressure of a step moves them). Where round-off decided what is inside, loads across the stream were
-/// 6·10⁻³ of the drag and squares along the grid had jumps of 7 %.
+/// jump with the size of the body once the flow has developed (3 s).
 #[test]
 fn loads_of_symmetric_bodies_are_symmetric() {
     let check = |name: &str, most: f64, load: &dyn Fn(f64) -> (Vector, f64)| {
@@ -237,10 +247,8 @@ fn loads_of_symmetric_bodies_are_symmetric() {
         check("disc", 1e-3, &|s| load_in_a_stream::<2>(Disc::new(radius * s).unwrap(), 0.0, 300));
     }
     let diagonal = 0.5_f64.sqrt();
-    for (edge, angle, most) in
-        [(1.0, 0.0, 2.5e-3), (0.9, 0.0, 2.5e-3), (diagonal, 45.0, 1e-2), (0.8 * diagonal, 45.0, 1e-2)]
-    {
-        check("square", most, &|s| {
+    for (edge, angle) in [(1.0, 0.0), (0.9, 0.0), (diagonal, 45.0), (0.8 * diagonal, 45.0)] {
+        check(&format!("square {edge} {angle}"), 3e-4, &|s| {
             load_in_a_stream::<2>(Polygon::rectangle([edge * s; 2]).unwrap(), angle, 300)
         });
     }

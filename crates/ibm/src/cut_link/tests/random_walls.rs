@@ -84,10 +84,10 @@ fn mean_over_face(u: &dyn Fn([f64; 3]) -> f64, x: [f64; 3], c: usize) -> f64 {
     sum / (POINTS * POINTS) as f64
 }
 
-/// Mean velocities in Stokes flow past spheres of 12 and 24 cells per diameter. Faces that are nearly
-/// whole carry the velocity of their node, which exceeds the mean by |u″|/24. Measured at 12: rms
-/// 5·10⁻⁴, 6·10⁻⁴ and 7·10⁻⁴ of the stream's velocity, bias −0.4·10⁻⁴, −1.4·10⁻⁴ and 2.6·10⁻⁴. Straight
-/// profiles over a fitted plane have a bias of −1.0·10⁻³ and twice the scatter.
+/// Mean velocities in Stokes flow past spheres of 12 and 24 cells per diameter. Faces that are
+/// nearly whole carry the velocity of their node, which exceeds the mean by |u″|/24. Measured at
+/// 12: rms 5·10⁻⁴, 6·10⁻⁴ and 7·10⁻⁴ of the stream's velocity, bias −0.4·10⁻⁴, −1.4·10⁻⁴ and
+/// 2.6·10⁻⁴. Straight profiles over a fitted plane have a bias of −1.0·10⁻³ and twice the scatter.
 #[test]
 fn fluxes_of_stokes_flow_are_unbiased_and_second_order() {
     let [coarse, fine] = [errors(6.1, 4), errors(12.2, 1)];
@@ -108,9 +108,9 @@ fn fluxes_of_stokes_flow_are_unbiased_and_second_order() {
 }
 
 proptest! {
-    /// Balls at any place whose surface goes through a node or a corner: no flux jumps as that point
-    /// moves from 10⁻⁹ cells on one side to the other, of the surface and of the distance below which
-    /// a point is on it.
+    /// Balls at any place whose surface goes through a node or a corner: no flux jumps as that
+    /// point moves from 10⁻⁹ cells on one side to the other, of the surface and of the distance
+    /// below which a point is on it.
     #[test]
     fn fluxes_do_not_jump_at_nodes_and_corners(
         centre in proptest::array::uniform3(0.9..1.1_f64), at in proptest::array::uniform3(0.55..1.45_f64),

@@ -93,15 +93,6 @@ fn fluxes_of_stokes_flow_are_unbiased_and_second_order() {
     let [coarse, fine] = [errors(6.1, 4), errors(12.2, 1)];
     for (class, (rms, bias)) in [(9e-4, 2e-4), (9e-4, 3e-4), (9e-4, 4e-4)].into_iter().enumerate() {
         let (a, b) = (&coarse[class], &fine[class]);
-        println!(
-            "{class}: {} {:e} {:e}, {} {:e} {:e}",
-            a.count,
-            a.rms(),
-            a.bias(),
-            b.count,
-            b.rms(),
-            b.bias()
-        );
         assert!(a.rms() < rms && a.bias().abs() < bias, "{class}: {} {}", a.rms(), a.bias());
         assert!(b.rms() < 0.3 * a.rms(), "{class}: {} {}", b.rms(), a.rms());
     }

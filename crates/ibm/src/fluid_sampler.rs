@@ -7,7 +7,9 @@ use interfaces::{Bodies, BodyId, Lattice, Point, Vector, VelocityField};
 /// nodes around a point would use nodes inside bodies and cells that are cut.
 ///
 /// The value is that of a polynomial of at most third degree, by weighted least squares through nodes in the fluid within about four cells, as for
-/// [`SurfaceStress`](crate::SurfaceStress); for a velocity also through the wall at the foot points of nodes near it. Nodes behind a body, to which a straight line
+/// [`SurfaceStress`](crate::SurfaceStress); for a velocity also through the wall at the foot points of nodes near it. The pressure is extrapolated along the
+/// normal, from nodes in an ellipsoid half as wide as deep: on surfaces with a radius of five cells it varies more along them than a polynomial
+/// follows over four cells on either side. Nodes behind a body, to which a straight line
 /// from the point goes through it deeper than a quarter of a cell, are left out. Points deeper than half a cell in a body have no value.
 #[derive(Clone, Copy)]
 pub struct FluidSampler<'a> {
@@ -19,6 +21,27 @@ pub struct FluidSampler<'a> {
 const DEEP: f64 = 0.5;
 /// Lines of sight may go that many cells deep through a body: over the horizon of round bodies, not through plates of half a cell.
 const SHALLOW: f64 = 0.25;
+
+/// Cells along the normal over which the pressure is extrapolated, beyond those that are left out.
+const DEPTH: f64 = 4.2;
+/// Depth over width of the region that the pressure is extrapolated from.
+const SLENDER: f64 = 2.0;
+
+/// Nodes of which a field is fitted.
+enum Region {
+    /// Velocity component, known on walls too, within this many cells.
+    Component(usize, f64),
+    /// Pressure within this many cells along the normal.
+    Pressure(f64),
+}
+
+impl Region {
+    fn reach(&self) -> f64 {
+        match *self {
+            Self::Component(_, reach) | Self::Pressure(reach) => reach,
+        }
+    }
+}
 
 /// One body, or an image of it, near a point.
 struct Image {
@@ -57,8 +80,9 @@ impl<'a> FluidSampler<'a> {
     pub fn pressure(&self, lattice: &Lattice, values: &[f64], x: Point) -> Result<Option<f64>, IbmError> {
         stored(lattice, values)?;
         let clear = self.clearance.max(PRESSED);
-        let Some(near) = self.near(lattice, x, clear) else { return Ok(None) };
-        Ok(near.fit(lattice, values, clear, None))
+        let region = Region::Pressure(clear + DEPTH);
+        let Some(near) = self.near(lattice, x, clear, &region) else { return Ok(None) };
+        Ok(near.fit(lattice, values, clear, &region))
     }
 
     /// The velocity \[m/s\] at `x`, as [`pressure`](Self::pressure); on a surface that of the surface.
@@ -71,17 +95,18 @@ impl<'a> FluidSampler<'a> {
         for c in 0..velocity.dim() {
             let (lattice, values) = (velocity.lattice(c), velocity.component(c));
             stored(lattice, values)?;
-            let Some(near) = self.near(lattice, x, clear) else { return Ok(None) };
-            let Some(u) = near.fit(lattice, values, clear, Some(c)) else { return Ok(None) };
+            let region = Region::Component(c, clear + REACH[lattice.dim - 2]);
+            let Some(near) = self.near(lattice, x, clear, &region) else { return Ok(None) };
+            let Some(u) = near.fit(lattice, values, clear, &region) else { return Ok(None) };
             out[c] = u;
         }
         Ok(Some(out))
     }
 
     /// The bodies near `x`, unless all nodes around it are `clear` cells from them or `x` is deep inside one.
-    fn near(&self, lattice: &Lattice, x: Point, clear: f64) -> Option<Vicinity<'a>> {
+    fn near(&self, lattice: &Lattice, x: Point, clear: f64, region: &Region) -> Option<Vicinity<'a>> {
         let (node, _) = lattice.locate(x);
-        let reach = clear + REACH[lattice.dim - 2] + 1.0;
+        let reach = region.reach() + 1.0;
         let margin = Vector::from_fn(|a, _| {
             let [_, widest] = lattice.axes[a].spacings(x[a], x[a]);
             if a < lattice.dim { reach * widest } else { 0.0 }
@@ -135,14 +160,18 @@ impl Vicinity<'_> {
         self.images.iter().map(|image| (distance(image), image)).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
+    /// Unit normal of a body at `x`, into the fluid.
+    fn normal(&self, image: &Image, x: Point) -> Vector {
+        let pose = self.bodies.pose(image.body);
+        pose.orientation * self.bodies.solid(image.body).normal(pose.to_body(x - image.shift), self.band)
+    }
+
     /// Foot point on the nearest surface, and the velocity of that surface there.
     fn wall(&self, x: Point) -> Option<(Point, Vector)> {
         let (distance, image) = self.nearest(x)?;
-        let pose = self.bodies.pose(image.body);
-        let solid = self.bodies.solid(image.body);
-        let normal = pose.orientation * solid.normal(pose.to_body(x - image.shift), self.band);
-        let foot = x - distance * normal;
-        Some((foot, self.bodies.surface_velocity(image.body, foot - image.shift - pose.position)))
+        let foot = x - distance * self.normal(image, x);
+        let arm = foot - image.shift - self.bodies.pose(image.body).position;
+        Some((foot, self.bodies.surface_velocity(image.body, arm)))
     }
 
     /// Whether a straight line from the point to `there` stays out of bodies, but for `deep`: parts of it are halved until their ends, with slopes of the
@@ -164,16 +193,18 @@ impl Vicinity<'_> {
         true
     }
 
-    /// The polynomial through the nodes in the fluid, and for component `c` of a velocity through the wall, at the point.
-    fn fit(&self, lattice: &Lattice, values: &[f64], clear: f64, c: Option<usize>) -> Option<f64> {
-        let reach = clear + REACH[lattice.dim - 2];
+    /// The polynomial through the nodes in the fluid, and for a velocity through the wall, at the point.
+    fn fit(&self, lattice: &Lattice, values: &[f64], clear: f64, region: &Region) -> Option<f64> {
+        let reach = region.reach();
         let (node, _) = lattice.locate(self.x);
-        let here = size(lattice, node);
-        if let Some(c) = c
-            && self.distance(self.x).abs() <= 1e-6 * here
-        {
-            return self.wall(self.x).map(|(_, velocity)| velocity[c]);
-        }
+        let (distance, image) = self.nearest(self.x)?;
+        let (component, normal) = match *region {
+            Region::Component(c, _) if distance.abs() <= 1e-6 * size(lattice, node) => {
+                return self.wall(self.x).map(|(_, velocity)| velocity[c]);
+            }
+            Region::Component(c, _) => (Some(c), Vector::zeros()),
+            Region::Pressure(_) => (None, self.normal(image, self.x)),
+        };
         let span = |a: usize| {
             let cells = if a < lattice.dim { reach.ceil() as isize + 1 } else { 0 };
             node[a] - cells..=node[a] + cells
@@ -185,7 +216,12 @@ impl Vicinity<'_> {
                     let Some(index) = lattice.index([i, j, k]) else { continue };
                     let place = Point::from(lattice.position([i, j, k]));
                     let widths = Vector::from(lattice.widths([i, j, k]));
-                    let away = place - self.x;
+                    let mut away = place - self.x;
+                    if component.is_none() {
+                        // Widened across the normal the ellipsoid is a ball, and polynomials stay polynomials.
+                        let along = normal * normal.dot(&away);
+                        away = along + SLENDER * (away - along);
+                    }
                     let cells: f64 = (0..lattice.dim).map(|a| (away[a] / widths[a]).powi(2)).sum();
                     if cells >= reach * reach {
                         continue;
@@ -194,7 +230,7 @@ impl Vicinity<'_> {
                     if distance > clear * size && self.sees(place, SHALLOW * size) {
                         nodes.push((away, widths, values[index]));
                     }
-                    if let Some(c) = c
+                    if let Some(c) = component
                         && distance.abs() <= size
                         && let Some((foot, velocity)) = self.wall(place)
                         && self.sees(foot, SHALLOW * size)

@@ -64,8 +64,8 @@ fn pressures_on_surfaces_are_those_of_the_fluid() {
                 worst
             };
             let errors: Vec<f64> = cells.into_iter().filter(|&n| n > 0).map(worst).collect();
-            // Measured: 0.45, 0.086 and 0.009 in 2D, 0.27, 0.068 and 0.022 where only three rows of nodes are in reach, of a range of 2.
-            assert!(errors[0] < 0.5 && errors[1] < errors[0] / 3.0, "{dim} {errors:?}");
+            // Measured, of a range of 2: 0.22, 0.049 and 0.007 in 2D; 0.16 and 0.049 in 3D.
+            assert!(errors[0] < 0.23 && errors[1] < errors[0] / 3.0, "{dim} {errors:?}");
             assert!(errors.len() < 3 || errors[2] < errors[1] / 3.0, "{dim} {errors:?}");
         }
     }

@@ -13,6 +13,7 @@ mod meshes;
 mod moving;
 mod moving_walls;
 mod narrow_gaps;
+mod passing_outlets;
 mod physics;
 mod plane_shapes;
 mod population;

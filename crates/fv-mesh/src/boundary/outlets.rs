@@ -1,4 +1,5 @@
 //! Convective outlets, and what enters set against what leaves.
+use super::side_state::SideState;
 use super::{Boundaries, FaceKind};
 use crate::metrics::Metrics;
 use crate::{Field, FlowError};
@@ -18,6 +19,27 @@ impl<const D: usize> Boundaries<D> {
         dt: f64,
         viscosity: f64,
     ) -> Result<(), FlowError> {
+        for state in
+            self.states.iter_mut().flatten().flat_map(|pair| pair.iter_mut()).filter(|state| !state.fixed)
+        {
+            let SideState { before, normal, .. } = state;
+            before.clone_from(normal);
+        }
+        self.repeat_outlets(metrics, velocity, dt, viscosity)
+    }
+
+    /// Repeats [`advance_outlets`](Self::advance_outlets) of the step under way, if there is one, with a velocity that has been
+    /// forced: next to a body that passes the side its faces move as the body does.
+    ///
+    /// # Errors
+    /// Those of [`advance_outlets`](Self::advance_outlets).
+    pub(crate) fn repeat_outlets(
+        &mut self,
+        metrics: &Metrics<D>,
+        velocity: &[Field<D>; D],
+        dt: f64,
+        viscosity: f64,
+    ) -> Result<(), FlowError> {
         if self.sides.closed() {
             return Ok(());
         }
@@ -26,27 +48,36 @@ impl<const D: usize> Boundaries<D> {
             let u = velocity[a].data();
             let Some(pair) = pair else { continue };
             for (upper, state) in pair.iter_mut().enumerate() {
-                if state.fixed {
+                if state.before.is_empty() {
                     continue;
                 }
                 outlets = true;
                 // The largest speed, and that of viscosity, so that what is left when the outflow stops leaves too.
                 let fastest = (0..lines.len())
                     .filter(|&l| lines.inside(l) && state.kind[l] == FaceKind::Convective)
-                    .fold(0.0, |top: f64, l| top.max(state.normal[l].abs()));
+                    .fold(0.0, |top: f64, l| top.max(state.before[l].abs()));
                 let gap = self.grid.axis(a).width(if upper == 1 { lines.cells - 1 } else { 0 });
                 let courant = (fastest + viscosity / gap) * dt / gap;
                 for (l, o) in lines.starts().enumerate().filter(|&(l, _)| lines.inside(l)) {
                     if state.kind[l] == FaceKind::Convective {
                         let inside =
                             u[if upper == 1 { o + (lines.cells - 1) * lines.step } else { o + lines.step }];
-                        state.normal[l] = (state.normal[l] + courant * inside) / (1.0 + courant);
+                        state.normal[l] = (state.before[l] + courant * inside) / (1.0 + courant);
                     }
                 }
             }
         }
         // Inlets alone have been balanced.
         if outlets { self.balance(metrics) } else { Ok(()) }
+    }
+
+    /// Ends the step: outlets are advanced no further.
+    pub(crate) fn keep_outlets(&mut self) {
+        self.states
+            .iter_mut()
+            .flatten()
+            .flat_map(|pair| pair.iter_mut())
+            .for_each(|state| state.before.clear());
     }
 
     /// Shifts what leaves through convective outlets so that it equals what enters. Without outlets the inlets are

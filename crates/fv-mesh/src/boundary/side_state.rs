@@ -43,6 +43,8 @@ pub(super) struct SideState<const D: usize> {
     pub(super) kind: Vec<FaceKind>,
     /// Velocity along the axis on the side's faces.
     pub(super) normal: Vec<f64>,
+    /// The same at the start of the step under way, where it follows from the flow; else empty.
+    pub(super) before: Vec<f64>,
     /// What is given of it, before inlets are balanced.
     pub(super) given: Vec<f64>,
     /// Share of every face that immersed walls leave open; empty without them.
@@ -122,6 +124,7 @@ impl<const D: usize> SideState<D> {
             kind,
             excess: FaceExcess::new(lines_of_pressure),
             normal: list(),
+            before: Vec::new(),
             given: list(),
             open: Vec::new(),
             normal_change: list(),

@@ -295,6 +295,8 @@ impl<const D: usize> Projection<D> {
     }
 
     fn project_here(&mut self, dt: f64) -> Result<(), FlowError> {
+        let FlowState { metrics, boundaries, velocity, fluid, .. } = &mut self.state;
+        boundaries.repeat_outlets(metrics, &velocity.components, dt, fluid.viscosity)?;
         if let Some(walls) = &mut self.walls {
             walls.show_fluxes(&mut self.state.velocity.components);
         }
@@ -353,6 +355,7 @@ impl<const D: usize> Projection<D> {
     }
 
     fn finish_here(&mut self, dt: f64) -> Result<(), FlowError> {
+        self.state.boundaries.keep_outlets();
         self.state.measure_rates();
         let courant = self.courant(dt);
         if courant.is_nan() || courant > LARGEST_COURANT {

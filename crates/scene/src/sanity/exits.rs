@@ -1,5 +1,5 @@
 //! Whether bodies can reach the exits, and where they leave without one.
-use crate::setup::{ContactLawChoice, ForcingChoice, Motion, Setup, is_open};
+use crate::setup::{ContactLawChoice, Motion, Setup, is_open};
 use dem::{HalfSpace, Shape};
 use fv_mesh::Side;
 use interfaces::{Point, Vector};
@@ -115,14 +115,6 @@ impl Setup {
             Point::from(Vector::from_fn(|a, _| if a == place.axis { self.coordinate(place) } else { 0.0 }));
         let beyond = exit.signed_distance(at);
         let largest = self.movable().map(Shape::bounding_radius).fold(0.0, f64::max);
-        let crosses =
-            beyond > -largest && matches!(self.sides[place.axis][place.end], Side::ConvectiveOutlet);
-        if self.fluid.is_some() && crosses && self.bodies.forcing() == ForcingChoice::Hfdib {
-            out.push(format!(
-                "exits.{k} lets bodies cross the outlet {}, where \"hfdib\" may diverge as what leaves is shifted to what enters; make that side {{ type = \"pressure\" }}, move the exit {largest:.3e} m into the box, or take coupling.forcing = \"smooth\"",
-                place.name()
-            ));
-        }
         if self.fluid.is_some() && beyond > largest {
             out.push(format!(
                 "exits.{k} is {beyond:.3e} m beyond the side {}: bodies are without fluid between the two, where only their weight less buoyancy moves them",

@@ -6,6 +6,7 @@ mod files;
 mod flow_alone;
 mod frame;
 mod free_bodies;
+mod gap_sweep;
 mod hooked;
 mod immersed_scalar;
 mod immersed_stress;

@@ -11,6 +11,9 @@ pub struct Layer {
     pub mass: Matrix6<f64>,
     /// Σ (1−χ) w Jᵀ û \[N s, N m s\].
     pub momentum: Vector6<f64>,
+    /// Resistance of fluid that other bodies hold as well, which `mass` does not contain: the body
+    /// receives −`shared`·(v − v') for other bodies of velocity v' \[kg, kg m, kg m²\].
+    pub shared: Matrix6<f64>,
 }
 
 impl Layer {

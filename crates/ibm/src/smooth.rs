@@ -270,6 +270,7 @@ impl Forcing for SmoothForcing {
             self.find_crowd(velocity, bodies);
         }
         let dim = velocity.dim();
+        let mut near_ones_placed = false;
         for b in 0..bodies.n_bodies() {
             // Where a body's markers stand depends on what is near, too.
             let stirred = any && (self.renumbered || self.crowd.stirs(b, &self.moves));
@@ -278,12 +279,16 @@ impl Forcing for SmoothForcing {
                     check(velocity.lattice(c), bodies, BodyId(b))?;
                 }
                 self.place_body(velocity, bodies, BodyId(b))?;
+                near_ones_placed |= !self.bodies[b].joint.is_empty() || self.crowds(b);
             }
             let (kernel, step, markers) = (self.kernel(dim), self.step, &mut self.bodies[b]);
             markers.pose = Some(bodies.pose(BodyId(b)));
             (markers.alone, markers.known) = (self.crowd.alone[b], step.is_some());
             markers.reaction = Wrench::default();
             markers.slip.begin(step, kernel, markers.cell.powf(1.0 / dim as f64), markers.share);
+        }
+        if near_ones_placed {
+            self.find_joint_overlaps(velocity);
         }
         self.renumbered = false;
         Ok(())
@@ -322,7 +327,7 @@ impl Forcing for SmoothForcing {
             }
             self.bodies[b.0].read(c, lattice, velocity.component(c), (bodies, b), &mut found[c]);
         }
-        let Markers { slip, arms, .. } = &self.bodies[b.0];
+        let Markers { slip, arms, joint, .. } = &self.bodies[b.0];
         if slip.any() {
             // √w (1 − y P_t) √w of each marker, y = β/(1 + β): its part along the normal, and what is the same all round.
             for (m, arm) in arms.iter().enumerate() {
@@ -342,6 +347,19 @@ impl Forcing for SmoothForcing {
                 sums.add(*arm, *mass, *found);
             }
             layer.add(c, &sums);
+        }
+        if !joint.is_empty() {
+            // Passes after the first see the share 1/σ of the body's own velocity at a marker where
+            // sheets of σ times its own volume overlap, and give 1 − 1/σ of the mass again.
+            let mut shared = Layer::default();
+            for c in 0..dim {
+                let mut sums = LayerSums::default();
+                for ((arm, mass), overlap) in arms.iter().zip(&outside[c]).zip(joint) {
+                    sums.add(*arm, (self.passes - 1) as f64 * (1.0 - 1.0 / overlap) * mass, 0.0);
+                }
+                shared.add(c, &sums);
+            }
+            layer.shared = shared.mass;
         }
         (self.outside, self.values) = (outside, found);
         layer
@@ -371,16 +389,25 @@ impl Forcing for SmoothForcing {
         let Self { density, passes, bodies: all, values, .. } = self;
         let dim = velocity.dim();
         let lattices = [0, 1, 2].map(|c| velocity.lattice(c.min(dim - 1)).clone());
-        in_turn(all, *passes, |b, markers| {
-            if markers.slip.any() {
-                markers.pass_with_slip((velocity, &lattices), (bodies, b), *density, values);
-                return;
+        let mut pass = |velocity: &mut dyn VelocityField, b: usize, markers: &mut Markers| {
+            markers.pass((velocity, &lattices), (bodies, BodyId(b)), *density, values);
+        };
+        // Bodies whose markers share no fluid with others, while their numbers are at hand.
+        for (b, markers) in all.iter_mut().enumerate().filter(|(_, markers)| markers.alone) {
+            (0..*passes).for_each(|_| pass(velocity, b, markers));
+        }
+        for _ in 0..*passes {
+            for (b, markers) in all.iter_mut().enumerate().filter(|(_, markers)| !markers.joint.is_empty()) {
+                markers.request_all((velocity, &lattices), (bodies, BodyId(b)), *density);
             }
-            for (c, values) in values.iter_mut().enumerate().take(dim) {
-                let u = velocity.component_mut(c);
-                markers.pass(c, (&lattices[c], u), (bodies, b), *density, values);
+            for markers in all.iter().filter(|markers| !markers.joint.is_empty()) {
+                markers.spread(velocity, &lattices, &markers.changes);
             }
-        });
+            let in_turn = |markers: &Markers| !markers.alone && markers.joint.is_empty();
+            for (b, markers) in all.iter_mut().enumerate().filter(|(_, markers)| in_turn(markers)) {
+                pass(velocity, b, markers);
+            }
+        }
     }
 
     fn hidden_dissipation(&self) -> f64 {
@@ -440,18 +467,6 @@ impl Forcing for SmoothForcing {
             n += markers.arms.len() as f64;
         }
         if n > 0.0 { (sum / n).sqrt() } else { 0.0 }
-    }
-}
-
-/// So many passes of each body: of one whose markers share no fluid while its numbers are at hand, of the others in turn.
-fn in_turn(all: &mut [Markers], passes: usize, mut pass: impl FnMut(BodyId, &mut Markers)) {
-    for (b, markers) in all.iter_mut().enumerate().filter(|(_, markers)| markers.alone) {
-        (0..passes).for_each(|_| pass(BodyId(b), markers));
-    }
-    for _ in 0..passes {
-        for (b, markers) in all.iter_mut().enumerate().filter(|(_, markers)| !markers.alone) {
-            pass(BodyId(b), markers);
-        }
     }
 }
 

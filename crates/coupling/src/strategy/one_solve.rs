@@ -13,7 +13,8 @@ use nalgebra::Vector6;
 /// (M_s + C + M_l) vⁿ⁺¹ = M_s vⁿ + C vⁿ + b_l + I(u*) − Iⁿ + δⁿ + dt [(ρ_s − ρ) V g + C ā] + J_contact
 /// ```
 ///
-/// C is a virtual mass that is given back through the last acceleration ā, and δⁿ the impulse by which the last prediction missed the true
+/// C is a virtual mass that is given back through the last acceleration ā (for light bodies with [`Layer::shared`](ibm::Layer::shared) of
+/// fluid that other bodies hold, too), and δⁿ the impulse by which the last prediction missed the true
 /// one. One pressure solution per step, stable at any density ratio.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OneSolve {
@@ -92,7 +93,10 @@ fn solve<const D: usize, A: FlowSolver<D>, F: Forcing, B: Dynamics, S: Strategy>
         let [light, factor] = if particles.rounds(flow) > 1 { [1.0, 0.5] } else { [0.7, 0.3] };
         if own < light * weight * displaced { factor * weight } else { 0.0 }
     });
-    let virtual_mass = mass * (factor * displaced / own);
+    let mut virtual_mass = mass * (factor * displaced / own);
+    if factor > 0.0 {
+        virtual_mass += weights[0] * layer.shared;
+    }
     let (weight, contact) = (particles.pull(b), six(particles.bodies.contact_impulse(b)));
     // What is not free moves as the bodies say: on as it did, unless they were told otherwise in this step.
     let (freedom, told) = (particles.freedom(b), particles.velocity(b));

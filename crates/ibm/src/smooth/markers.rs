@@ -35,6 +35,11 @@ pub(super) struct Markers {
     pub(super) overlaps: Vec<f64>,
     /// Whether the overlaps include periodic images.
     pub(super) long: bool,
+    /// Further divisor where sheets of other bodies overlap with these, with which they are forced
+    /// at once; empty if none do.
+    pub(super) joint: Vec<f64>,
+    /// Changes of the velocity by a joint pass, by component and marker \[m/s\].
+    pub(super) changes: [Vec<f64>; 3],
     pub(super) reaction: Wrench,
     /// What they read past the surface.
     pub(super) slip: Slip,
@@ -119,16 +124,16 @@ impl Markers {
         missing
     }
 
-    /// Brings component `c` nearer to the body's motion: without slip they do not see one another.
-    pub(super) fn pass(
+    /// Finds the changes of component `c` that bring it nearer to the body's motion: without slip
+    /// components are independent of one another.
+    pub(super) fn request(
         &mut self,
         c: usize,
-        (lattice, u): (&Lattice, &mut [f64]),
+        (lattice, u): (&Lattice, &[f64]),
         (bodies, b): (&dyn Kinematics, BodyId),
         density: f64,
         values: &mut Vec<f64>,
     ) {
-        // All markers read before any of them spreads: their order must not matter.
         self.read(c, lattice, u, (bodies, b), values);
         let (twist, per_mass) = (bodies.twist(b), 1.0 / (density * self.cell));
         let (mut impulse, mut moment) = (0.0, Vector::zeros());
@@ -141,17 +146,17 @@ impl Markers {
             moment += given * arm;
             *value = given * per_mass;
         }
-        self.stencils.spread(c, lattice, values, u);
         let mut unit = Vector::zeros();
         unit[c] = 1.0;
         self.reaction.force[c] -= impulse;
         self.reaction.torque -= moment.cross(&unit);
     }
 
-    /// Brings the velocity nearer to the body's motion and the slip along its surface.
-    pub(super) fn pass_with_slip(
+    /// Finds the changes that bring the velocity nearer to the body's motion and the slip along its
+    /// surface.
+    pub(super) fn request_with_slip(
         &mut self,
-        (velocity, lattices): (&mut dyn VelocityField, &[Lattice; 3]),
+        (velocity, lattices): (&dyn VelocityField, &[Lattice; 3]),
         (bodies, b): (&dyn Kinematics, BodyId),
         density: f64,
         values: &mut [Vec<f64>; 3],
@@ -171,8 +176,56 @@ impl Markers {
             self.reaction.torque -= self.arms[m].cross(&impulse);
             (0..dim).for_each(|c| values[c][m] = per_mass * impulse[c]);
         }
-        for (c, values) in values.iter().enumerate().take(dim) {
-            self.stencils.spread(c, &lattices[c], values, velocity.component_mut(c));
+    }
+
+    /// Brings the velocity nearer to the body's motion. All markers read before any of them spreads:
+    /// their order must not matter.
+    pub(super) fn pass(
+        &mut self,
+        (velocity, lattices): (&mut dyn VelocityField, &[Lattice; 3]),
+        who: (&dyn Kinematics, BodyId),
+        density: f64,
+        values: &mut [Vec<f64>; 3],
+    ) {
+        if self.slip.any() {
+            self.request_with_slip((velocity, lattices), who, density, values);
+            self.spread(velocity, lattices, values);
+            return;
+        }
+        for (c, values) in values.iter_mut().enumerate().take(velocity.dim()) {
+            let u = velocity.component_mut(c);
+            self.request(c, (&lattices[c], u), who, density, values);
+            self.stencils.spread(c, &lattices[c], values, u);
+        }
+    }
+
+    /// Finds the changes of a joint pass.
+    pub(super) fn request_all(
+        &mut self,
+        (velocity, lattices): (&dyn VelocityField, &[Lattice; 3]),
+        who: (&dyn Kinematics, BodyId),
+        density: f64,
+    ) {
+        let mut changes = std::mem::take(&mut self.changes);
+        if self.slip.any() {
+            self.request_with_slip((velocity, lattices), who, density, &mut changes);
+        } else {
+            for (c, changes) in changes.iter_mut().enumerate().take(velocity.dim()) {
+                self.request(c, (&lattices[c], velocity.component(c)), who, density, changes);
+            }
+        }
+        self.changes = changes;
+    }
+
+    /// Adds `changes` to the velocity.
+    pub(super) fn spread(
+        &self,
+        velocity: &mut dyn VelocityField,
+        lattices: &[Lattice; 3],
+        changes: &[Vec<f64>; 3],
+    ) {
+        for (c, changes) in changes.iter().enumerate().take(velocity.dim()) {
+            self.stencils.spread(c, &lattices[c], changes, velocity.component_mut(c));
         }
     }
 }

@@ -9,9 +9,18 @@
 //! the step.
 //!
 //! With D / max(1, ρ) for D no mode overshoots: (D/max(1, ρ)) K (D 1) = D ρ/max(1, ρ) ≤ D 1, so 1
-//! bounds the spectral radius (Collatz–Wielandt). Other bodies need no part in it: they are forced
-//! one after the other, and a product of contractions is one.
+//! bounds the spectral radius (Collatz–Wielandt).
+//!
+//! Passes of several bodies one after the other are a product of contractions, which is one. But
+//! where coincident sheets of two bodies of velocities v and v' are forced in turn, every pass
+//! reverses the last: n passes give (2n − 1) m (v' − v) to the relative motion, m being the fluid at
+//! the sheet, of which the bodies' linear systems foresee m. Light bodies diverge by that. Such
+//! bodies are forced at once instead, relaxed by the ρ of all markers: the fluid takes the mean of
+//! v and v' in the first pass, and n passes give ½ n m (v' − v). What passes after the first give is
+//! [`Layer::shared`](crate::Layer).
 use super::SmoothForcing;
+use super::markers::Markers;
+use crate::crowd::Crowd;
 use crate::neighbour::Neighbour;
 use interfaces::{Bodies, BodyId, Pose, VelocityField};
 
@@ -20,6 +29,13 @@ use interfaces::{Bodies, BodyId, Pose, VelocityField};
 /// (`passes_do_not_overshoot_where_sheets_overlap`); up, blocks half a cell from their images
 /// overshoot (same test).
 const SHEETS: f64 = 1.5;
+
+/// Least number of overlapping sheets of several bodies that are forced at once. Flat faces that
+/// touch have 1.7; spheres of 12 cells a twentieth of a cell apart, whose films are tabulated as they
+/// are in turn ([`SmoothFilm`](crate::SmoothFilm)), 1.54. Moved by a third down, these are forced at once
+/// (`tabulated_films_are_those_of_bodies_in_turn`); up, no bodies are
+/// (`sheets_of_several_bodies_are_forced_at_once`).
+const JOINT_SHEETS: f64 = 1.6;
 
 /// Precision of coordinates in parts of the period: files of shapes hold single-precision numbers.
 const PRECISION: f64 = 4.0 * f32::EPSILON as f64;
@@ -72,13 +88,12 @@ impl SmoothForcing {
         let mut most = 0.0_f64;
         let closed = markers.overlaps.iter().any(|overlap| *overlap > 1.0);
         for c in 0..dim {
-            weights.clear();
-            let volumes = markers.masses.iter().zip(&markers.stencils.relax[c]).zip(&markers.overlaps);
-            weights.extend(volumes.map(|((mass, relax), overlap)| {
-                if overlap.is_finite() { mass * relax / (density * markers.cell) } else { 0.0 }
-            }));
+            markers.find_volumes(c, density, weights);
             scratch.resize(velocity.component(c).len(), 0.0);
-            markers.stencils.overlaps(c, velocity.lattice(c), weights, scratch, found);
+            let lattice = velocity.lattice(c);
+            markers.stencils.spread(c, lattice, weights, scratch);
+            markers.stencils.read(c, lattice, scratch, found);
+            markers.stencils.clear(c, lattice, scratch);
             for (overlap, found) in
                 markers.overlaps.iter_mut().zip(&*found).filter(|(overlap, _)| overlap.is_finite())
             {
@@ -89,5 +104,80 @@ impl SmoothForcing {
         if most < SHEETS && !closed {
             markers.overlaps.clear();
         }
+    }
+
+    /// Whether markers of body `b`, which is placed, may overlap with those of other bodies.
+    pub(super) fn crowds(&self, b: usize) -> bool {
+        crowds(&self.crowd, b, &self.bodies[b])
+    }
+
+    /// Finds the bodies whose sheets overlap with those of others, which are forced at once, and
+    /// relaxes them by the overlaps of all.
+    pub(super) fn find_joint_overlaps(&mut self, velocity: &dyn VelocityField) {
+        let dim = velocity.dim();
+        let Self { bodies: all, crowd, density, values: [found, weights, _], scratch, .. } = self;
+        for markers in all.iter_mut().filter(|markers| !markers.joint.is_empty()) {
+            markers.joint.clear();
+            markers.stencils.reset_relaxation(dim);
+            if !markers.overlaps.is_empty() {
+                markers.stencils.relax_by(&markers.overlaps);
+            }
+        }
+        for c in 0..dim {
+            let lattice = velocity.lattice(c);
+            scratch.resize(velocity.component(c).len(), 0.0);
+            for (_, markers) in all.iter().enumerate().filter(|(b, markers)| crowds(crowd, *b, markers)) {
+                markers.find_volumes(c, *density, weights);
+                markers.stencils.spread(c, lattice, weights, scratch);
+            }
+            for (_, markers) in all.iter_mut().enumerate().filter(|(b, markers)| crowds(crowd, *b, markers)) {
+                let Markers { stencils, changes: [most, ..], .. } = markers;
+                stencils.read(c, lattice, scratch, found);
+                if c == 0 {
+                    most.clone_from(found);
+                } else {
+                    most.iter_mut().zip(&*found).for_each(|(most, found)| *most = most.max(*found));
+                }
+            }
+            for (_, markers) in all.iter().enumerate().filter(|(b, markers)| crowds(crowd, *b, markers)) {
+                markers.stencils.clear(c, lattice, scratch);
+            }
+        }
+        for b in 0..all.len() {
+            if crowds(crowd, b, &all[b]) && all[b].changes[0].iter().any(|overlap| *overlap >= JOINT_SHEETS) {
+                for BodyId(b) in crowd.others(b).chain(std::iter::once(BodyId(b))) {
+                    let joins = crowds(crowd, b, &all[b]) && all[b].joint.is_empty();
+                    if joins {
+                        let Markers { stencils, joint, changes: [most, ..], .. } = &mut all[b];
+                        joint.extend(most.iter().map(|overlap| overlap.max(1.0)));
+                        stencils.relax_by(joint);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Whether body `b` has a body within two cells: others' sheets are too far from its own to overlap
+/// with them.
+fn crowds(crowd: &Crowd, b: usize, markers: &Markers) -> bool {
+    markers.share == 0.0 && crowd.others(b).next().is_some()
+}
+
+impl Markers {
+    /// Volumes over c of the markers, in cells, relaxed as bounded sides need; zero where the surface
+    /// is closed.
+    fn find_volumes(&self, c: usize, density: f64, out: &mut Vec<f64>) {
+        let per_cell = 1.0 / (density * self.cell);
+        let closed = |m: usize| self.overlaps.get(m).is_some_and(|overlap| overlap.is_infinite());
+        let relax = &self.stencils.relax[c];
+        out.clear();
+        out.extend(
+            (0..self.masses.len()).map(
+                |m| {
+                    if closed(m) { 0.0 } else { self.masses[m] * relax[m] * per_cell }
+                },
+            ),
+        );
     }
 }

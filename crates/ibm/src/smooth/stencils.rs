@@ -127,9 +127,14 @@ impl Stencils {
                 }
             }
         }
+        self.reset_relaxation(dim);
+    }
+
+    /// Sets the relaxation that bounded sides need alone.
+    pub(super) fn reset_relaxation(&mut self, dim: usize) {
         for (c, relax) in self.relax.iter_mut().enumerate().take(dim) {
             relax.clear();
-            relax.resize(places.len(), 1.0);
+            relax.resize(self.axes[self.of[c][0]].share.len(), 1.0);
             for &at in &self.of[c][..dim] {
                 relax.iter_mut().zip(&self.axes[at].share).for_each(|(relax, share)| *relax *= share * share);
             }
@@ -169,25 +174,15 @@ impl Stencils {
         }
     }
 
-    /// Overlap Σ_n (e_m·e_n) w_n of every marker m with all of the body, over periodic sides too: e
-    /// are the stencils of component `c`, w the `weights` in cells. `scratch` is zero between uses.
-    pub(super) fn overlaps(
-        &self,
-        c: usize,
-        lattice: &Lattice,
-        weights: &[f64],
-        scratch: &mut [f64],
-        out: &mut Vec<f64>,
-    ) {
-        self.spread(c, lattice, weights, scratch);
-        self.read(c, lattice, scratch, out);
+    /// Zeroes component `c` of `u` at the nodes of all markers.
+    pub(super) fn clear(&self, c: usize, lattice: &Lattice, u: &mut [f64]) {
         match (self.width, lattice.dim) {
-            (4, 2) => self.places::<4, 2>(c, lattice).clear(scratch),
-            (4, _) => self.places::<4, 3>(c, lattice).clear(scratch),
-            (5, 2) => self.places::<5, 2>(c, lattice).clear(scratch),
-            (5, _) => self.places::<5, 3>(c, lattice).clear(scratch),
-            (_, 2) => self.places::<6, 2>(c, lattice).clear(scratch),
-            _ => self.places::<6, 3>(c, lattice).clear(scratch),
+            (4, 2) => self.places::<4, 2>(c, lattice).clear(u),
+            (4, _) => self.places::<4, 3>(c, lattice).clear(u),
+            (5, 2) => self.places::<5, 2>(c, lattice).clear(u),
+            (5, _) => self.places::<5, 3>(c, lattice).clear(u),
+            (_, 2) => self.places::<6, 2>(c, lattice).clear(u),
+            _ => self.places::<6, 3>(c, lattice).clear(u),
         }
     }
 

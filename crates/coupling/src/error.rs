@@ -122,7 +122,7 @@ pub enum CouplingError {
     },
     /// The flow moves too far in a step.
     #[error(
-        "the flow moved {courant:.3e} cells in a step of {dt:.3e} s, up to t = {time:.6} s; take a smaller time step"
+        "the flow moved {courant:.3e} cells in a step of {dt:.3e} s, up to t = {time:.6} s; take a smaller time step; if that ends even earlier, the step is not the cause: take a finer grid, or another forcing for the bodies"
     )]
     Courant {
         /// The Courant number.

@@ -283,6 +283,8 @@ impl<const D: usize> Piso<D> {
     }
 
     fn correct_here(&mut self, dt: f64) -> Result<(), FlowError> {
+        let FlowState { metrics, boundaries, velocity, fluid, .. } = &mut self.state;
+        boundaries.repeat_outlets(metrics, &velocity.components, dt, fluid.viscosity)?;
         // What was done to the velocity in between is no change by the flow: its neighbours do not follow it, nor does friction.
         self.state.fill_velocity();
         let before = self.equations.side_flux(&self.carrier, &self.state.velocity.components);
@@ -329,6 +331,7 @@ impl<const D: usize> Piso<D> {
     }
 
     fn finish_here(&mut self, dt: f64) -> Result<(), FlowError> {
+        self.state.boundaries.keep_outlets();
         self.state.measure_rates();
         if self.state.rates.iter().any(|u| !u.is_finite()) {
             return Err(self.state.diverged(dt));

@@ -69,7 +69,7 @@ mod window;
 
 pub use algebra::GridMismatch;
 pub use axis::{Axis, Cluster};
-pub use boundary::{Patch, Profile, Side, Sides};
+pub use boundary::{Patch, Profile, Side, Sides, VelocityFunction};
 pub use convection::Convection;
 pub use diffusion::Diffusion;
 pub use eddy_stress::EddyStress;

@@ -178,6 +178,7 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
         let failed = |what, expected, found| {
             Err(FlowError::Closure { time, source: SolveError::Length { what, expected, found } })
         };
+        self.walls.move_to(time);
         if eddy.len() != grid.n_cells() {
             return failed("the eddy viscosity", grid.n_cells(), eddy.len());
         }
@@ -233,7 +234,7 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
         }
         self.film.clear();
         self.film.extend_from_slice(film);
-        self.list_rows(flow.velocity(), rows, viscosity);
+        self.list_rows(flow.velocity(), rows, viscosity, time);
         self.closure.see_walls(&self.rows, viscosity).map_err(failed)
     }
 
@@ -283,7 +284,8 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
     }
 
     /// The rows of the box's walls, and immersed ones.
-    fn list_rows(&mut self, velocity: &Velocity<D>, immersed: &[WallRow], viscosity: f64) {
+    fn list_rows(&mut self, velocity: &Velocity<D>, immersed: &[WallRow], viscosity: f64, time: f64) {
+        self.walls.move_to(time);
         let rows = self.walls.fill(velocity, self.closure.kinetic_energy(), viscosity);
         self.rows.clear();
         self.rows.extend(rows.iter().chain(immersed));
@@ -298,7 +300,7 @@ impl<const D: usize, C: Closure> Modelled<D, C> {
         time: f64,
         dt: Option<f64>,
     ) -> Result<(), FlowError> {
-        self.list_rows(velocity, immersed, viscosity);
+        self.list_rows(velocity, immersed, viscosity, time);
         self.transport.see_layers(self.closure.kinetic_energy(), viscosity);
         let mut cells = self.transport.on(velocity)?;
         let corrected = self.closure.correct(&mut cells, &self.rows, viscosity, dt);

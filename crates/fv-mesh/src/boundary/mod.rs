@@ -16,6 +16,6 @@ pub(crate) use extrapolation::Extrapolation;
 pub(crate) use lines::Lines;
 pub(crate) use outlet_momentum::OutletStep;
 pub(crate) use pressure_faces::PressureFace;
-pub use side::{Patch, Profile, Side, Sides};
+pub use side::{Patch, Profile, Side, Sides, VelocityFunction};
 pub(crate) use side_state::FaceKind;
 use side_state::{Law, SideState};

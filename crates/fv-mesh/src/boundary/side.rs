@@ -3,11 +3,29 @@ use crate::FlowError;
 use std::fmt;
 use std::sync::Arc;
 
-/// Velocity \[m/s\] at a place \[m\] and time \[s\].
-type VelocityFunction = Arc<dyn Fn([f64; 3], f64) -> [f64; 3] + Send + Sync>;
+/// Velocity \[m/s\] as a function of place \[m\] and time \[s\].
+#[derive(Clone)]
+pub struct VelocityFunction(Arc<dyn Fn([f64; 3], f64) -> [f64; 3] + Send + Sync>);
+
+impl VelocityFunction {
+    /// The function `u(x, t)`.
+    pub fn new(u: impl Fn([f64; 3], f64) -> [f64; 3] + Send + Sync + 'static) -> Self {
+        Self(Arc::new(u))
+    }
+    /// Velocity \[m/s\] at the place `x` \[m\] and time `t` \[s\].
+    pub fn at(&self, x: [f64; 3], t: f64) -> [f64; 3] {
+        (self.0)(x, t)
+    }
+}
+
+impl fmt::Debug for VelocityFunction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("VelocityFunction(..)")
+    }
+}
 
 /// Velocity over an inlet.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub enum Profile {
     /// The same everywhere \[m/s\].
     Uniform([f64; 3]),
@@ -24,17 +42,7 @@ pub enum Profile {
 impl Profile {
     /// The velocity `u(x, t)` \[m/s\] of place \[m\] and time \[s\].
     pub fn function(u: impl Fn([f64; 3], f64) -> [f64; 3] + Send + Sync + 'static) -> Self {
-        Self::Function(Arc::new(u))
-    }
-}
-
-impl fmt::Debug for Profile {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Uniform(u) => f.debug_tuple("Uniform").field(u).finish(),
-            Self::Parabolic { peak } => f.debug_struct("Parabolic").field("peak", peak).finish(),
-            Self::Function(_) => f.write_str("Function(..)"),
-        }
+        Self::Function(VelocityFunction::new(u))
     }
 }
 
@@ -64,6 +72,9 @@ pub enum Side {
     /// A wall to which the fluid sticks, moving along itself with this velocity \[m/s\]; the
     /// component normal to the wall must be zero.
     Wall([f64; 3]),
+    /// A wall to which the fluid sticks, moving along itself with a velocity that depends on place and time. The component
+    /// normal to the wall has no effect.
+    MovingWall(VelocityFunction),
     /// A frictionless wall, or a plane of symmetry.
     FreeSlip,
     /// Fluid enters with this velocity.
@@ -91,6 +102,22 @@ impl Side {
     /// This at every side of the box.
     pub fn everywhere<const D: usize>(&self) -> [[Self; 2]; D] {
         std::array::from_fn(|_| self.both())
+    }
+    /// A wall whose velocity along itself is `u(x, t)` \[m/s\] of place \[m\] and time \[s\].
+    pub fn moving_wall(u: impl Fn([f64; 3], f64) -> [f64; 3] + Send + Sync + 'static) -> Self {
+        Self::MovingWall(VelocityFunction::new(u))
+    }
+    /// Whether this is a wall, steady or moving.
+    pub fn is_wall(&self) -> bool {
+        matches!(self, Self::Wall(_) | Self::MovingWall(_))
+    }
+    /// Velocity \[m/s\] of a wall at the place `x` \[m\] and time `t` \[s\]; `None` if this is no wall.
+    pub fn wall_velocity(&self, x: [f64; 3], t: f64) -> Option<[f64; 3]> {
+        match self {
+            Self::Wall(u) => Some(*u),
+            Self::MovingWall(u) => Some(u.at(x, t)),
+            _ => None,
+        }
     }
     pub(crate) fn is_periodic(&self) -> bool {
         matches!(self, Self::Periodic)

@@ -117,7 +117,7 @@ impl<const D: usize> SideState<D> {
             };
         }
         let fixed = kind.iter().all(|k| k.is_fixed());
-        let steady = !side.any(&|s| matches!(s, Side::Inlet(Profile::Function(_))));
+        let steady = !side.any(&|s| matches!(s, Side::Inlet(Profile::Function(_)) | Side::MovingWall(_)));
         let lines_of_pressure = if kind.contains(&FaceKind::Pressure) { lines.len() } else { 0 };
         Ok(Self {
             side,
@@ -190,7 +190,9 @@ impl<const D: usize> SideState<D> {
                     .or_else(|| part(grid, &self.side, a, lines.face_centre(grid, self.at, l)));
                 let Some((side, extent)) = part else { continue };
                 let given = match side {
+                    side if side.is_wall() && c == a => Some(0.0),
                     Side::Wall(u) => Some(u[c]),
+                    Side::MovingWall(u) => Some(u.at(x, time)[c]),
                     Side::Inlet(profile) => {
                         Some(profile.at(c, &InletPoint { axis: a, inward, extent, bounded, x, time }))
                     }
@@ -242,7 +244,7 @@ impl Profile {
         let InletPoint { axis, inward, extent, bounded, x, time } = point;
         match self {
             Self::Uniform(u) => u[c],
-            Self::Function(f) => f(*x, *time)[c],
+            Self::Function(f) => f.at(*x, *time)[c],
             Self::Parabolic { .. } if c != *axis => 0.0,
             Self::Parabolic { peak } => {
                 let shape = |b: usize| {

@@ -133,7 +133,7 @@ impl<const D: usize> CellSides<D> {
 fn kind<const D: usize>(side: &Side, a: usize, x: [f64; 3]) -> Result<Kind, FlowError> {
     match part_at::<D>(side, a, x) {
         Some(Side::Inlet(_)) => Ok(Kind::Inlet),
-        Some(Side::Wall(_)) => Ok(Kind::Wall),
+        Some(side) if side.is_wall() => Ok(Kind::Wall),
         Some(_) => Ok(Kind::Open),
         None => Err(FlowError::Boundary {
             what: format!(

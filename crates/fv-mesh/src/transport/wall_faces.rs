@@ -4,7 +4,7 @@ use crate::boundary::Lines;
 use crate::eddy_stress::{EddyStress, Friction, OnWall};
 use crate::grid::GHOSTS;
 use crate::metrics::Metrics;
-use crate::{CartesianGrid, Side, Sides, Velocity};
+use crate::{CartesianGrid, Side, Sides, Velocity, VelocityFunction};
 use interfaces::{Vector, WallRow};
 
 /// The faces of walls: a row for each, and the velocity nodes that its friction acts on.
@@ -13,6 +13,8 @@ pub(crate) struct WallFaces<const D: usize> {
     rows: Vec<WallRow>,
     faces: Vec<WallFace>,
     nodes: [Vec<WallNode>; D],
+    /// Number and centre of the faces of moving walls, and the wall's velocity.
+    moving: Vec<(usize, [f64; 3], VelocityFunction)>,
     stride: [usize; D],
 }
 
@@ -47,6 +49,7 @@ impl<const D: usize> WallFaces<D> {
             rows: Vec::new(),
             faces: Vec::new(),
             nodes: std::array::from_fn(|_| Vec::new()),
+            moving: Vec::new(),
             stride: grid.stride(),
         };
         for axis in (0..D).filter(|&a| !sides.periodic(a)) {
@@ -54,8 +57,15 @@ impl<const D: usize> WallFaces<D> {
             let ends = [grid.axis(axis).lower(), grid.axis(axis).upper()];
             for (upper, at) in ends.into_iter().enumerate() {
                 for (l, o) in lines.starts().enumerate().filter(|&(l, _)| lines.inside(l)) {
-                    let part = part_at::<D>(&sides.of(axis)[upper], axis, lines.face_centre(grid, at, l));
-                    let Some(Side::Wall(velocity)) = part else { continue };
+                    let x = lines.face_centre(grid, at, l);
+                    let part = part_at::<D>(&sides.of(axis)[upper], axis, x);
+                    let Some((part, velocity)) = part.and_then(|p| Some((p, p.wall_velocity(x, 0.0)?)))
+                    else {
+                        continue;
+                    };
+                    if let Side::MovingWall(u) = part {
+                        new.moving.push((new.faces.len(), x, u.clone()));
+                    }
                     let cell = lines.end_cell(grid, l, upper == 1);
                     let (inside, ghost) = lines.ends(o, upper);
                     let (first, second) =
@@ -68,15 +78,7 @@ impl<const D: usize> WallFaces<D> {
                     });
                     let area = lines.face_area(metrics, l);
                     new.rows.push(WallRow { cell, y, area, ..WallRow::default() });
-                    new.faces.push(WallFace {
-                        axis,
-                        end: upper,
-                        line: l,
-                        inside,
-                        ghost,
-                        next,
-                        velocity: *velocity,
-                    });
+                    new.faces.push(WallFace { axis, end: upper, line: l, inside, ghost, next, velocity });
                     new.add_nodes(grid, metrics, axis, cell);
                 }
             }
@@ -107,6 +109,13 @@ impl<const D: usize> WallFaces<D> {
 
     pub(crate) fn rows(&self) -> &[WallRow] {
         &self.rows
+    }
+
+    /// Sets the velocities of moving walls to those at `time` \[s\].
+    pub(crate) fn move_to(&mut self, time: f64) {
+        for (face, x, velocity) in &self.moving {
+            self.faces[*face].velocity = velocity.at(*x, time);
+        }
     }
 
     /// Fills the rows with what the flow is at the cells.

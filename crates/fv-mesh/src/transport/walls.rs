@@ -69,7 +69,7 @@ fn walls_of<const D: usize>(
         _ => &whole,
     };
     let rectangle = |p: &Patch| Rectangle { lower: clip(p.lower), upper: clip(p.upper) };
-    for (k, patch) in patches.iter().enumerate().filter(|(_, p)| matches!(p.side, Side::Wall(_))) {
+    for (k, patch) in patches.iter().enumerate().filter(|(_, p)| p.side.is_wall()) {
         let own = rectangle(patch);
         if (0..D).any(|b| b != a && own.upper[b] <= own.lower[b]) {
             continue;

@@ -2,6 +2,7 @@
 mod boundaries;
 mod exact;
 mod hooks;
+mod moving_walls;
 mod norms;
 mod outlet_friction;
 mod stress;

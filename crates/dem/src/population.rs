@@ -236,6 +236,7 @@ impl<L: ContactLaw> Dynamics for Population<L> {
     }
     /// Called again at the same time it changes nothing.
     fn renew(&mut self, time: f64) -> Result<Option<Renumbering>, PlacingError> {
+        self.bodies.renew(time)?;
         let numbers = self.see_off()?;
         for inflow in 0..self.inflows.len() {
             self.let_in(inflow, time)?;

@@ -89,6 +89,8 @@ pub struct RigidBodies<L: ContactLaw = Chen> {
     listed_for: f64,
     /// Length of the last sub-step \[s\].
     last_step: f64,
+    /// Time \[s\].
+    time: f64,
 }
 
 /// A patch that two bodies share, and what it does.
@@ -174,6 +176,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             fastest: 0.0,
             listed_for: 0.0,
             last_step: 0.0,
+            time: 0.0,
         }
     }
 
@@ -420,7 +423,7 @@ impl<L: ContactLaw> Kinematics for RigidBodies<L> {
         self.bodies[b.0].twist
     }
     fn surface_motion(&self, b: BodyId, arm: Vector) -> Option<Vector> {
-        self.surfaces.body(b.0, arm)
+        self.surfaces.body(b.0, &self.bodies[b.0].pose, arm, self.time)
     }
 }
 

@@ -6,7 +6,7 @@ use super::sweep;
 use super::tether::pull_of;
 use crate::DemError;
 use crate::contact::ContactLaw;
-use interfaces::{BodyId, Dynamics, Load, Twist, Wrench};
+use interfaces::{BodyId, Dynamics, Load, Renumbering, Twist, Wrench};
 
 impl<L: ContactLaw> RigidBodies<L> {
     pub(super) fn view(&self) -> View<'_, L> {
@@ -21,6 +21,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             n_materials: self.materials.len(),
             periods: self.periods,
             last_step: self.last_step,
+            time: self.time,
             surfaces: self.any_slides.then_some(&self.surfaces),
         }
     }
@@ -63,6 +64,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             return Ok(false);
         }
         self.last_step = dt;
+        self.time += dt;
         self.contact_time += if self.n_contacts() == 0 { 0.0 } else { dt };
         if self.kick(dt, first) { self.diverged() } else { Ok(true) }
     }
@@ -125,7 +127,9 @@ impl<L: ContactLaw> RigidBodies<L> {
         let mut contact = std::mem::take(&mut self.contact);
         let used = self.near.len().div_ceil(CHUNK);
         chunks[used..].iter_mut().for_each(|c| c.films = 0);
-        let result = work(&self.view(), self.is_shared(), &mut chunks[..used], &mut contact, dt);
+        // Bodies are where they are in the middle of the sub-step.
+        let view = View { time: self.time + 0.5 * dt, ..self.view() };
+        let result = work(&view, self.is_shared(), &mut chunks[..used], &mut contact, dt);
         self.chunks = chunks;
         self.contact = contact;
         for chunk in &mut self.chunks[..used] {
@@ -227,6 +231,12 @@ impl<L: ContactLaw> Dynamics for RigidBodies<L> {
 
     fn contact_impulse(&self, b: BodyId) -> Wrench {
         self.impulse[b.0]
+    }
+
+    /// Sets the time at which surfaces move as functions of it; it goes on by what bodies are advanced.
+    fn renew(&mut self, time: f64) -> Result<Option<Renumbering>, DemError> {
+        self.time = time;
+        Ok(None)
     }
 
     fn set_twist(&mut self, b: BodyId, twist: Twist) {

@@ -64,6 +64,7 @@ impl<L: ContactLaw> Checkpoint for RigidBodies<L> {
             self.fastest,
             self.listed_for,
             self.last_step,
+            self.time,
         ];
         sink("contact_time", &counters);
     }
@@ -88,9 +89,9 @@ impl<L: ContactLaw> Checkpoint for RigidBodies<L> {
         let n = RestartError::take(source, "n_patches", 1)?[0] as usize;
         let size = PATCH + L::Memory::N;
         let patches = RestartError::take(source, "patches", size * n)?;
-        let counters = RestartError::take(source, "contact_time", 6)?;
+        let counters = RestartError::take(source, "contact_time", 7)?;
         (self.contact_time, self.overlap_calls) = (counters[0], counters[1] as u64);
-        self.last_step = counters[5];
+        (self.last_step, self.time) = (counters[5], counters[6]);
         let sleep = RestartError::take(source, "sleep", 2 * self.bodies.len() + 1)?;
         for (b, v) in sleep.chunks_exact(2).enumerate() {
             (self.sleepers.island[b], self.sleepers.slow[b]) = (v[0] as u32, v[1]);

@@ -114,6 +114,8 @@ pub(super) struct View<'a, L> {
     pub(super) periods: Periods,
     /// Length of the last sub-step \[s\].
     pub(super) last_step: f64,
+    /// Time \[s\] at which surfaces are looked at.
+    pub(super) time: f64,
     /// Surfaces that slide, if any do.
     pub(super) surfaces: Option<&'a Surfaces>,
 }

@@ -3,7 +3,6 @@ use super::RigidBodies;
 use super::body::{Constants, Kind};
 use super::contacts::View;
 use super::meeting::{Meeting, Other};
-use super::push::slip;
 use crate::Shape;
 use crate::contact::{ContactLaw, FilmForce, Gap, stiffness_of_decay};
 use crate::overlap::plane;
@@ -47,7 +46,11 @@ impl<L: ContactLaw> View<'_, L> {
             spin -= b.twist.angular;
         }
         if let Some(surfaces) = self.surfaces {
-            velocity += slip(surfaces, meeting, at, normal);
+            let [first, second] = surfaces.both(meeting, at, normal, self.time);
+            velocity += first - second;
+            // Velocities along curved surfaces turn with their normals, as by a spin.
+            let [k, l] = curvatures;
+            spin += normal.cross(&(k * first + l * second));
         }
         let wall = matches!(meeting.other, Other::Wall(_));
         let film = Gap { distance: gap, normal, velocity, spin, radius, curvatures, wall };

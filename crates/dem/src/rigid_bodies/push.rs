@@ -2,11 +2,10 @@
 use super::body::{Body, Constants};
 use super::contacts::{Patch, Record, View};
 use super::meeting::{Meeting, Other};
-use super::surfaces::Surfaces;
 use crate::contact::{ContactLaw, Pivot, Push, Touch};
 use crate::overlap::closed::Lens;
 use crate::{DemError, Overlap, OverlapSolver};
-use interfaces::{Point, Vector, Wrench};
+use interfaces::{Vector, Wrench};
 
 /// Contacts count as no nearer to a body's centre than this part of its inner radius, or L_c would vanish there.
 const SHORTEST_ARM: f64 = 0.05;
@@ -49,7 +48,7 @@ impl<L: ContactLaw> View<'_, L> {
         };
         let inverse = a.inverse_mass + inverse_b;
         let velocity = match self.surfaces {
-            Some(surfaces) => velocity + slip(surfaces, meeting, overlap.centroid, normal),
+            Some(surfaces) => velocity + surfaces.slip(meeting, overlap.centroid, normal, self.time),
             None => velocity,
         };
         let touch = Touch {
@@ -180,7 +179,12 @@ impl<L: ContactLaw> View<'_, L> {
         };
         touch.rate = overlap.rate(touch.velocity, touch.spin);
         if let Some(surfaces) = self.surfaces {
-            touch.velocity += slip(surfaces, meeting, overlap.centroid, overlap.normal);
+            let (point, normal) = (overlap.centroid, overlap.normal);
+            touch.velocity += surfaces.slip(meeting, point, normal, self.time);
+            let radius = if L::PIVOTS { (overlap.pivot.trace() / area).sqrt() } else { 0.0 };
+            if radius > 0.0 {
+                touch.spin += surfaces.spin(meeting, (point, normal, radius), self.time);
+            }
         }
         touch.inverse_masses = meeting.inverse_masses(inverse_b);
         if L::MOBILITY {
@@ -210,17 +214,6 @@ impl<L: ContactLaw> View<'_, L> {
         };
         (push, memory)
     }
-}
-
-/// Velocity of the first surface of a pair against the second at `point`, besides that of the bodies.
-#[inline(always)]
-pub(super) fn slip(surfaces: &Surfaces, meeting: &Meeting<'_>, point: Point, normal: Vector) -> Vector {
-    let place = point - meeting.a.pose.position;
-    let other = match meeting.other {
-        Other::Body(_, at_b) => point - at_b,
-        Other::Wall(_) => point.coords,
-    };
-    surfaces.slip([meeting.pair.a, meeting.pair.b], [place, other], normal)
 }
 
 /// Spin of a pair about a patch.

@@ -185,3 +185,27 @@ fn discs_have_no_films() {
         films().add(Disc::new(R).unwrap(), material, Pose::at([0.0; 3]), Twist::default(), Freedom::PLANAR);
     assert!(matches!(added, Err(DemError::Unsupported { a: "disc", .. })), "{added:?}");
 }
+
+/// A roller whose surface turns does through a film what one that turns as a whole does: sliding and rolling terms alike.
+#[test]
+fn surfaces_that_turn_drive_films() {
+    let spin = Vector::new(3.0, 20.0, 1.0);
+    let run = |surface: bool| {
+        let mut bodies = films();
+        add(&mut bodies, Sphere::new(R).unwrap(), Pose::at([0.0, 0.0, 2.01 * R]), Twist::default());
+        let angular = if surface { Vector::zeros() } else { spin };
+        let (roller, twist) = (Sphere::new(R).unwrap(), Twist { angular, ..Twist::default() });
+        let b = bodies.add(roller, stone(), Pose::at([0.0; 3]), twist, Freedom::NONE).unwrap();
+        if surface {
+            bodies.set_surface_motion(b, move |x, _| spin.cross(&x.coords)).unwrap();
+        }
+        bodies.advance(1e-3).unwrap();
+        bodies.twist(A)
+    };
+    let [body, surface] = [false, true].map(run);
+    println!("{body:?} {surface:?}");
+    assert!(body.linear.norm() > 1e-5 && body.angular.norm() > 1e-3);
+    // The middle of the film is 0.005 R away from the surface.
+    let off = |a: Vector, b: Vector| (a - b).norm() / b.norm();
+    assert!(off(surface.linear, body.linear) < 0.03 && off(surface.angular, body.angular) < 0.03);
+}

@@ -204,8 +204,15 @@ impl Solid for Polygon {
         Aabb { min: Point::new(low.x, low.y, 0.0), max: Point::new(high.x, high.y, 0.0) }
     }
     fn normal(&self, x: Point, _band: f64) -> Vector {
-        let (way, outside) = self.way(x.coords.xy());
-        let out = if outside { way } else { -way };
+        let x = x.coords.xy();
+        let (way, outside) = self.way(x);
+        let mut out = if outside { way } else { -way };
+        // On the surface itself, that of the nearest edge; corners run counter-clockwise.
+        if way.norm() <= 1e-9 * self.bounding_radius() {
+            let distance = |[p, q]: &[Vector2<f64>; 2]| (x - nearest_on_edge([*p, *q], x)).norm_squared();
+            let nearest = self.edges().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            out = nearest.map_or(out, |[p, q]| Vector2::new(q.y - p.y, p.x - q.x));
+        }
         Vector::new(out.x, out.y, 0.0).try_normalize(0.0).unwrap_or_default()
     }
 }

@@ -114,3 +114,25 @@ proptest! {
         }
     }
 }
+
+/// Places on the surface, up to round-off, have the normal of their edge.
+#[test]
+fn normals_on_the_surface_are_those_of_edges() {
+    let (turn, half) = (0.3_f64, [0.315, 0.105]);
+    let at = |x: f64, y: f64| [x * turn.cos() - y * turn.sin(), x * turn.sin() + y * turn.cos()];
+    let [a, b] = half;
+    let shape = Polygon::new(&[at(-a, -b), at(a, -b), at(a, b), at(-a, b)]).unwrap();
+    for k in -9..=9 {
+        let share = 0.1 * f64::from(k);
+        for (place, normal) in [
+            (at(share * a, b), at(0.0, 1.0)),
+            (at(share * a, -b), at(0.0, -1.0)),
+            (at(a, share * b), at(1.0, 0.0)),
+            (at(-a, share * b), at(-1.0, 0.0)),
+        ] {
+            let found = Solid::normal(&shape, Point::new(place[0], place[1], 0.0), a);
+            let off = found - Vector::new(normal[0], normal[1], 0.0);
+            assert!(off.norm() < 1e-9, "{place:?}: {found:?} for {normal:?}");
+        }
+    }
+}

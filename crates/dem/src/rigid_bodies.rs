@@ -93,6 +93,9 @@ pub struct RigidBodies<L: ContactLaw = Chen> {
     time: f64,
 }
 
+/// Depth of overlaps at the start that count as round-off, over the radius around the smaller body.
+const ROUND_OFF: f64 = 1e-9;
+
 /// A patch that two bodies share, and what it does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
@@ -290,6 +293,7 @@ impl<L: ContactLaw> RigidBodies<L> {
     }
 
     /// Are all bodies clear of one another and of the walls? Bodies that cannot be moved are not compared with one another.
+    /// Overlaps of up to 10⁻⁹ of the radius of the smaller body's bounding sphere count as round-off of bodies that touch.
     ///
     /// # Errors
     /// [`DemError::OverlappingStart`] or [`DemError::InWall`] for the first that are not, and what the overlaps themselves answer.
@@ -313,11 +317,17 @@ impl<L: ContactLaw> RigidBodies<L> {
                 let apart = other.pose.position + shift(&self.periods, pair.image) - body.pose.position;
                 let round = body.kind != Kind::Other && other.kind != Kind::Other;
                 let depth = if round { body.radius + other.radius - apart.norm() } else { depth };
+                if depth <= ROUND_OFF * body.radius.min(other.radius) {
+                    continue;
+                }
                 return Err(DemError::OverlappingStart { a: BodyId(a), b: BodyId(b), depth });
             }
             let wall = wall_of(pair.b);
             let gap = self.walls[wall].plane.signed_distance(body.pose.position) - body.radius;
             let depth = if body.kind == Kind::Other { depth } else { -gap };
+            if depth <= ROUND_OFF * body.radius {
+                continue;
+            }
             return Err(DemError::InWall { body: BodyId(a), wall, depth });
         }
         Ok(())

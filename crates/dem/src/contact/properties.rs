@@ -56,6 +56,10 @@ pub struct PairProperties {
 }
 
 impl PairProperties {
+    /// The least restitution of [`Potential`](crate::Potential); less counts as this, since the damping ratio, and with it the
+    /// number of sub-steps, grows like 1/√e.
+    pub const LEAST_RESTITUTION: f64 = 2e-3;
+
     /// The properties of the pair, by springs in series.
     pub fn new(a: &Material, b: &Material) -> Self {
         Self::by(Means::Series, a, b)
@@ -78,10 +82,6 @@ impl PairProperties {
     }
 }
 
-/// Restitution below which bodies count as perfectly plastic: the damping ratio, and with it the number of sub-steps, grows
-/// like 1/√e.
-const PLASTIC: f64 = 2e-3;
-
 /// ζ of a damped linear oscillator that leaves its contact, once it no longer pushes, at e times the speed at which it came
 /// (Schwager & Pöschel 2007, Granul. Matter 9, 465; for ζ > 1 by analytic continuation):
 ///
@@ -89,7 +89,7 @@ const PLASTIC: f64 = 2e-3;
 /// e = exp(−2ζ arccos(ζ)/√(1 − ζ²))
 /// ```
 fn damping_ratio(restitution: f64) -> f64 {
-    let target = -restitution.clamp(PLASTIC, 1.0).ln();
+    let target = -restitution.clamp(PairProperties::LEAST_RESTITUTION, 1.0).ln();
     // −ln e grows with ζ: halve.
     let (mut low, mut high) = (0.0, 16.0);
     while high - low > f64::EPSILON * high {
@@ -142,7 +142,7 @@ mod tests {
             assert!((-x[1] - e).abs() < 1e-4 * e, "{e}: {} by {ratio}", -x[1]);
         }
         assert_eq!(damping_ratio(1.0), 0.0);
-        assert_eq!(damping_ratio(0.0), damping_ratio(PLASTIC));
+        assert_eq!(damping_ratio(0.0), damping_ratio(PairProperties::LEAST_RESTITUTION));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Every error: which value, why, what to do.
 use super::*;
-use dem::{Chen, DemError, HalfSpace};
+use dem::{Chen, Cuboid, DemError, HalfSpace};
 use interfaces::{Dynamics, Point};
 
 const NAN: f64 = f64::NAN;
@@ -134,4 +134,33 @@ fn diverged() {
             says(&error, &["body", "finite", "m/s"]);
         }
     }
+}
+
+/// Bodies that touch may overlap by round-off at the start: up to 10⁻⁹ of the radius around the smaller one.
+#[test]
+fn bodies_that_touch_are_no_overlap() {
+    let start = |depth: f64, ball: bool| {
+        let mut bodies = RigidBodies::new(Periods::default());
+        let shape: Arc<dyn Shape> = if ball {
+            Arc::new(Sphere::new(R).unwrap())
+        } else {
+            Arc::new(Cuboid::new([2.0 * R; 3]).unwrap())
+        };
+        let radius = shape.bounding_radius();
+        let place = |z: f64| Pose::at([0.0, 0.0, z]);
+        bodies.add_wall(HalfSpace::new(Point::origin(), Vector::z()).unwrap(), Material::default()).unwrap();
+        for z in [R - depth * radius, 3.0 * R - 2.0 * depth * radius] {
+            bodies
+                .add(shape.clone(), Material::default(), place(z), Twist::default(), Freedom::FREE)
+                .unwrap();
+        }
+        bodies.check_overlaps()
+    };
+    for ball in [true, false] {
+        for depth in [0.0, 1e-15, 1e-12] {
+            assert!(start(depth, ball).is_ok(), "{depth} {ball}: {:?}", start(depth, ball));
+        }
+    }
+    assert!(start(0.7e-9, true).is_ok() && start(1.4e-9, true).is_err());
+    assert!(start(3e-9, false).is_err());
 }

@@ -11,7 +11,7 @@ use fv_mesh::{
     Axis, CartesianGrid, Convection, Diffusion, FlowError, Piso, PisoParams, Projection, Side, TimeScheme,
 };
 use ibm::{Hfdib, IbmError, SmoothFilm, SmoothForcing, cut_walls};
-use interfaces::{BodyId, Freedom, Kinematics, Periods, Twist};
+use interfaces::{BodyId, Freedom, Kinematics, Periods, Point, Twist};
 
 /// A number of which one digit counts.
 fn about(x: f64) -> String {
@@ -24,6 +24,11 @@ fn free_memory() -> Option<f64> {
     let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
     let kilobytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(1024.0 * kilobytes)
+}
+
+/// The image in the box of a place: bodies keep on counting beyond periodic sides.
+fn within(x: Point, repeats: &[Option<[f64; 2]>; 3]) -> [f64; 3] {
+    std::array::from_fn(|a| repeats[a].map_or(x[a], |[from, length]| from + (x[a] - from).rem_euclid(length)))
 }
 
 /// Doubles per cell, in the plane and in space: fields, solvers, what is written.
@@ -180,6 +185,11 @@ impl Setup {
         }
     }
 
+    /// Lower end and length of the axes along which the box repeats \[m\].
+    fn repeats(&self) -> [Option<[f64; 2]>; 3] {
+        [0, 1, 2].map(|a| self.periodic(a).then(|| [self.axes[a].lower(), self.axes[a].length()]))
+    }
+
     /// The bodies under a law of contact.
     pub(crate) fn cast<L: ContactLaw>(&self, law: L) -> Result<Cast<L>, BuildError> {
         let period = |a: usize| self.periodic(a).then(|| self.axes[a].length());
@@ -190,7 +200,16 @@ impl Setup {
         let Bodies { list, inflows, exits, walls, wall_material, overlaps, .. } = &self.bodies;
         for (number, wall) in walls.iter().enumerate() {
             bodies.add_wall(wall.plane, *wall_material)?;
-            bodies.set_wall_velocity(number, wall.velocity)?;
+            match &wall.surface {
+                Side::MovingWall(u) => {
+                    let (u, periods) = (u.clone(), self.repeats());
+                    bodies.set_wall_motion(number, move |x, t| u.at(within(x, &periods), t).into())?;
+                }
+                side => {
+                    let velocity = side.wall_velocity([0.0; 3], 0.0).unwrap_or_default();
+                    bodies.set_wall_velocity(number, velocity.into())?;
+                }
+            }
         }
         let mut scripts = Vec::new();
         for (number, body) in list.iter().enumerate() {
@@ -205,6 +224,9 @@ impl Setup {
             };
             let b = bodies.add(body.shape.clone(), body.material, body.pose, twist, freedom)?;
             bodies.set_tether(b, body.tether)?;
+            if let Some(surface) = &body.surface {
+                bodies.set_surface_motion(b, surface.along(body.shape.clone()))?;
+            }
         }
         if !overlaps && L::TOUCHES {
             bodies.check_overlaps()?;
@@ -282,10 +304,7 @@ impl Setup {
         let any = !bodies.list.is_empty() || !bodies.inflows.is_empty();
         let law = match bodies.law {
             ContactLawChoice::Chen if bodies.repulsion.is_some() => "chen with repulsion",
-            ContactLawChoice::Chen => "chen",
-            ContactLawChoice::Potential => "potential",
-            ContactLawChoice::Rolling => "rolling",
-            ContactLawChoice::None => "none",
+            law => law.word(),
         };
         let moves = bodies.any_moves();
         let fluid = self.fluid.is_some();

@@ -160,6 +160,15 @@ impl<'a> Reader<'a> {
         }
         Ok(Some(out.map(|e| e.unwrap_or(Expression::constant(0.0)))))
     }
+    /// Whether item `i` of the list `key` is a formula that is not 0 everywhere.
+    pub(crate) fn changes(&self, key: &str, i: usize) -> bool {
+        let text = |item: &Item| if let Value::Text(text) = &item.value { Some(text.clone()) } else { None };
+        let formula = self.list(key).and_then(|items| text(items.get(i)?));
+        formula.is_some_and(|text| {
+            let zero = Expression::new(&text, &["x", "y", "z", "t"]).map(|e| e.fixed());
+            !matches!(zero, Ok(Some(0.0)) | Err(_))
+        })
+    }
     pub(crate) fn formula(&self, key: &str, variables: &[&str]) -> Result<Option<Expression>, Problem> {
         self.section.get(key).map(|item| self.expression(key, item, variables)).transpose()
     }

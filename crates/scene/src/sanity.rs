@@ -3,7 +3,7 @@ mod blockage;
 mod contacts;
 mod exits;
 
-use crate::setup::{Algorithm, BodySetup, Setup, is_open};
+use crate::setup::{Algorithm, BodySetup, Setup, SurfaceVelocity, is_open};
 use blockage::Blockage;
 use coupling::WeightBalance;
 use fv_mesh::{Axis, Convection, Profile, Side, WallStress};
@@ -32,8 +32,9 @@ fn norm(u: [f64; 3]) -> f64 {
 fn speed_at(side: &Side, at: [f64; 3], time: f64) -> f64 {
     match side {
         Side::Wall(u) | Side::Inlet(Profile::Uniform(u)) => norm(*u),
+        Side::MovingWall(u) => norm(u.at(at, time)),
         Side::Inlet(Profile::Parabolic { peak }) => peak.abs(),
-        Side::Inlet(Profile::Function(u)) => norm(u(at, time)),
+        Side::Inlet(Profile::Function(u)) => norm(u.at(at, time)),
         Side::Patches(patches) => {
             let of_patch = |p: &fv_mesh::Patch| {
                 let middle = |a: usize| 0.5 * (p.lower[a] + p.upper[a]);
@@ -56,7 +57,7 @@ impl Setup {
         }
     }
     /// Instants from the start to the end \[s\].
-    fn instants(&self) -> impl Iterator<Item = f64> + '_ {
+    pub(crate) fn instants(&self) -> impl Iterator<Item = f64> + '_ {
         (0..=INSTANTS).map(|i| self.end * f64::from(i) / f64::from(INSTANTS))
     }
     /// Every side of the box: key, what happens there, its middle \[m\].
@@ -98,7 +99,11 @@ impl Setup {
             } else {
                 0.0
             };
-            fall.max(b.twist.linear.norm() + b.twist.angular.norm() * radius)
+            let slides = |surface: &SurfaceVelocity| {
+                self.instants().map(|t| surface.speed(&b.shape, t)).fold(0.0, f64::max)
+            };
+            let slides = b.surface.as_ref().map_or(0.0, slides);
+            fall.max(slides).max(b.twist.linear.norm() + b.twist.angular.norm() * radius)
         });
         sides.max(initial).max(bodies.fold(0.0, f64::max))
     }
@@ -139,7 +144,7 @@ impl Setup {
             let faces = axis.faces();
             let ends = [faces[1] - faces[0], faces[faces.len() - 1] - faces[faces.len() - 2]];
             for (width, side) in ends.into_iter().zip(&self.sides[a]) {
-                if matches!(side, Side::Wall(_)) {
+                if side.is_wall() {
                     first = first.min(0.5 * width);
                     let force =
                         self.force.as_ref().map_or(0.0, |f| norm(f.each_ref().map(|f| f.at(&[self.end]))));

@@ -11,6 +11,7 @@ mod physics;
 mod shapes;
 mod sides;
 mod steady;
+mod surfaces;
 mod time;
 
 pub(crate) use bodies::{
@@ -22,6 +23,7 @@ pub(crate) use measures::{Averages, Forces, Images, Output, ProbeSetup, Quantity
 pub(crate) use models::{Coefficients, ModelSetup};
 pub(crate) use physics::{ModelChoice, ScalarSetup, ScaleChoice, TurbulenceSetup};
 pub(crate) use sides::is_open;
+pub(crate) use surfaces::SurfaceVelocity;
 
 use crate::document::{Document, Place};
 use crate::expression::Expression;
@@ -183,6 +185,7 @@ impl Setup {
                 Sides::new([self.sides[0].clone(), self.sides[1].clone(), self.sides[2].clone()]).map(drop),
             )?,
         }
+        self.planes_slide(root)?;
         let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
         let flow = root.table("flow");
         let fail = |key: &str, message: &str| match &flow {
@@ -209,6 +212,17 @@ impl Setup {
                 return Err(fail(
                     "algorithm",
                     "\"piso\" goes with coupling.forcing = \"hfdib\" (the paper's algorithm) only; take \"projection\"",
+                ));
+            }
+            Algorithm::Piso
+                if bodies
+                    && (self.bodies.law != ContactLawChoice::Chen
+                        || self.bodies.repulsion.is_some()
+                        || self.bodies.lubrication.is_some()) =>
+            {
+                return Err(fail(
+                    "algorithm",
+                    "\"piso\" goes with the contact law \"chen\" without lubrication and repulsion only; leave out contact.law, contact.repulsion and lubrication, or take \"projection\"",
                 ));
             }
             Algorithm::Piso if self.dt.is_none() => {
@@ -258,6 +272,26 @@ impl Setup {
             return Err(
                 root.fail("lubrication", "films are for solids in space; leave this out in a plane scene")
             );
+        }
+        Ok(())
+    }
+
+    /// Whether planes with formulas of place and time for their velocities move along themselves, at their points over the run.
+    fn planes_slide(&self, root: &Reader<'_>) -> Result<(), Problem> {
+        let tables = root.table("contact").map(|t| t.tables("planes")).unwrap_or_default();
+        let first = self.bodies.walls.len() - tables.len();
+        for (t, wall) in tables.iter().zip(&self.bodies.walls[first..]) {
+            let (normal, point) = (wall.plane.normal(), t.vector("point").unwrap_or_default());
+            for time in self.instants() {
+                let u = Vector::from(wall.surface.wall_velocity(point.into(), time).unwrap_or_default());
+                if normal.dot(&u).abs() > 1e-9 * u.norm() {
+                    let message = format!(
+                        "a plane keeps its place and its surface slides only, and at t = {time:.4e} s it has {:.3e} m/s along `normal`; give a velocity at a right angle to `normal`, or take a body with motion \"prescribed\"",
+                        normal.dot(&u)
+                    );
+                    return Err(t.fail("velocity", message));
+                }
+            }
         }
         Ok(())
     }

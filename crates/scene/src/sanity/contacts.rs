@@ -1,6 +1,6 @@
 //! Warnings about contacts.
 use crate::setup::{BodySetup, ContactLawChoice, Motion, Setup, WallSetup};
-use dem::{ContactLaw, DEEP, RestingDepth, Rolling, resting_depth};
+use dem::{ContactLaw, DEEP, PairProperties, RestingDepth, Rolling, resting_depth};
 use fv_mesh::Side;
 use interfaces::Vector;
 
@@ -19,6 +19,20 @@ struct Rest<'a> {
 impl Setup {
     pub(super) fn doubt_contacts(&self, out: &mut Vec<String>) {
         let bodies = &self.bodies;
+        if !bodies.unused.is_empty() {
+            out.push(format!(
+                "{} is not used by contact.law = \"{}\"; leave it out, or take a law that uses it",
+                bodies.unused.join(", "),
+                bodies.law.word()
+            ));
+        }
+        if bodies.law == ContactLawChoice::Potential && !bodies.too_plastic.is_empty() {
+            let least = PairProperties::LEAST_RESTITUTION;
+            out.push(format!(
+                "{} is below {least} and counts as {least} in contact.law = \"potential\", whose damping has no end as it goes to 0; give {least} or more",
+                bodies.too_plastic.join(", ")
+            ));
+        }
         if bodies.law == ContactLawChoice::None {
             if bodies.any_free() && !bodies.walls.is_empty() {
                 out.push(format!(
@@ -32,7 +46,7 @@ impl Setup {
         for (a, pair) in self.sides.iter().enumerate().filter(|_| bodies.any_free()) {
             for (side, end) in pair.iter().zip(["min", "max"]) {
                 if let Side::Patches(patches) = side
-                    && patches.iter().any(|p| matches!(p.side, Side::Wall(_)))
+                    && patches.iter().any(|p| p.side.is_wall())
                 {
                     let axis = ["x", "y", "z"][a];
                     out.push(format!("sides.{axis}_{end} has parts, whose walls bodies do not touch; give contact.planes where they should"));

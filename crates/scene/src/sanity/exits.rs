@@ -90,7 +90,7 @@ impl Setup {
             if towards <= 0.0 {
                 continue;
             }
-            if !matches!(side, Side::Wall(_) | Side::FreeSlip) {
+            if !side.is_wall() && !matches!(side, Side::FreeSlip) {
                 return self.doubt_distance(k, exit, place, out);
             }
             farthest[a] = self.coordinate(place) - clearance * place.outwards()[a];
@@ -141,7 +141,7 @@ impl Setup {
                     place.name()
                 ));
             }
-            let walled = |p: &fv_mesh::Patch| matches!(p.side, Side::Wall(_) | Side::FreeSlip);
+            let walled = |p: &fv_mesh::Patch| p.side.is_wall() || matches!(p.side, Side::FreeSlip);
             if let Side::Patches(patches) = side
                 && self.bodies.law != ContactLawChoice::None
                 && patches.iter().any(walled)

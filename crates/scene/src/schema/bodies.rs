@@ -1,5 +1,5 @@
 //! Materials, shapes, bodies and what moves them.
-use super::{Key, Kind, LENGTH, METRES, POINT, Range, SPACE, TIME, Table, optional, required};
+use super::{Key, Kind, LENGTH, METRES, POINT, Range, SPACE, SPACE_TIME, TIME, Table, optional, required};
 
 const SPACE_POINT: Kind = Kind::List(&METRES, 3, 3);
 const SHARE: Kind = Kind::Number(Range::Within(0.0, 1.0), "1");
@@ -34,7 +34,7 @@ pub(super) static MATERIAL: Table = Table {
             "restitution",
             SHARE,
             "0.9",
-            "Restitution of the law `potential`: speed after over speed before.",
+            "Restitution of the law `potential`: speed after over speed before. Below 0.002 it counts as 0.002, with a warning.",
             "0.6",
         ),
         optional("friction", Kind::Number(Range::NotNegative, "1"), "0.3", "Coefficient of friction.", "0.5"),
@@ -250,6 +250,20 @@ pub(super) static BODY: Table = Table {
         VELOCITY,
         SPIN,
         optional("motion", Kind::Choice("type", &MOTIONS), "free", "What moves it.", "\"fixed\""),
+        optional(
+            "surface_velocity",
+            Kind::List(&Kind::Formula(SPACE_TIME, "m/s"), 2, 3),
+            "0",
+            "Velocity of the surface of a body that is fixed or prescribed, besides the body's own: a conveyor. In the body's frame, x, y, z from its centre of mass; its part along the surface counts, for contacts and the fluid (smooth forcing or hfdib; no cut links, no steady flow).",
+            "[\"0.5*sign(y)\", 0.0]",
+        ),
+        optional(
+            "surface_spin",
+            Kind::Either(&[Kind::Formula(TIME, "rad/s"), Kind::List(&Kind::Formula(TIME, "rad/s"), 3, 3)]),
+            "0",
+            "The same by a turn of the surface about the centre of mass: a roller. About z, or a vector in the body's frame.",
+            "\"10*sin(t)\"",
+        ),
         optional(
             "tether",
             Kind::Table(&TETHER),

@@ -186,6 +186,7 @@ fn check_choice(
 fn fits(kind: &Kind, value: &Value) -> bool {
     match kind {
         Kind::Number(..) => number(value).is_some(),
+        Kind::Formula(..) => number(value).is_some() || matches!(value, Value::Text(_)),
         Kind::List(..) => matches!(value, Value::List(_)),
         Kind::Table(_) => matches!(value, Value::Table(_)),
         _ => false,
@@ -196,6 +197,9 @@ fn form(kind: &Kind) -> String {
     match kind {
         Kind::Number(range, unit) => with_unit(&range.phrase(), unit),
         Kind::List(_, least, most) if least == most => format!("a list of {least}"),
+        Kind::Formula(variables, unit) => {
+            with_unit(&format!("a number or a formula of {}", variables.join(", ")), unit)
+        }
         _ => "a table".into(),
     }
 }

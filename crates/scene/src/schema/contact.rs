@@ -1,5 +1,5 @@
 //! Contact, lubrication, coupling, exits.
-use super::{Key, Kind, POINT, Range, Table, optional, required};
+use super::{Key, Kind, POINT, Range, SPACE_TIME, Table, optional, required};
 
 const PLANE_POINT: Key = required("point", POINT, "A point of its plane.", "[0.0, 1e-3]");
 const PLANE_NORMAL: Key = required(
@@ -18,10 +18,10 @@ static PLANE: Table = Table {
         PLANE_NORMAL,
         optional(
             "velocity",
-            Kind::List(&Kind::Number(Range::Any, "m/s"), 2, 3),
+            Kind::List(&Kind::Formula(SPACE_TIME, "m/s"), 2, 3),
             "at rest",
             "Velocity of its surface in the plane: a belt.",
-            "[0.5, 0.0]",
+            "[\"0.5*sin(20*t)\", 0.0]",
         ),
     ],
 };

@@ -210,10 +210,10 @@ static SIDE_TYPES: [(&str, &Table); 7] = [
             about: "The fluid sticks to it; bodies touch it.",
             keys: &[optional(
                 "velocity",
-                Kind::List(&SPEED, 2, 3),
+                Kind::List(&Kind::Formula(SPACE_TIME, "m/s"), 2, 3),
                 "at rest",
-                "It moves along itself.",
-                "[1.0, 0.0]",
+                "It moves along itself; bodies that touch it are taken along by friction.",
+                "[\"0.5*sin(20*t)\", 0.0]",
             )],
         },
     ),

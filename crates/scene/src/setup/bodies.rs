@@ -1,11 +1,12 @@
 //! Bodies, their contacts and how they are coupled to the flow.
 use super::factories::{self, InflowSetup};
+use super::surfaces::{self, SurfaceVelocity};
 use super::{Context, shapes};
 use crate::expression::Expression;
 use crate::problem::Problem;
 use crate::reader::Reader;
 use coupling::WeightBalance;
-use dem::{HalfSpace, Material, Shape, Tether};
+use dem::{HalfSpace, Material, PairProperties, Shape, Tether};
 use fv_mesh::{Axis, Fluid, Side};
 use ibm::Kernel;
 use interfaces::{Aabb, Freedom, Point, Pose, Twist, Vector};
@@ -25,6 +26,8 @@ pub(crate) struct BodySetup {
     pub(crate) twist: Twist,
     pub(crate) motion: Motion,
     pub(crate) tether: Option<Tether>,
+    /// Velocity of its surface besides its own.
+    pub(crate) surface: Option<SurfaceVelocity>,
 }
 
 /// A plane that bodies touch.
@@ -33,8 +36,8 @@ pub(crate) struct WallSetup {
     /// The key that made it: `sides.y_min`, `contact.planes.0`.
     pub(crate) name: String,
     pub(crate) plane: HalfSpace,
-    /// Velocity of its surface in the plane \[m/s\].
-    pub(crate) velocity: Vector,
+    /// A wall with the velocity of its surface.
+    pub(crate) surface: Side,
 }
 
 /// What moves a body.
@@ -70,6 +73,10 @@ pub(crate) struct Bodies {
     /// Roughness of the films.
     pub(crate) lubrication: Option<f64>,
     pub(crate) coupling: CouplingSetup,
+    /// Keys of contacts and materials that the law does not use.
+    pub(crate) unused: Vec<String>,
+    /// Materials of less restitution than the law "potential" has.
+    pub(crate) too_plastic: Vec<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,6 +85,57 @@ pub(crate) enum ContactLawChoice {
     Potential,
     Rolling,
     None,
+}
+
+impl ContactLawChoice {
+    fn read(word: Option<&str>) -> Self {
+        match word {
+            Some("potential") => Self::Potential,
+            Some("rolling") => Self::Rolling,
+            Some("none") => Self::None,
+            _ => Self::Chen,
+        }
+    }
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Self::Chen => "chen",
+            Self::Potential => "potential",
+            Self::Rolling => "rolling",
+            Self::None => "none",
+        }
+    }
+    /// Keys of a material, then those of `contact`, that it does not use.
+    fn unused(self) -> [&'static [&'static str]; 2] {
+        match self {
+            Self::Chen => [&["restitution", "rolling_friction"], &[]],
+            Self::Potential => [&["damping", "rolling_friction"], &["adhesion"]],
+            Self::Rolling => [&["restitution"], &[]],
+            Self::None => [
+                &[
+                    "youngs_modulus",
+                    "poisson_ratio",
+                    "damping",
+                    "restitution",
+                    "friction",
+                    "rolling_friction",
+                ],
+                &["walls", "planes", "wall_material", "length_factor", "adhesion", "overlaps"],
+            ],
+        }
+    }
+    /// The keys of the file that it does not use.
+    fn unused_in(self, root: &Reader<'_>) -> Vec<String> {
+        let [of_material, of_contact] = self.unused();
+        let given = |t: &Reader<'_>, path: &str, keys: &[&str]| -> Vec<String> {
+            keys.iter().filter(|key| t.has(key)).map(|key| format!("{path}.{key}")).collect()
+        };
+        let materials = root.named("materials").into_iter();
+        let contact = root.table("contact");
+        materials
+            .flat_map(|(name, t)| given(&t, &format!("materials.{name}"), of_material))
+            .chain(contact.iter().flat_map(|t| given(t, "contact", of_contact)))
+            .collect()
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -113,10 +171,16 @@ impl Bodies {
     pub(crate) fn any_free(&self) -> bool {
         !self.inflows.is_empty() || self.list.iter().any(|b| matches!(b.motion, Motion::Free(_)))
     }
+    /// The first body whose surface moves by itself.
+    pub(crate) fn moving_surface(&self) -> Option<&BodySetup> {
+        self.list.iter().find(|b| b.surface.is_some())
+    }
     /// How the fluid is made to follow them.
     pub(crate) fn forcing(&self) -> ForcingChoice {
         match self.coupling.forcing {
-            ForcingChoice::Auto if self.any_moves() => ForcingChoice::Smooth,
+            ForcingChoice::Auto if self.any_moves() || self.moving_surface().is_some() => {
+                ForcingChoice::Smooth
+            }
             ForcingChoice::Auto => ForcingChoice::CutLinks,
             choice => choice,
         }
@@ -157,15 +221,8 @@ pub(super) fn read(
         .iter()
         .enumerate()
         .map(|(number, t)| {
-            let velocity = t.vector_of("velocity", context.dim)?.unwrap_or_default();
-            let plane = half_space(t)?;
-            if plane.normal().dot(&velocity).abs() > 1e-12 * velocity.norm() {
-                return Err(t.fail(
-                    "velocity",
-                    "a plane keeps its place and its surface slides only; give a velocity at a right angle to `normal`, or take a body with motion \"prescribed\"",
-                ));
-            }
-            Ok(WallSetup { name: format!("contact.planes.{number}"), plane, velocity })
+            let (plane, surface) = (half_space(t)?, surfaces::wall(t, context.dim)?);
+            Ok(WallSetup { name: format!("contact.planes.{number}"), plane, surface })
         })
         .collect::<Result<Vec<_>, _>>()?;
     let word = |key: &str| contact.as_ref().and_then(|t| t.text(key));
@@ -176,16 +233,19 @@ pub(super) fn read(
     };
     let touches = contact.as_ref().and_then(|t| t.flag("walls")).unwrap_or(true);
     let coupling = coupling(root);
+    let law = ContactLawChoice::read(word("law"));
+    let too_plastic = |(_, t): &(&str, Reader<'_>)| {
+        t.number("restitution").is_some_and(|e| e < PairProperties::LEAST_RESTITUTION)
+    };
+    let materials = root.named("materials").into_iter().filter(too_plastic);
+    let too_plastic = materials.map(|(name, _)| format!("materials.{name}.restitution")).collect();
     let bodies = Bodies {
         list,
         inflows,
         exits,
-        law: match word("law") {
-            Some("potential") => ContactLawChoice::Potential,
-            Some("rolling") => ContactLawChoice::Rolling,
-            Some("none") => ContactLawChoice::None,
-            _ => ContactLawChoice::Chen,
-        },
+        law,
+        unused: law.unused_in(root),
+        too_plastic,
         length_factor: contact.as_ref().and_then(|t| t.number("length_factor")).unwrap_or(4.0),
         adhesion: contact.as_ref().and_then(|t| t.flag("adhesion")).unwrap_or(false),
         repulsion: contact.as_ref().and_then(|t| t.table("repulsion")).and_then(|t| {
@@ -217,6 +277,17 @@ fn agrees(root: &Reader<'_>, bodies: &Bodies, fluid: Option<Fluid>) -> Result<()
         return Err(fail(
             "forcing",
             "cut links are for bodies at rest; take \"smooth\", or make every body's motion \"fixed\"".into(),
+        ));
+    }
+    if forcing == ForcingChoice::CutLinks
+        && let Some(b) = bodies.moving_surface()
+    {
+        return Err(fail(
+            "forcing",
+            format!(
+                "cut links are for walls at rest, and the surface of body {} moves; take \"smooth\" or \"hfdib\"",
+                b.name
+            ),
         ));
     }
     let any = !(bodies.list.is_empty() && bodies.inflows.is_empty());
@@ -292,18 +363,12 @@ fn walls(axes: &[Axis], sides: &[[Side; 2]]) -> Result<Vec<WallSetup>, dem::DemE
     for (a, (axis, pair)) in axes.iter().zip(sides).enumerate() {
         let ends = [(axis.lower(), 1.0, "min"), (axis.upper(), -1.0, "max")];
         for (side, (at, sign, end)) in pair.iter().zip(ends) {
-            let velocity = match side {
-                Side::Wall(u) => Some(Vector::from(*u)),
-                Side::FreeSlip => Some(Vector::zeros()),
-                _ => None,
-            };
-            if let Some(velocity) = velocity {
+            let surface = if matches!(side, Side::FreeSlip) { &Side::WALL } else { side };
+            if surface.is_wall() {
                 let (mut point, mut normal) = (Point::origin(), Vector::zeros());
                 (point[a], normal[a]) = (at, sign);
-                // A velocity out of the plane is an error of the sides.
-                let velocity = velocity - normal * normal.dot(&velocity);
                 let name = format!("sides.{}_{end}", ["x", "y", "z"][a]);
-                out.push(WallSetup { name, plane: HalfSpace::new(point, normal)?, velocity });
+                out.push(WallSetup { name, plane: HalfSpace::new(point, normal)?, surface: surface.clone() });
             }
         }
     }
@@ -396,6 +461,7 @@ fn body(
             damping: spring.number("damping").unwrap_or(0.0),
         }),
     };
+    let surface = SurfaceVelocity::read(t, &motion, dim)?;
     let (shape, centre) = shapes::placed(t, "shape", context)?;
     let orientation = shapes::orientation(t)?;
     let position = t.point_of("position", dim)?.unwrap_or_default() + orientation * centre;
@@ -408,6 +474,7 @@ fn body(
         twist,
         motion,
         tether,
+        surface,
     })
 }
 

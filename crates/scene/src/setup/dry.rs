@@ -36,7 +36,7 @@ pub(super) fn agrees(root: &Reader<'_>, setup: &Setup) -> Result<(), Problem> {
     for (a, pair) in setup.sides.iter().enumerate() {
         for side in pair {
             let known =
-                matches!(side, Side::Wall(_) | Side::Periodic | Side::FreeSlip | Side::ConvectiveOutlet);
+                side.is_wall() || matches!(side, Side::Periodic | Side::FreeSlip | Side::ConvectiveOutlet);
             if !known {
                 let sides = root.table("sides").unwrap_or_else(|| root.clone());
                 let axis = ["x", "y", "z"][a];

@@ -78,6 +78,7 @@ pub(super) fn read(
                 twist: own.unwrap_or(twist),
                 motion: motion.clone(),
                 tether: None,
+                surface: None,
             });
         }
     }

@@ -48,7 +48,7 @@ impl Inlet<'_> {
         match self.profile {
             Profile::Uniform(u) => along(*u),
             Profile::Parabolic { peak } => *peak,
-            Profile::Function(u) => along(u(x, time)),
+            Profile::Function(u) => along(u.at(x, time)),
         }
     }
 

@@ -1,5 +1,5 @@
 //! The sides of the box.
-use super::Context;
+use super::{Context, surfaces};
 use crate::problem::Problem;
 use crate::reader::Reader;
 use fv_mesh::{Patch, Profile, Side};
@@ -14,6 +14,7 @@ pub(super) fn read(root: &Reader<'_>, context: &Context<'_>) -> Result<Vec<[Side
             .fail(key, "a plane scene has no sides along z; give the grid a third axis, or leave this out"));
     }
     let pair = |name: &str| -> Result<[Side; 2], Problem> {
+        let axis = ["x", "y", "z"].iter().position(|axis| *axis == name).unwrap_or(0);
         let mut pair = [const { None }; 2];
         for (slot, end) in pair.iter_mut().zip(["min", "max"]) {
             let own = format!("{name}_{end}");
@@ -24,8 +25,8 @@ pub(super) fn read(root: &Reader<'_>, context: &Context<'_>) -> Result<Vec<[Side
                         format!("`{name}` stands for both sides already; leave out one of the two"),
                     ));
                 }
-                (true, false) => Some(side(&sides, &own, context)?),
-                (false, true) => Some(side(&sides, name, context)?),
+                (true, false) => Some(side(&sides, &own, context, axis)?),
+                (false, true) => Some(side(&sides, name, context, axis)?),
                 (false, false) => {
                     let message = format!(
                         "what happens at the side {own}? Give `{own}`, or `{name}` for both sides of the axis"
@@ -39,13 +40,22 @@ pub(super) fn read(root: &Reader<'_>, context: &Context<'_>) -> Result<Vec<[Side
     ["x", "y", "z"][..context.dim].iter().map(|name| pair(name)).collect()
 }
 
-fn side(sides: &Reader<'_>, key: &str, context: &Context<'_>) -> Result<Side, Problem> {
+/// What happens at the side `key` normal to `axis`.
+fn side(sides: &Reader<'_>, key: &str, context: &Context<'_>, axis: usize) -> Result<Side, Problem> {
     let Some((kind, t)) = sides.choice(key, "type") else {
         return Err(sides.fail(key, "what happens at this side?"));
     };
     Ok(match kind {
         "periodic" => Side::Periodic,
-        "wall" => Side::Wall(t.vector_of("velocity", context.dim)?.unwrap_or_default().into()),
+        "wall" => {
+            if t.changes("velocity", axis) {
+                return Err(t.fail("velocity", format!(
+                    "a wall keeps its place and slides only; its component along {} has to be 0 and no formula",
+                    ["x", "y", "z"][axis]
+                )));
+            }
+            surfaces::wall(&t, context.dim)?
+        }
         "symmetry" => Side::FreeSlip,
         "inlet" => Side::Inlet(inlet(&t, context)?),
         "outlet" => Side::ConvectiveOutlet,
@@ -59,7 +69,7 @@ fn side(sides: &Reader<'_>, key: &str, context: &Context<'_>) -> Result<Side, Pr
                     Ok(Patch {
                         lower: corner("lower")?,
                         upper: corner("upper")?,
-                        side: side(patch, "side", context)?,
+                        side: side(patch, "side", context, axis)?,
                     })
                 })
                 .collect::<Result<_, _>>()?,

@@ -14,6 +14,7 @@ const UNUSED: [(Algorithm, &str, &[&str]); 9] = [
     (Algorithm::Projection, "turbulence", &["walls"]),
     (Algorithm::Piso, "flow", &["diffusion", "pressure", "tolerance", "iterations"]),
     (Algorithm::Piso, "time", &["courant"]),
+    (Algorithm::Piso, "coupling", &["strategy", "passes", "kernel"]),
 ];
 
 /// Keys of the file that the algorithm does not use.
@@ -47,6 +48,13 @@ pub(super) fn agrees(root: &Reader<'_>, setup: &Setup) -> Result<(), Problem> {
         return Err(fail(
             "a steady flow has no bodies that move; make them `motion = \"fixed\"`, or take \"projection\"",
         ));
+    }
+    if let Some(b) = setup.bodies.moving_surface() {
+        let message = format!(
+            "a steady flow has no surfaces of bodies that move, as that of body {} does; leave out surface_velocity and surface_spin, or take \"projection\"",
+            b.name
+        );
+        return Err(fail(&message));
     }
     if let Some(formula) = root.find_formula(|f| f.uses("t")) {
         let message = format!(

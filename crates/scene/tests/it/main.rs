@@ -10,6 +10,7 @@ mod numbers;
 mod physics;
 mod spoilt;
 mod steady;
+mod surfaces;
 mod told;
 
 use scene::{Options, RunResult, Scene, json_schema, manual};

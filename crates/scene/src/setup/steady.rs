@@ -4,7 +4,7 @@ use crate::problem::Problem;
 use crate::reader::Reader;
 
 /// Keys that an algorithm does not use: the algorithm, the table, the keys.
-const UNUSED: [(Algorithm, &str, &[&str]); 9] = [
+const UNUSED: [(Algorithm, &str, &[&str]); 10] = [
     (Algorithm::Simple, "time", &["steps", "dt", "courant", "ramp"]),
     (Algorithm::Simple, "flow", &["diffusion", "pressure"]),
     (Algorithm::Simple, "forces", &["start", "every"]),

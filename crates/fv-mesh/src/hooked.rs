@@ -41,7 +41,8 @@ where
     S: ScalarTransport<D>,
 {
     /// The two together.
-    pub fn new(flow: Projection<D>, hooks: Hooks<B, (), C, S>) -> Self {
+    pub fn new(mut flow: Projection<D>, hooks: Hooks<B, (), C, S>) -> Self {
+        flow.expect_eddy_viscosity(hooks.closure.fastest());
         Self { flow, hooks, own: [0.0; D] }
     }
 

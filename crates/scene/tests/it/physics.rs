@@ -404,3 +404,31 @@ fn a_steady_scalar_is_what_an_unsteady_one_comes_to() {
     let told = Scene::parse("s.toml", text, &more).err().map(|e| e.to_string()).unwrap_or_default();
     assert!(told.contains("give scalars.NAME.bodies"), "{told}");
 }
+
+/// The first step of a turbulent flow is as short as explicit diffusion by the eddies of the start
+/// needs.
+#[test]
+fn the_first_step_is_stable_with_the_eddies_of_the_start() {
+    let text = r#"
+        turbulence = "sst"
+        [grid]
+        cells = [4, 32]
+        size = [0.125, 1.0]
+        [sides]
+        x = "periodic"
+        y_min = { type = "wall", velocity = [1.0, 0.0] }
+        y_max = "wall"
+        [fluid]
+        density = 1.0
+        nu = 0.02
+        [time]
+        end = 0.5
+        [output]
+        snapshots = 1
+    "#;
+    let out = folder("first");
+    let run =
+        Scene::parse("first.toml", text, &[]).unwrap().run(&quiet(&out), &AtomicBool::new(false)).unwrap();
+    std::fs::remove_dir_all(&out).unwrap();
+    assert_eq!(run.ending, Ending::Done);
+}

@@ -152,7 +152,7 @@ impl Setup {
                 }
             }
         }
-        if !self.bodies.list.is_empty() {
+        if !self.bodies.list.is_empty() && !self.bodies_lack_wall_functions() {
             first = first.min(0.5 * self.narrowest());
         }
         (first.is_finite() && friction > 0.0).then(|| first * friction / fluid.viscosity)
@@ -225,13 +225,16 @@ impl Setup {
                  take coupling.forcing = \"smooth\" or \"hfdib\", or flow.algorithm = \"simple\"",
                 model.model.name()
             ));
-        } else if let (Some(model), Some(y)) = (&self.turbulence, self.y_plus()) {
-            let by_law = model.model.averages() && matches!(model.walls, WallStress::Law { .. });
+        }
+        if let (Some(model), Some(y)) = (&self.turbulence, self.y_plus()) {
+            let steady = self.flow.algorithm == Algorithm::Simple;
+            let by_law = model.model.averages() && (!steady || matches!(model.walls, WallStress::Law { .. }));
             let told = match (by_law, y) {
                 (_, ..30.0) if model.model.needs_log_layer() => Some(
                     "models with ε have no terms for the viscous sublayer and want 30 to 300; take wider cells there, or \"sst\" or \"k-omega\"",
                 ),
                 (true, 12.0..=1000.0) => None,
+                (true, ..12.0) if !steady => Some("laws of the wall want 30 to 300; take wider cells there"),
                 (true, ..12.0) => Some(
                     "laws of the wall want 30 to 300; take wider cells there, or walls = \"no-slip\" and y+ of 1 for bodies at rest",
                 ),

@@ -40,7 +40,7 @@ pub(super) fn read(root: &Reader<'_>, context: &Context<'_>) -> Result<Vec<[Side
     ["x", "y", "z"][..context.dim].iter().map(|name| pair(name)).collect()
 }
 
-/// What happens at the side `key` normal to `axis`.
+/// Boundary condition of the side `key` normal to `axis`.
 fn side(sides: &Reader<'_>, key: &str, context: &Context<'_>, axis: usize) -> Result<Side, Problem> {
     let Some((kind, t)) = sides.choice(key, "type") else {
         return Err(sides.fail(key, "what happens at this side?"));

@@ -159,7 +159,7 @@ fn moving_surfaces_are_resumed() {
     }
 }
 
-/// What does not go together is refused by name, by the plan as by the run.
+/// Keys that do not go together are refused by name, by the plan as by the run.
 #[test]
 fn surfaces_that_cannot_move_are_told() {
     let dry = format!("{BOX}\n{}", parcel(CONVEYOR));

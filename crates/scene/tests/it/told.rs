@@ -112,6 +112,10 @@ fn what_looks_doubtful_is_told() {
         (&[&disc(0.1, 0.5)], "cells across"),
         (&["turbulence=\"sst\"", "fluid.nu=1e-3", "flow.convection=\"limited\""], "at y+ of about 1.6"),
         (
+            &["turbulence=\"sst\"", "fluid.nu=1e-3", &disc(0.1, 0.5)],
+            "at y+ of about 1.6: laws of the wall want 30 to 300; take wider cells there",
+        ),
+        (
             &["turbulence=\"sst\"", &disc(0.1, 0.5)],
             "bodies by cut links are no walls to k–ω SST in unsteady flow",
         ),

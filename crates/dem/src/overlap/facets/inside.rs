@@ -209,7 +209,8 @@ struct Ray {
 impl Ray {
     /// The sum of what `crosses` says of all faces that the ray may meet.
     fn winding(&self, facets: &Facets, crosses: &impl Fn(u32) -> i32) -> i32 {
-        let [low, high] = facets.bounds;
+        // A vertex on the other surface may be off its box by rounding.
+        let [low, high] = [facets.bounds[0].add_scalar(-self.slack), facets.bounds[1].add_scalar(self.slack)];
         let within = low <= self.start && self.start <= high;
         if within { self.winding_below(0, facets, crosses) } else { 0 }
     }

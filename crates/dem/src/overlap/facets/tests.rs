@@ -112,3 +112,51 @@ fn contained() {
         }
     }
 }
+
+/// A cube of three by three quads a face, each of two triangles.
+fn gridded(edge: f64) -> Facets {
+    const N: u32 = 3;
+    let (mut vertices, mut faces): (Vec<[f64; 3]>, Vec<[u32; 3]>) = Default::default();
+    let mut numbers = std::collections::HashMap::new();
+    let mut vertex = |grid: [u32; 3]| {
+        *numbers.entry(grid).or_insert_with(|| {
+            vertices.push(grid.map(|i| edge * (f64::from(i) / f64::from(N) - 0.5)));
+            vertices.len() as u32 - 1
+        })
+    };
+    for (axis, side) in (0..3).flat_map(|a| [(a, 0), (a, N)]) {
+        for (i, j) in (0..N).flat_map(|i| (0..N).map(move |j| (i, j))) {
+            let corners = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(|[u, v]| {
+                let mut grid = [side; 3];
+                (grid[(axis + 1) % 3], grid[(axis + 2) % 3]) = (u, v);
+                vertex(grid)
+            });
+            let [p, q, r, s] = corners;
+            faces.extend(if side == 0 { [[p, r, q], [p, s, r]] } else { [[p, q, r], [p, r, s]] });
+        }
+    }
+    facets(&vertices, &faces)
+}
+
+/// A cube flush in the corner of a larger one, both turned alike: rounding decides for every vertex on which side of the
+/// other surface it is.
+#[test]
+fn flush_corners_share_all_of_the_smaller_cube() {
+    let (large, small) = (gridded(1.0), gridded(0.3));
+    let mut draw = crate::draw::Draw(3);
+    for _ in 0..3000 {
+        let turn = draw.turn();
+        let at = Pose { position: (turn * Vector::repeat(0.35)).into(), orientation: turn };
+        let still = Pose { position: Point::origin(), orientation: turn };
+        for found in [solve(&large, &still, &small, &at), solve(&small, &at, &large, &still)] {
+            let volume: f64 = found.iter().map(|o| o.volume).sum();
+            assert_relative_eq!(volume, 0.027, epsilon = 1e-14);
+        }
+    }
+    // Boxes of different edges, flush in one corner.
+    let (large, small) = (brick([0.924, 0.764, 0.735]), brick([0.552, 0.319, 0.320]));
+    let shift = [0.5 * (0.924 - 0.552), 0.5 * (0.764 - 0.319), 0.5 * (0.735 - 0.320)];
+    let volume: f64 =
+        solve(&large, &Pose::at([0.0; 3]), &small, &Pose::at(shift)).iter().map(|o| o.volume).sum();
+    assert_relative_eq!(volume, 0.552 * 0.319 * 0.320, epsilon = 1e-15);
+}

@@ -11,9 +11,11 @@ mod half_space;
 mod integrals;
 mod outline;
 pub(crate) mod plane;
+mod sheets;
 mod slices;
 mod solver;
 pub(crate) mod tree;
+mod tube_faces;
 mod walls;
 
 pub use cells::CellOverlap;

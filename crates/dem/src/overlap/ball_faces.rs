@@ -16,20 +16,19 @@
 //! Under x = B y, B the map of the unit ball onto the ellipsoid, volumes take the factor det B and areas n dA the
 //! matrix det B B⁻ᵀ. The moment of the gradient about the centroid c is −Σ ∫ (x − c) × n dA over the faces; the
 //! part about the centre is zero for a ball, whose normals go through it.
-mod edge;
-mod face;
-mod patches;
+pub(super) mod edge;
+pub(super) mod face;
 #[cfg(test)]
 mod tests;
 
 use super::Overlap;
 use super::facets::holds;
+use super::sheets::Sheets;
 use crate::ConvexPolyhedron;
 use crate::shapes::Facets;
 use face::{Face, Part, polygon_angle};
 use interfaces::{Point, Polyhedron, Pose, Rotation, Vector};
 use nalgebra::Matrix3;
-use patches::Patches;
 use std::f64::consts::PI;
 
 /// Volume of the unit ball.
@@ -47,9 +46,10 @@ pub(crate) trait Faces {
     fn corner(&self, i: u32) -> Point;
     /// Calls `visit` with the numbers of the corners of every face, counter-clockwise seen from outside.
     fn each(&self, visit: impl FnMut(&[u32]));
-    /// The same for all faces within `reach` \[m\] of `centre`, and perhaps others.
-    fn near(&self, centre: Point, reach: f64, mut visit: impl FnMut(&[u32])) {
-        let (low, high) = (centre.coords.add_scalar(-reach), centre.coords.add_scalar(reach));
+    /// Calls `visit` with all faces that meet a box, of half edges `reach` \[m\] around `centre`, and
+    /// perhaps with others.
+    fn near(&self, centre: Point, reach: Vector, mut visit: impl FnMut(&[u32])) {
+        let (low, high) = (centre.coords - reach, centre.coords + reach);
         self.each(|face| {
             let apart = |a: usize| {
                 let first = self.corner(face[0])[a];
@@ -102,7 +102,7 @@ impl Faces for Facets {
     fn each(&self, mut visit: impl FnMut(&[u32])) {
         self.faces.iter().for_each(|f| visit(&f.corners));
     }
-    fn near(&self, centre: Point, reach: f64, mut visit: impl FnMut(&[u32])) {
+    fn near(&self, centre: Point, reach: Vector, mut visit: impl FnMut(&[u32])) {
         self.visit_near(centre.coords, reach, |f| visit(&self.faces[f as usize].corners));
     }
     fn holds(&self, x: Point) -> bool {
@@ -177,7 +177,8 @@ impl Sums {
 pub(crate) struct BallFaces {
     corners: Vec<Vector>,
     plane: Vec<[f64; 2]>,
-    patches: Patches,
+    parts: Vec<Part>,
+    sheets: Sheets,
 }
 
 impl BallFaces {
@@ -211,11 +212,12 @@ impl BallFaces {
             out.extend(within(b).map(|(volume, centroid)| contained(volume, at_b.to_world(centroid), apart)));
             return;
         }
-        let Self { corners, plane, patches } = self;
+        let Self { corners, plane, parts, sheets } = self;
         let convex = b.convex();
         let (mut near_edge, mut sums) = (false, Sums::default());
-        patches.clear();
-        b.near(centre, a.axes.max(), |face| {
+        parts.clear();
+        sheets.clear();
+        b.near(centre, Vector::repeat(a.axes.max()), |face| {
             let corner = |i: &u32| map(b.corner(*i));
             // Most faces are triangles; they need no memory.
             let (mut three, mut flat);
@@ -231,14 +233,15 @@ impl BallFaces {
             let Some(f) = Face::new(corners) else { return };
             let part = f.part(plane, |i, length| {
                 if !convex {
-                    patches.cut(face[i], face[if i + 1 < face.len() { i + 1 } else { 0 }], length);
+                    sheets.cut(face[i], face[if i + 1 < face.len() { i + 1 } else { 0 }], length);
                 }
             });
             if let Some(part) = part {
-                near_edge |= part.near_edge;
+                near_edge |= part.nearest2 < face::NEAR2;
                 sums.add(&part);
                 if !convex {
-                    patches.push(part, corners);
+                    sheets.push(part.normal, part.area, part.moment, corners);
+                    parts.push(part);
                 }
             }
         });
@@ -249,10 +252,10 @@ impl BallFaces {
         } else if near_edge || sums.beyond.abs() <= NOTHING * sums.amount {
             let volume = self.angle(b, &map) / 3.0 - sums.beyond;
             out.extend(patch(a, volume, &sums, apart));
-        } else if !convex && patches.several() {
-            patches.regions(|centre, parts| {
+        } else if !convex && sheets.several() {
+            sheets.regions([Vector::zeros()], |[centre], faces| {
                 let mut sums = Sums::default();
-                parts.for_each(|p| sums.add(p));
+                faces.for_each(|f| sums.add(&parts[f]));
                 let whole = if centre { WHOLE } else { 0.0 };
                 out.extend(patch(a, whole - sums.beyond, &sums, apart));
             });
@@ -280,7 +283,7 @@ impl BallFaces {
 }
 
 /// Volume and centroid of the whole of `b`, summed over tetrahedra from its first corner.
-fn within(b: &impl Faces) -> Option<(f64, Point)> {
+pub(super) fn within(b: &impl Faces) -> Option<(f64, Point)> {
     if b.n_corners() == 0 {
         return None;
     }
@@ -300,7 +303,7 @@ fn within(b: &impl Faces) -> Option<(f64, Point)> {
 }
 
 /// One within the other: the volume no longer changes.
-fn contained(volume: f64, centroid: Point, apart: Vector) -> Overlap {
+pub(super) fn contained(volume: f64, centroid: Point, apart: Vector) -> Overlap {
     let normal = apart.try_normalize(0.0).unwrap_or(Vector::x());
     Overlap::whole(volume, centroid, normal)
 }

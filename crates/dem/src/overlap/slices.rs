@@ -1,4 +1,4 @@
-//! Capsules and cylinders with one another, with spheres and with convex polyhedra: integrals over parallel slices.
+//! Capsules and cylinders with one another, with spheres and with ellipsoids: integrals over parallel slices.
 mod adaptive;
 mod apart;
 mod ball;
@@ -6,6 +6,8 @@ mod breaks;
 mod circle;
 mod common;
 mod crossing;
+mod ellipse;
+mod ellipsoid;
 mod ends;
 mod flat;
 mod frame;
@@ -14,7 +16,6 @@ mod known;
 mod lanes;
 mod outline;
 mod piece;
-mod polyhedron;
 mod region;
 mod rules;
 mod slice;
@@ -28,10 +29,11 @@ mod vertex;
 
 use super::Overlap;
 use super::integrals::Integrals;
-use crate::{ConvexPolyhedron, Form, HalfSpace, Shape};
+use crate::{Form, Shape};
 use frame::Frame;
 use interfaces::{Pose, Vector};
-use polyhedron::SlicedPolyhedron;
+#[cfg(test)]
+pub(super) use outline::segment;
 use region::Region;
 use slice::Slice;
 use tube::{Ends, SlicedTube, Tube};
@@ -44,16 +46,14 @@ const SLACK: f64 = 4e-16;
 const PARALLEL: f64 = 1e-15;
 /// Sine of the angle between axes from which on they are not parallel.
 const STEEP: f64 = 1e-3;
-/// Cosine of the angle to the axis from which on faces are across a tube, not beside it.
-const BESIDE: f64 = 0.99;
 
-/// Slices along the axes of both bodies. A capsule's is all within a radius of a straight line, a cylinder's a rectangle, and a
-/// polyhedron's a polygon: what two of them share has an outline of straight pieces and arcs, along which area,
-/// first moment and the integrals of the surface's normal are known exactly. What remains is one integral over the height.
-/// Balls are sliced across the other's axis instead, where they and tubes are discs.
+/// Slices along the axes of both bodies. A capsule's is all within a radius of a straight line, a
+/// cylinder's a rectangle: what two of them share has an outline of straight pieces and arcs, along
+/// which area, first moment and the integrals of the surface's normal are known exactly. What remains
+/// is one integral over the height. Balls and ellipsoids are sliced across the tube's axis instead,
+/// where they are discs and ellipses and tubes are discs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Slices {
-    polyhedron: SlicedPolyhedron,
     slices: [Slice; 2],
     region: Region,
 }
@@ -69,10 +69,22 @@ impl Slices {
     ) -> bool {
         // Also where it is not a number.
         let tolerance = FINEST.max(tolerance);
+        if let (Form::Ellipsoid(_), Form::Capsule(_) | Form::Cylinder(_)) = (a.0, b.0) {
+            let first = out.len();
+            let found = self.overlap(b, a, tolerance, out);
+            out[first..].iter_mut().for_each(|o| *o = o.swapped());
+            return found;
+        }
         let Some(tube) = tube_of(a.0, a.1) else { return false };
         match b.0 {
-            Form::Hull(q) => out.extend(self.polyhedron(&tube, q, b.1, tolerance)),
-            Form::HalfSpace(w) => out.extend(self.wall(&tube, &w.posed(b.1), tolerance)),
+            Form::Ellipsoid(q) => {
+                let apart = tube.at.position - b.1.position;
+                let reach = tube.bound() + q.bounding_radius();
+                if apart.norm_squared() < reach * reach {
+                    let normal = apart.try_normalize(0.0).unwrap_or(tube.axis);
+                    out.extend(ellipsoid::overlap(&tube, q, b.1, normal, tolerance));
+                }
+            }
             _ => match tube_of(b.0, b.1) {
                 Some(other) => out.extend(self.tubes(&tube, &other, tolerance)),
                 None => return false,
@@ -121,7 +133,7 @@ impl Slices {
         let sliced = [a.sliced(&frame), b.sliced(&frame)];
         let found = if known { known::integrate(sliced, tolerance) } else { None };
         let [first, second] = sliced;
-        let found = found.or_else(|| self.integrate(&scene, first, Other::Tube(second)))?;
+        let found = found.or_else(|| self.integrate(&scene, first, second))?;
         let normal = (-apart).try_normalize(0.0).unwrap_or(-a.axis);
         match found.of {
             [true, false] => Some(Overlap::whole(a.volume(), a.at.position, normal)),
@@ -130,79 +142,13 @@ impl Slices {
         }
     }
 
-    fn polyhedron(&mut self, a: &Tube, b: &ConvexPolyhedron, at_b: &Pose, tolerance: f64) -> Option<Overlap> {
-        let apart = at_b.position - a.at.position;
-        let reach = a.bound() + b.bounding_radius();
-        if apart.norm_squared() >= reach * reach {
-            return None;
-        }
-        // The face that the tube is farthest in front of or least behind.
-        let turn = at_b.orientation.to_rotation_matrix().into_inner();
-        let (mut most, mut normal) = (f64::NEG_INFINITY, Vector::z());
-        let (mut most_beside, mut beside) = (f64::NEG_INFINITY, Vector::z());
-        for plane in &b.planes {
-            let n = turn * plane.normal;
-            let ahead = -n.dot(&apart) - plane.offset - a.reach(n);
-            if ahead > most {
-                (most, normal) = (ahead, n);
-            }
-            if ahead > most_beside && n.dot(&a.axis).abs() < BESIDE {
-                (most_beside, beside) = (ahead, n);
-            }
-        }
-        if most >= 0.0 {
-            return None;
-        }
-        let origin = if a.bound() < b.bounding_radius() { a.at.position } else { at_b.position };
-        // In slices across it a face is always the same line: the one so found of those that are beside the tube.
-        let frame = Frame::new(origin, a.axis, a.axis.cross(&beside));
-        let scene = Scene { slack: SLACK * (reach + apart.norm()), tolerance, symmetric: false };
-        let mut sliced = std::mem::take(&mut self.polyhedron);
-        sliced.place(b, at_b, &frame);
-        let found = self.integrate(&scene, a.sliced(&frame), Other::Polyhedron(&mut sliced));
-        self.polyhedron = sliced;
-        let found = found?;
-        match found.of {
-            [true, false] => Some(Overlap::whole(a.volume(), a.at.position, normal)),
-            [false, true] => Some(Overlap::whole(b.volume(), at_b.position, normal)),
-            _ => frame.overlap(&found.sums, found.base, normal),
-        }
-    }
-
-    /// A wall that stands where it is: in all slices across it the same rectangle, larger than the tube.
-    fn wall(&mut self, a: &Tube, wall: &HalfSpace, tolerance: f64) -> Option<Overlap> {
-        let n = wall.normal();
-        let distance = wall.signed_distance(a.at.position);
-        let reach = a.reach(n);
-        if distance >= reach {
-            return None;
-        }
-        if distance <= -reach {
-            return Some(Overlap::whole(a.volume(), a.at.position, n));
-        }
-        if let Some(found) = ends::wall(a, n, distance) {
-            return Some(found);
-        }
-        let frame = Frame::new(a.at.position, a.axis, a.axis.cross(&n));
-        let size = 2.0 * a.bound();
-        let out = frame.direction(n).xy();
-        self.slices[1].body = 1;
-        self.slices[1].rectangle(out * (-distance - size), out, [size, size], 0.0);
-        let scene = Scene { slack: 2.0 * SLACK * size, tolerance, symmetric: true };
-        let found = self.integrate(&scene, a.sliced(&frame), Other::Wall)?;
-        match found.of {
-            [true, false] => Some(Overlap::whole(a.volume(), a.at.position, n)),
-            _ => frame.overlap(&found.sums, found.base, n),
-        }
-    }
-
-    fn integrate(&mut self, scene: &Scene, mut a: SlicedTube, mut b: Other) -> Option<Swept> {
-        let range = [a.low.max(b.limits()[0]), a.high.min(b.limits()[1])];
+    fn integrate(&mut self, scene: &Scene, mut a: SlicedTube, mut b: SlicedTube) -> Option<Swept> {
+        let range = [a.low.max(b.low), a.high.min(b.high)];
         // Heights from the middle of those that both have.
         let base = 0.5 * (range[0] + range[1]);
         a.lift(-base);
         b.lift(-base);
-        let mut range = [a.low.max(b.limits()[0]), a.high.min(b.limits()[1])];
+        let mut range = [a.low.max(b.low), a.high.min(b.high)];
         if scene.symmetric {
             range[0] = 0.0;
         }
@@ -210,18 +156,13 @@ impl Slices {
             return None;
         }
         // A tube's slices end in a line.
-        let is_line = |h: f64| h == a.low || h == a.high || (b.is_tube() && b.limits().contains(&h));
-        let lines = range.map(is_line);
-        let arcs = a.is_round() || matches!(&b, Other::Tube(tube) if tube.is_round());
+        let lines = range.map(|h| [a.low, a.high, b.low, b.high].contains(&h));
+        let arcs = a.is_round() || b.is_round();
         let Self { slices: [one, two], region, .. } = self;
         (one.body, two.body) = (0, 1);
-        let mut at = |h: f64, one: &mut Slice, two: &mut Slice| {
+        let at = |h: f64, one: &mut Slice, two: &mut Slice| {
             a.slice(h, one);
-            match &mut b {
-                Other::Tube(tube) => tube.slice(h, two),
-                Other::Polyhedron(body) => body.slice(h, two),
-                Other::Wall => {}
-            }
+            b.slice(h, two);
         };
         let ends = heights::heights(range, 1e-4 * scene.tolerance.sqrt(), |h| {
             at(h, one, two);
@@ -253,34 +194,6 @@ struct Swept {
     sums: Integrals,
     base: f64,
     of: [bool; 2],
-}
-
-/// The second body.
-enum Other<'a> {
-    Tube(SlicedTube),
-    Polyhedron(&'a mut SlicedPolyhedron),
-    /// Its slice is always the same.
-    Wall,
-}
-
-impl Other<'_> {
-    fn limits(&self) -> [f64; 2] {
-        match self {
-            Self::Tube(tube) => [tube.low, tube.high],
-            Self::Polyhedron(body) => [body.low, body.high],
-            Self::Wall => [f64::NEG_INFINITY, f64::INFINITY],
-        }
-    }
-    fn lift(&mut self, by: f64) {
-        match self {
-            Self::Tube(tube) => tube.lift(by),
-            Self::Polyhedron(body) => body.lift(by),
-            Self::Wall => {}
-        }
-    }
-    fn is_tube(&self) -> bool {
-        matches!(self, Self::Tube(_))
-    }
 }
 
 /// A sphere, capsule or cylinder.

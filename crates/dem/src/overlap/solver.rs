@@ -6,6 +6,7 @@ use super::half_space::HalfSpaceOverlap;
 use super::plane::PlaneOverlap;
 use super::slices::Slices;
 use super::tree::{AdaptiveTree, Exhausted, Normal, Refinement, SubBox};
+use super::tube_faces::{Tube, TubeFaces, WallBox};
 use super::{Overlap, closed, columns, outline, walls};
 use crate::{DemError, Form, Shape};
 use interfaces::Pose;
@@ -23,7 +24,7 @@ pub enum Route {
     Crossings,
     /// Columns over the contact of smooth convex bodies; rays where the overlap is deep.
     Columns,
-    /// Parallel slices, for capsules and cylinders with one another, with spheres, convex polyhedra and walls.
+    /// Parallel slices, for capsules and cylinders with one another, with spheres and ellipsoids.
     Slices,
     /// Integrals along the curve where the surfaces of two ellipsoids or spheres cross.
     Curve,
@@ -66,6 +67,7 @@ pub struct OverlapSolver {
     /// Of two spheres.
     lens: Option<Overlap>,
     ball_faces: BallFaces,
+    tube_faces: TubeFaces,
     clipper: Clipper,
     facets: FacetOverlap,
     half_space: HalfSpaceOverlap,
@@ -280,6 +282,17 @@ impl OverlapSolver {
                     _ => return false,
                 }
             }
+            (Form::Capsule(_) | Form::Cylinder(_), Form::Hull(_) | Form::Facets(_)) => {
+                let Some(tube) = tube_of(a, at_a) else { return false };
+                match b {
+                    Form::Hull(q) if q.n_faces() <= FEW_FACES => {
+                        self.tube_faces.overlap(&tube, *q, at_b, out)
+                    }
+                    Form::Hull(q) => self.tube_faces.overlap(&tube, q.facets(), at_b, out),
+                    Form::Facets(q) => self.tube_faces.overlap(&tube, *q, at_b, out),
+                    _ => return false,
+                }
+            }
             (_, Form::HalfSpace(w)) => {
                 let w = w.posed(at_b);
                 match a {
@@ -295,6 +308,11 @@ impl OverlapSolver {
                     )),
                     Form::Ellipsoid(p) => out.extend(walls::ellipsoid(p, at_a, &w)),
                     Form::Cylinder(p) => out.extend(walls::cylinder(p, at_a, &w)),
+                    Form::Capsule(p) => {
+                        let tube = Tube::capsule(p, at_a);
+                        let wall = WallBox::new(&tube, &w);
+                        self.tube_faces.overlap(&tube, &wall, &Pose::at([0.0; 3]), out);
+                    }
                     Form::Hull(p) => self.half_space.overlap(p.facets(), at_a, &w, out),
                     Form::Facets(p) => self.half_space.overlap(p, at_a, &w, out),
                     _ => return false,
@@ -303,6 +321,14 @@ impl OverlapSolver {
             _ => return false,
         }
         true
+    }
+}
+
+fn tube_of(form: &Form<'_>, at: &Pose) -> Option<Tube> {
+    match form {
+        Form::Capsule(p) => Some(Tube::capsule(p, at)),
+        Form::Cylinder(p) => Some(Tube::cylinder(p, at)),
+        _ => None,
     }
 }
 
@@ -345,19 +371,19 @@ fn best(a: &Form<'_>, b: &Form<'_>) -> Option<Route> {
         (Form::Sphere(_) | Form::Ellipsoid(_), Form::Hull(_) | Form::Facets(_) | Form::HalfSpace(_)) => {
             Route::ClosedForm
         }
-        (Form::Cylinder(_) | Form::Hull(_) | Form::Facets(_), Form::HalfSpace(_)) => Route::ClosedForm,
+        (Form::Capsule(_) | Form::Cylinder(_), Form::Hull(_) | Form::Facets(_) | Form::HalfSpace(_)) => {
+            Route::ClosedForm
+        }
+        (Form::Hull(_) | Form::Facets(_), Form::HalfSpace(_)) => Route::ClosedForm,
         (Form::Sphere(_) | Form::Ellipsoid(_), Form::Ellipsoid(_)) => Route::Curve,
         (Form::Hull(p), Form::Hull(q)) if p.vertices().len().min(q.vertices().len()) <= CLIPPED => {
             Route::Clip
         }
         (Form::Hull(_) | Form::Facets(_), Form::Hull(_) | Form::Facets(_)) => Route::Crossings,
         (Form::HalfSpace(_), Form::HalfSpace(_)) => return None,
-        (Form::Capsule(_), Form::HalfSpace(_)) => Route::Slices,
         (_, Form::HalfSpace(_)) if is_smooth(a) => Route::Columns,
-        (Form::Sphere(_), Form::Capsule(_) | Form::Cylinder(_)) => Route::Slices,
-        (Form::Capsule(_) | Form::Cylinder(_), Form::Capsule(_) | Form::Cylinder(_) | Form::Hull(_)) => {
-            Route::Slices
-        }
+        (Form::Sphere(_) | Form::Ellipsoid(_), Form::Capsule(_) | Form::Cylinder(_)) => Route::Slices,
+        (Form::Capsule(_) | Form::Cylinder(_), Form::Capsule(_) | Form::Cylinder(_)) => Route::Slices,
         (_, _) if is_smooth(a) && is_smooth(b) => Route::Columns,
         _ => Route::Tree,
     })

@@ -152,11 +152,12 @@ impl Facets {
         &self.fans[self.first_fans[v as usize] as usize..self.first_fans[v as usize + 1] as usize]
     }
 
-    /// Calls `visit` with the faces whose boxes come within `reach` of a point, and perhaps others.
-    pub(crate) fn visit_near(&self, x: Vector, reach: f64, mut visit: impl FnMut(u32)) {
-        let sides = [x.add_scalar(-reach), x.add_scalar(reach)].map(|v| [v.x, v.y, v.z].map(|c| c as f32));
-        // For rounding to single precision.
-        let slack = 1e-6 * (self.radius + reach) as f32;
+    /// Calls `visit` with the faces whose boxes meet the box of half edges `reach` around a point,
+    /// and perhaps with others.
+    pub(crate) fn visit_near(&self, x: Vector, reach: Vector, mut visit: impl FnMut(u32)) {
+        let sides = [x - reach, x + reach].map(|v| [v.x, v.y, v.z].map(|c| c as f32));
+        // Rounding to single precision.
+        let slack = 1e-6 * (self.radius + reach.max()) as f32;
         if !self.tree.is_empty() {
             self.visit_below(0, sides[0].map(|s| s - slack), sides[1].map(|s| s + slack), &mut visit);
         }

@@ -1,33 +1,33 @@
 //! What an edge of a face cuts off the disc in which the face's plane meets the unit ball.
 /// A piece of an edge within the unit ball, seen from the foot w of the centre on the plane of a face.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Edge {
+pub(in crate::overlap) struct Edge {
     /// Distance of the plane from the centre, from 0 to 1.
-    pub(super) height: f64,
+    pub(in crate::overlap) height: f64,
     /// Square of the disc's radius, 1 − height².
-    pub(super) disc2: f64,
+    pub(in crate::overlap) disc2: f64,
     /// Distance of the edge's line from w, positive where the face lies on the side of w.
-    pub(super) distance: f64,
+    pub(in crate::overlap) distance: f64,
     /// Where the piece begins and ends, along the line from its point nearest to w.
-    pub(super) from: f64,
-    pub(super) to: f64,
+    pub(in crate::overlap) from: f64,
+    pub(in crate::overlap) to: f64,
     /// Its length.
-    pub(super) length: f64,
+    pub(in crate::overlap) length: f64,
     /// From where the line enters the ball to `from`, and from `to` to where it leaves the ball.
-    pub(super) before: f64,
-    pub(super) after: f64,
+    pub(in crate::overlap) before: f64,
+    pub(in crate::overlap) after: f64,
 }
 
 /// Integrals over the part of the disc beyond an edge, between the rays from w to its ends; also over a sector or a face. With
 /// ρ the distance from the centre and dA the element of the plane:
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Integrals {
+pub(in crate::overlap) struct Integrals {
     /// ∫ dA.
-    pub(super) area: f64,
+    pub(in crate::overlap) area: f64,
     /// ∫ (1 − ρ²)/2 dA.
-    pub(super) second: f64,
+    pub(in crate::overlap) second: f64,
     /// ∫ (1 − ρ³)/3 dΩ, dΩ = height dA/ρ³: the volume between the part and the sphere, along rays from the centre.
-    pub(super) beyond: f64,
+    pub(in crate::overlap) beyond: f64,
 }
 
 /// Points and weights of Gauss and Legendre, the positive half.
@@ -52,7 +52,7 @@ const FOR_TWELVE: f64 = 0.8 * 0.8;
 
 impl Integrals {
     /// Over the sector that w sees under `angle`, of a disc of squared radius `radius2` = 1 − height².
-    pub(super) fn sector(height: f64, radius2: f64, angle: f64) -> Self {
+    pub(in crate::overlap) fn sector(height: f64, radius2: f64, angle: f64) -> Self {
         let rest = radius2 / (1.0 + height);
         Self {
             area: 0.5 * angle * radius2,
@@ -60,7 +60,7 @@ impl Integrals {
             beyond: angle * rest * rest * (2.0 + height) / 6.0,
         }
     }
-    pub(super) fn minus(self, other: Self) -> Self {
+    pub(in crate::overlap) fn minus(self, other: Self) -> Self {
         Self {
             area: self.area - other.area,
             second: self.second - other.second,
@@ -76,7 +76,7 @@ impl Edge {
         self.distance * self.distance + t * t
     }
     /// Square of the distance from the centre to the nearest point of the piece.
-    pub(super) fn centre2(&self) -> f64 {
+    pub(in crate::overlap) fn centre2(&self) -> f64 {
         self.height * self.height + self.nearest2()
     }
 
@@ -85,7 +85,7 @@ impl Edge {
     ///
     /// All three are smooth and of one sign. Where the piece is short as seen from w they are summed at Gauss points, which
     /// keeps their digits however thin the part is; else in closed form.
-    pub(super) fn beyond(&self) -> Integrals {
+    pub(in crate::overlap) fn beyond(&self) -> Integrals {
         let (square, nearest) = (self.length * self.length, self.nearest2());
         // The poles are at ± i distance and, farther off, ± i √(height² + distance²).
         if square <= FOR_EIGHT * nearest {
@@ -170,7 +170,7 @@ impl Edge {
     }
 
     /// ∫ p/2 dt, p = 1 − u² as above.
-    pub(super) fn push(&self) -> f64 {
+    pub(in crate::overlap) fn push(&self) -> f64 {
         let half = 0.5 * self.length;
         half * ((self.before + half) * (self.after + half) - half * half / 3.0)
     }
@@ -178,7 +178,7 @@ impl Edge {
 
 /// Solid angle under which the centre sees the part of a plane at height `h` beyond the edge at distance `d` from the foot of the
 /// centre, from `s` to `t` along it: the rise of atan(h t/(d u)).
-pub(super) fn edge_angle(h: f64, d: f64, s: f64, t: f64) -> f64 {
+pub(in crate::overlap) fn edge_angle(h: f64, d: f64, s: f64, t: f64) -> f64 {
     let l2 = h * h + d * d;
     let (u, v) = ((l2 + s * s).sqrt(), (l2 + t * t).sqrt());
     // t u − s v, without cancellation on one side of the nearest point.
@@ -188,7 +188,7 @@ pub(super) fn edge_angle(h: f64, d: f64, s: f64, t: f64) -> f64 {
 
 /// Solid angle of the triangle `p`, `q`, `r` seen from the origin, positive when it is counter-clockwise seen from beyond
 /// (van Oosterom & Strackee 1983, IEEE Trans. Biomed. Eng. 30, 125–126).
-pub(super) fn solid_angle([p, q, r]: [interfaces::Vector; 3]) -> f64 {
+pub(in crate::overlap) fn solid_angle([p, q, r]: [interfaces::Vector; 3]) -> f64 {
     let (a, b, c) = (p.norm(), q.norm(), r.norm());
     2.0 * p.dot(&q.cross(&r)).atan2(a * b * c + p.dot(&q) * c + q.dot(&r) * a + r.dot(&p) * b)
 }

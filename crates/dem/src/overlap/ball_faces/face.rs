@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 /// Where the centre is as near as this to an edge, the solid angles of the faces there are no longer known to rounding errors, one
 /// by one; in radii, squared.
-const NEAR2: f64 = 1e-4;
+pub(in crate::overlap) const NEAR2: f64 = 1e-4;
 /// A triangle whose plane is as far from the centre as this, and whose corners, squared, are nearer than that, may be summed by
 /// differences of numbers of order one: its volume then is known to 1e-13 of itself.
 const FAR: f64 = 0.1;
@@ -14,26 +14,26 @@ const WELL2: f64 = 0.995;
 
 /// What a face contributes, in units of the ball's radius.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
+pub(in crate::overlap) struct Part {
     /// The volume between the face and the sphere along rays from the centre; negative where the face looks at the centre.
-    pub(super) beyond: f64,
+    pub(in crate::overlap) beyond: f64,
     /// Sum of the amounts of which it is made.
-    pub(super) amount: f64,
+    pub(in crate::overlap) amount: f64,
     /// Outward unit normal of the face.
-    pub(super) normal: Vector,
+    pub(in crate::overlap) normal: Vector,
     /// Area of the face within the ball.
-    pub(super) area: f64,
+    pub(in crate::overlap) area: f64,
     /// ∫ (1 − ρ²)/2 dA over it.
-    pub(super) second: f64,
+    pub(in crate::overlap) second: f64,
     /// ∫ x dA over it.
-    pub(super) moment: Vector,
-    /// An edge of it passes the centre very closely.
-    pub(super) near_edge: bool,
+    pub(in crate::overlap) moment: Vector,
+    /// Squared distance of its nearest edge within the ball from the centre.
+    pub(in crate::overlap) nearest2: f64,
 }
 
 /// A convex face that the ball may reach.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Face<'a> {
+pub(in crate::overlap) struct Face<'a> {
     corners: &'a [Vector],
     normal: Vector,
     /// Distance of its plane from the centre, along the normal.
@@ -109,7 +109,7 @@ impl Side {
 impl<'a> Face<'a> {
     /// The face with these `corners`, counter-clockwise seen from outside; `None` when it has no area, or when the ball is seen not to
     /// reach it: its plane, or the inner side of one of its edges.
-    pub(super) fn new(corners: &'a [Vector]) -> Option<Self> {
+    pub(in crate::overlap) fn new(corners: &'a [Vector]) -> Option<Self> {
         let n = corners.len();
         let first = corners[0];
         let mut normal = Vector::zeros();
@@ -139,7 +139,10 @@ impl<'a> Face<'a> {
     /// The face in its plane; `None` when its corners are all the same. `places` is memory for as many corners.
     fn plane<'b>(&self, places: &'b mut [[f64; 2]]) -> Option<Plane<'b>> {
         let first = self.corners[0];
-        let edge = self.corners[1..].iter().map(|c| c - first).find(|e| *e != Vector::zeros())?;
+        // The direction of a short edge is rounding.
+        let edges = self.corners[1..].iter().map(|c| c - first);
+        let longer = |p: Vector, q: Vector| if q.norm_squared() > p.norm_squared() { q } else { p };
+        let edge = edges.reduce(longer).filter(|e| *e != Vector::zeros())?;
         let along = edge - self.normal * self.normal.dot(&edge);
         let along = along * along.norm_squared().sqrt().recip();
         let across = self.normal.cross(&along);
@@ -168,7 +171,7 @@ impl<'a> Face<'a> {
             area,
             second,
             moment,
-            near_edge: false,
+            nearest2: f64::INFINITY,
         })
     }
 }
@@ -203,7 +206,11 @@ fn cross(p: [f64; 2], q: [f64; 2]) -> f64 {
 impl Face<'_> {
     /// What lies within the ball, if anything; `cut` is called with the number of every edge that does and how much of it. `places` is memory for as many
     /// corners.
-    pub(super) fn part(&self, places: &mut [[f64; 2]], mut cut: impl FnMut(usize, f64)) -> Option<Part> {
+    pub(in crate::overlap) fn part(
+        &self,
+        places: &mut [[f64; 2]],
+        mut cut: impl FnMut(usize, f64),
+    ) -> Option<Part> {
         if let Some(part) = self.inside(&mut cut) {
             return Some(part);
         }
@@ -211,7 +218,7 @@ impl Face<'_> {
         let height = self.height.abs();
         let radius2 = (1.0 - height) * (1.0 + height);
         let mut sum = Integrals::default();
-        let (mut near_edge, mut amount, mut reached) = (false, 0.0, false);
+        let (mut nearest2, mut amount, mut reached) = (f64::INFINITY, 0.0, false);
         let turn = plane.turn();
         let disc2 = (turn > 0.0).then_some(radius2);
         let mut shift = [0.0; 2];
@@ -234,7 +241,7 @@ impl Face<'_> {
             let Some(edge) = side.within(height, disc2) else { continue };
             reached = true;
             cut(i, edge.length);
-            near_edge |= edge.centre2() < NEAR2;
+            nearest2 = edge.centre2().min(nearest2);
             let beyond = edge.beyond();
             sum.area += beyond.area;
             sum.second += beyond.second;
@@ -259,12 +266,12 @@ impl Face<'_> {
             area,
             second,
             moment,
-            near_edge,
+            nearest2,
         })
     }
 
     /// Solid angle of the face seen from the centre, from the very numbers that [`part`](Self::part) uses.
-    pub(super) fn solid_angle(&self, places: &mut [[f64; 2]]) -> f64 {
+    pub(in crate::overlap) fn solid_angle(&self, places: &mut [[f64; 2]]) -> f64 {
         let Some(plane) = self.plane(places) else { return 0.0 };
         let height = self.height.abs();
         let mut sum = 0.0;
@@ -283,6 +290,6 @@ impl Face<'_> {
 }
 
 /// Solid angle of a convex face seen from the origin.
-pub(super) fn polygon_angle(corners: &[Vector]) -> f64 {
+pub(in crate::overlap) fn polygon_angle(corners: &[Vector]) -> f64 {
     corners[1..].windows(2).map(|pair| solid_angle([corners[0], pair[0], pair[1]])).sum()
 }

@@ -76,16 +76,6 @@ pub(super) fn end(a: &Tube, b: &Tube, normal: Vector, tolerance: f64) -> Option<
     super::ball::overlap(ball.centre, ball.radius, a, -normal, tolerance).map(|o| o.swapped())
 }
 
-/// What a tube and the half-space at a signed `distance` of its middle, out of which leads `n`, share, if it is the cap of a ball at
-/// an end.
-pub(super) fn wall(a: &Tube, n: Vector, distance: f64) -> Option<Overlap> {
-    if a.ends == Ends::Flat {
-        return None;
-    }
-    let ball = a.end_towards(-a.axis.dot(&n));
-    ball.cap(n, distance + n.dot(&(ball.centre - a.at.position)))
-}
-
 fn lens(a: &Ball, b: &Ball) -> Option<Overlap> {
     let apart = b.centre - a.centre;
     let d = apart.norm();

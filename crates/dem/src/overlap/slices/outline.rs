@@ -61,6 +61,17 @@ pub(super) struct Section {
 const LISTED: usize = 8;
 
 impl Section {
+    /// Registers a piece of the outline and its length.
+    pub(super) fn add_piece(&mut self, tag: Tag, length: f64) {
+        if let Some(of) = tag.body() {
+            self.mark = self.mark.wrapping_add(tag.mark());
+            self.of[of] = true;
+            if self.listed < LISTED {
+                self.lengths[self.listed] = (tag, length);
+                self.listed += 1;
+            }
+        }
+    }
     /// Length of all pieces with this tag.
     pub(super) fn length(&self, tag: Tag) -> f64 {
         self.lengths[..self.listed].iter().filter(|l| l.0 == tag).map(|l| l.1).sum()
@@ -241,12 +252,7 @@ impl Outline {
             }
             section.growth -= curve.slope * length;
             if let Some(of) = curve.tag.body() {
-                section.mark = section.mark.wrapping_add(curve.tag.mark());
-                section.of[of] = true;
-                if section.listed < LISTED {
-                    section.lengths[section.listed] = (curve.tag, length);
-                    section.listed += 1;
-                }
+                section.add_piece(curve.tag, length);
                 if of == 0 {
                     section.normal += normal;
                     section.upward += curve.slope * length;
@@ -284,7 +290,7 @@ impl Curve {
 }
 
 /// α − sin α cos α, the area of the segment that spans 2α of the unit circle.
-fn segment(angle: f64) -> f64 {
+pub(in crate::overlap) fn segment(angle: f64) -> f64 {
     if angle > 0.25 {
         return angle - angle.sin() * angle.cos();
     }

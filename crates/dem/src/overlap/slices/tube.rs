@@ -24,15 +24,6 @@ pub(super) struct Tube {
 }
 
 impl Tube {
-    /// The farthest reach along a unit vector from the middle.
-    pub(super) fn reach(&self, n: Vector) -> f64 {
-        let along = self.axis.dot(&n);
-        let round = match self.ends {
-            Ends::Round => 1.0,
-            Ends::Flat => (1.0 - along * along).max(0.0).sqrt(),
-        };
-        self.half * along.abs() + self.radius * round
-    }
     /// Radius of a sphere around all.
     pub(super) fn bound(&self) -> f64 {
         match self.ends {

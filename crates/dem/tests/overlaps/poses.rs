@@ -1,0 +1,103 @@
+//! Random poses of pairs, and what is measured of an overlap.
+use crate::draw::Draw;
+use crate::kinds::{Body, draw};
+use crate::reference;
+use dem::{Overlap, OverlapSolver};
+use interfaces::{Point, Pose, Vector};
+use std::fmt;
+
+/// Case number `case` of the kinds `i` and `j`.
+pub(crate) fn pose(i: usize, j: usize, case: u64) -> (Body, Body, Pose, Pose) {
+    let mut random = Draw((i as u64 * 1000 + j as u64) << 40 | case << 8 | 11);
+    (0..8).for_each(|_| drop(random.next()));
+    let (a, b) = (draw(i, &mut random), draw(j, &mut random));
+    let reach = a.shape.bounding_radius() + b.shape.bounding_radius();
+    let at_a = Pose { position: Point::from(random.direction()), orientation: random.turn() };
+    let apart = random.direction() * (reach * 0.9 * random.next());
+    let at_b = Pose { position: at_a.position + apart, orientation: random.turn() };
+    (a, b, at_a, at_b)
+}
+
+/// Differences of one overlap from its reference, and the CPU time that it took.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Measured {
+    pub(crate) volume: f64,
+    /// Error of the volume as a share of the smaller body's.
+    pub(crate) of_body: f64,
+    /// Error as a share of the volume itself.
+    pub(crate) of_volume: f64,
+    /// V(x + dx) − V(x) − S·dx as a share of the smaller body's volume, S the mean of both ends.
+    pub(crate) gradient: f64,
+    /// CPU time \[µs\].
+    pub(crate) time: f64,
+}
+
+fn total(patches: &[Overlap]) -> (f64, Vector) {
+    (patches.iter().map(|p| p.volume).sum(), patches.iter().map(|p| p.gradient).sum())
+}
+
+pub(crate) fn measure(
+    solver: &mut OverlapSolver,
+    (a, at_a): (&Body, &Pose),
+    (b, at_b): (&Body, &Pose),
+) -> Measured {
+    let (p, q) = (&*a.shape, &*b.shape);
+    let mut time = f64::INFINITY;
+    let mut all = (0.0, Vector::zeros());
+    for _ in 0..3 {
+        let start = std::time::Instant::now();
+        all = total(solver.solve(p, at_a, q, at_b).expect("an overlap"));
+        time = time.min(start.elapsed().as_secs_f64() * 1e6);
+    }
+    let (volume, gradient) = all;
+    let small = a.volume().min(b.volume());
+    let expected = reference::volume(a, at_a, b, at_b);
+    let error = (volume - expected).abs();
+    let step = Vector::new(0.6, -0.64, 0.48) * (1e-5 * small.cbrt());
+    let moved = Pose { position: at_a.position + step, ..*at_a };
+    let (after, gradient_after) = total(solver.solve(p, &moved, q, at_b).expect("an overlap"));
+    let mean = 0.5 * (gradient + gradient_after);
+    Measured {
+        volume,
+        of_body: error / small,
+        of_volume: if expected > 1e-6 * small { error / expected } else { 0.0 },
+        gradient: (after - volume - mean.dot(&step)).abs() / small,
+        time,
+    }
+}
+
+/// Largest differences over many poses.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Table {
+    met: usize,
+    worst: [(f64, u64); 3],
+    times: Vec<(f64, u64)>,
+}
+
+impl Table {
+    pub(crate) fn add(&mut self, m: Measured, case: u64) {
+        self.met += usize::from(m.volume > 0.0);
+        for (worst, now) in self.worst.iter_mut().zip([m.of_body, m.of_volume, m.gradient]) {
+            // Also where it is not a number.
+            if !(now <= worst.0) {
+                *worst = (now, case);
+            }
+        }
+        self.times.push((m.time, case));
+    }
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut times = self.times.clone();
+        times.sort_by(|x, y| x.0.total_cmp(&y.0));
+        let n = times.len();
+        let [body, volume, gradient] = self.worst;
+        let (median, most, longest) = (times[n / 2].0, times[n * 99 / 100].0, times[n - 1]);
+        write!(
+            f,
+            "{} | {:.1e} | {:.1e} | {:.1e} | {median:.1} | {most:.0} | {:.0} | {} {} {} {}",
+            self.met, body.0, volume.0, gradient.0, longest.0, body.1, volume.1, gradient.1, longest.1
+        )
+    }
+}

@@ -21,7 +21,7 @@ pub use depth::{DEEP, Depth, RestingDepth, resting_depth};
 use crate::broad_phase::{NearPair, PairList};
 use crate::contact::{Chen, ContactLaw, Potential};
 use crate::{DemError, HalfSpace, Material, Overlap, OverlapSolver, PairProperties, Shape};
-use body::{Body, Constants, Kind, Loads, is_finite};
+use body::{Body, Constants, Kind, Loads, is_finite, shared};
 use contacts::{Chunk, Patch, Wall, wall_of};
 use interfaces::{
     Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Periods, Point, Pose, Solid, Twist, Vector, Wrench,
@@ -215,7 +215,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             let (linear, angular) = (twist.linear.into(), twist.angular.into());
             return Err(DemError::StartMotion { body, linear, angular });
         }
-        let constants = Constants::new(Arc::new(shape), material.density, freedom);
+        let constants = Constants::new(shared(shape), material.density, freedom);
         let kind = constants.kind();
         if !constants.inertia.mass.is_finite() {
             return Err(DemError::Unsupported { a: constants.shape.name(), b: "body" });
@@ -387,7 +387,10 @@ impl<L: ContactLaw> RigidBodies<L> {
     }
     /// The shape of body `b`.
     pub fn shape(&self, b: BodyId) -> &dyn Shape {
-        &*self.constants[b.0].shape
+        &**self.shared_shape(b)
+    }
+    pub(crate) fn shared_shape(&self, b: BodyId) -> &Arc<dyn Shape> {
+        &self.constants[b.0].shape
     }
 }
 

@@ -2,6 +2,7 @@
 use super::turning::{Turning, turn};
 use crate::{Form, Shape};
 use interfaces::{Freedom, Inertia, Load, Point, Pose, Renumbering, Rotation, Twist, Vector, Wrench};
+use std::any::Any;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -63,6 +64,12 @@ fn flat(form: &Form<'_>) -> Option<f64> {
             Some(0.0)
         }
     }
+}
+
+/// `shape` in an `Arc`: its own, if it is an `Arc<dyn Shape>`.
+pub(super) fn shared(shape: impl Shape + 'static) -> Arc<dyn Shape> {
+    let own = (&shape as &dyn Any).downcast_ref::<Arc<dyn Shape>>().cloned();
+    own.unwrap_or_else(|| Arc::new(shape))
 }
 
 impl std::fmt::Debug for Constants {

@@ -61,3 +61,4 @@ pub use shapes::{
     Capsule, ConvexPolyhedron, Cuboid, Cylinder, Disc, Ellipsoid, Facets, Form, HalfSpace, Implicit, Part,
     Polygon, Shape, SmoothConvex, Sphere, Union,
 };
+pub use vtp::BodyFrames;

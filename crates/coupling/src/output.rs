@@ -1,22 +1,23 @@
 //! Files of a run: fields and bodies for ParaView, trajectories for everyone.
 use crate::{CouplingError, FlowSolver, Observer, Particles, Simulation, StepInfo, Strategy};
-use dem::RigidDynamics;
+use dem::{BodyFrames, RigidDynamics};
 use fv_mesh::{CellWriter, TimeSeries};
 use ibm::{Forcing, SolidFraction};
-use interfaces::{BodyId, Point};
+use interfaces::{BodyId, Kinematics, Point};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Writes at every snapshot `fields/NNNNN.vti` (`.vtr` on a stretched grid: λ, velocity, pressure at the cell centres) and
-/// `bodies/NNNNN.vtp`, the series `fields.pvd` and `bodies.pvd`, and a line per body to
+/// `bodies/NNNNN.vtp` ([`BodyFrames`]), the series `fields.pvd` and `bodies.pvd`, and a line per body to
 /// `trajectories.csv` under the body's [serial number](Particles::serial). What is listed is complete; the lists lag a second behind at most, and the
 /// output must be finished or dropped at the end.
 pub struct FileOutput {
     folder: PathBuf,
     csv: BufWriter<File>,
     series: [TimeSeries; 2],
+    bodies: BodyFrames,
     fraction: SolidFraction,
     lambda: Vec<f64>,
     seconds: f64,
@@ -48,14 +49,13 @@ impl FileOutput {
             );
             move |source| CouplingError::Output { what, source }
         };
-        for sub in ["fields", "bodies"] {
-            std::fs::create_dir_all(folder.join(sub)).map_err(at("making the output folder"))?;
-        }
+        std::fs::create_dir_all(folder.join("fields")).map_err(at("making the output folder"))?;
+        let bodies = BodyFrames::new(folder, "bodies").map_err(at("making the output folder"))?;
         let mut csv = BufWriter::new(
             File::create(folder.join("trajectories.csv")).map_err(at("making trajectories.csv"))?,
         );
         writeln!(csv, "{CSV_HEADER}").map_err(at("writing trajectories.csv"))?;
-        Ok(Self::with(folder, csv, SERIES.map(|name| TimeSeries::new(folder.join(name)))))
+        Ok(Self::with(folder, csv, SERIES.map(|name| TimeSeries::new(folder.join(name))), bodies))
     }
 
     /// Goes on in a folder that an earlier run wrote up to `time` \[s\] at least; what it wrote
@@ -80,7 +80,7 @@ impl FileOutput {
             csv.flush()?;
             let [fields, bodies] = SERIES.map(|name| TimeSeries::resume(folder.join(name), time));
             let series = [fields?, bodies?];
-            Ok(Self::with(folder, csv, series))
+            Ok(Self::with(folder, csv, series, BodyFrames::resume(folder, "bodies")?))
         };
         go_on().map_err(|source| CouplingError::Output {
             what: format!("going on in {} (was a run interrupted there?)", folder.display()),
@@ -88,12 +88,13 @@ impl FileOutput {
         })
     }
 
-    fn with(folder: &Path, csv: BufWriter<File>, series: [TimeSeries; 2]) -> Self {
+    fn with(folder: &Path, csv: BufWriter<File>, series: [TimeSeries; 2], bodies: BodyFrames) -> Self {
         let folder = folder.into();
         Self {
             folder,
             csv,
             series,
+            bodies,
             fraction: SolidFraction::new(),
             lambda: Vec::new(),
             seconds: 0.0,
@@ -137,8 +138,8 @@ impl FileOutput {
         let (flow, particles) = (&simulation.flow, &simulation.particles);
         let grid = flow.grid();
         let image = CellWriter::new(grid);
-        let names = [format!("fields/{index:05}.{}", image.extension()), format!("bodies/{index:05}.vtp")];
-        let mut file = BufWriter::new(File::create(self.folder.join(&names[0]))?);
+        let name = format!("fields/{index:05}.{}", image.extension());
+        let mut file = BufWriter::new(File::create(self.folder.join(&name))?);
         image
             .scalar("lambda", self.lambda.iter().copied())
             .vector("velocity", std::array::from_fn(|c| flow.centred_velocity(c)))
@@ -148,11 +149,9 @@ impl FileOutput {
 
         let corner = grid.origin();
         let corner = Point::from(std::array::from_fn(|a| corner.get(a).copied().unwrap_or(0.0)));
-        let mut file = BufWriter::new(File::create(self.folder.join(&names[1]))?);
-        particles.bodies.rigid_bodies().write_vtp(&mut file, corner)?;
-        file.flush()?;
-
-        for (series, name) in self.series.iter_mut().zip(names) {
+        let bodies = particles.bodies.rigid_bodies();
+        let frame = self.bodies.write(bodies, corner, bodies.ids(), index)?;
+        for (series, name) in self.series.iter_mut().zip([name, frame]) {
             series.add(info.time, name)?;
         }
         if self.listed.is_none_or(|t| t.elapsed() > LIST_EVERY) {

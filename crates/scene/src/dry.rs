@@ -5,10 +5,10 @@ use crate::setup::Setup;
 use crate::view::View;
 use crate::watch::Solids;
 use coupling::{Evolving, Grains, StepInfo, Timings};
-use dem::{ContactLaw, Depth, Population, RigidDynamics};
+use dem::{BodyFrames, ContactLaw, Depth, Population, RigidDynamics};
 use fv_mesh::Axis;
 use interfaces::{Bodies, BodyId, Checkpoint, Dynamics, Kinematics, Lattice, Wrench};
-use std::io::{self, Write};
+use std::io;
 
 impl<L: ContactLaw> Show for Grains<Cast<L>>
 where
@@ -89,9 +89,8 @@ where
     fn turnover(&self) -> [u64; 2] {
         self.grains.bodies.turnover()
     }
-    fn write_bodies(&self, mut out: &mut dyn Write) -> io::Result<bool> {
-        let corner = self.setup.corner();
-        self.grains.bodies.rigid_bodies().write_vtp(&mut out, corner)?;
-        Ok(true)
+    fn write_bodies(&self, frames: &mut BodyFrames, index: usize) -> io::Result<Option<String>> {
+        let bodies = self.grains.bodies.rigid_bodies();
+        frames.write(bodies, self.setup.corner(), bodies.ids(), index).map(Some)
     }
 }

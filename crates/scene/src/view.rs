@@ -5,14 +5,14 @@ use crate::steady::Steady;
 use crate::still::Still;
 use crate::watch::Solids;
 use coupling::{Particles, StepInfo, Strategy, Timings};
-use dem::{ContactLaw, Depth, Population, RigidDynamics};
+use dem::{BodyFrames, ContactLaw, Depth, Population, RigidDynamics};
 use example_support::progress::Status;
 use fv_mesh::{
     Axis, CartesianGrid, CellWriter, Field, FlowStatistics, Hooked, OutputError, SampleError, Sampler, Sides,
     Velocity,
 };
 use ibm::{FluidSampler, Forcing};
-use interfaces::{Bodies, BodyId, Checkpoint, Closure, Lattice, Point, Wrench};
+use interfaces::{Bodies, BodyId, Checkpoint, Closure, Kinematics, Lattice, Point, Wrench};
 use std::io::{self, Write};
 use turb::YPlus;
 
@@ -95,8 +95,8 @@ pub(crate) trait View {
     fn deepest(&self) -> Option<Depth>;
     /// Bodies that came in and that left so far.
     fn turnover(&self) -> [u64; 2];
-    /// Writes the bodies for ParaView; `false` if there are none to write.
-    fn write_bodies(&self, out: &mut dyn Write) -> io::Result<bool>;
+    /// Writes a frame of the bodies for ParaView and returns its path; `None` if there are none to write.
+    fn write_bodies(&self, frames: &mut BodyFrames, index: usize) -> io::Result<Option<String>>;
 }
 
 /// A field besides velocity and pressure.
@@ -253,7 +253,7 @@ pub(crate) trait Guests {
     fn contacts(&self) -> usize;
     fn deepest(&self) -> Option<Depth>;
     fn turnover(&self) -> [u64; 2];
-    fn write(&self, corner: Point, out: &mut dyn Write) -> io::Result<bool>;
+    fn write(&self, corner: Point, frames: &mut BodyFrames, index: usize) -> io::Result<Option<String>>;
 }
 
 impl Guests for Still {
@@ -279,8 +279,8 @@ impl Guests for Still {
     fn turnover(&self) -> [u64; 2] {
         [0; 2]
     }
-    fn write(&self, _: Point, _: &mut dyn Write) -> io::Result<bool> {
-        Ok(false)
+    fn write(&self, _: Point, _: &mut BodyFrames, _: usize) -> io::Result<Option<String>> {
+        Ok(None)
     }
 }
 
@@ -307,9 +307,9 @@ where
     fn turnover(&self) -> [u64; 2] {
         self.bodies.turnover()
     }
-    fn write(&self, corner: Point, mut out: &mut dyn Write) -> io::Result<bool> {
-        self.bodies.rigid_bodies().write_vtp(&mut out, corner)?;
-        Ok(true)
+    fn write(&self, corner: Point, frames: &mut BodyFrames, index: usize) -> io::Result<Option<String>> {
+        let bodies = self.bodies.rigid_bodies();
+        frames.write(bodies, corner, bodies.ids(), index).map(Some)
     }
 }
 
@@ -428,9 +428,9 @@ impl<const D: usize, A: Flow<D>, P: Guests> View for Seen<'_, D, A, P> {
     fn turnover(&self) -> [u64; 2] {
         self.guests.turnover()
     }
-    fn write_bodies(&self, out: &mut dyn Write) -> io::Result<bool> {
+    fn write_bodies(&self, frames: &mut BodyFrames, index: usize) -> io::Result<Option<String>> {
         let corner = self.flow.grid().origin();
         let corner = Point::from(std::array::from_fn(|a| corner.get(a).copied().unwrap_or(0.0)));
-        self.guests.write(corner, out)
+        self.guests.write(corner, frames, index)
     }
 }

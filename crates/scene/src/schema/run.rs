@@ -56,7 +56,13 @@ pub(super) static OUTPUT: Table = Table {
             "VTK files of λ, velocity and pressure at the snapshots, for ParaView.",
             "false",
         ),
-        optional("bodies", Kind::Flag, "true", "VTK files of the bodies and `trajectories.csv`.", "false"),
+        optional(
+            "bodies",
+            Kind::Flag,
+            "true",
+            "VTK files of the bodies' surfaces and `trajectories.csv`.",
+            "false",
+        ),
         optional(
             "ledger",
             Kind::Flag,

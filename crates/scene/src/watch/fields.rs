@@ -2,6 +2,7 @@
 use super::{Solids, Taken, Watch, output};
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
+use dem::BodyFrames;
 use example_support::files::write_over;
 use fv_mesh::TimeSeries;
 use interfaces::{Checkpoint, RestartError};
@@ -13,7 +14,7 @@ use std::time::{Duration, Instant};
 pub(crate) struct FieldsWatch {
     folder: PathBuf,
     fields: Option<TimeSeries>,
-    bodies: Option<TimeSeries>,
+    bodies: Option<(BodyFrames, TimeSeries)>,
     listed: Option<Instant>,
 }
 
@@ -26,30 +27,34 @@ impl FieldsWatch {
         [fields, bodies]: [bool; 2],
         resume: Option<f64>,
     ) -> Result<Self, CouplingError> {
-        let series = |name: &str, wanted: bool| -> Result<Option<TimeSeries>, CouplingError> {
-            if !wanted {
-                return Ok(None);
-            }
-            let (sub, list) = (folder.join(name), folder.join(format!("{name}.pvd")));
-            std::fs::create_dir_all(&sub).map_err(output("making", &sub))?;
+        // Nothing but the start is written before the first step, and it is written again.
+        let resume = resume.filter(|time| *time > 0.0);
+        let series = |name: &str| -> Result<TimeSeries, CouplingError> {
+            let list = folder.join(format!("{name}.pvd"));
             match resume {
-                // Nothing but the start was shown before the first step, and that is shown again.
-                Some(time) if time > 0.0 => TimeSeries::resume(&list, time)
-                    .map(Some)
+                Some(time) => TimeSeries::resume(&list, time)
                     .map_err(|e| output("going on with", &list)(io::Error::other(e))),
-                _ => Ok(Some(TimeSeries::new(list))),
+                None => Ok(TimeSeries::new(list)),
             }
         };
+        let frames = || {
+            let open = if resume.is_some() { BodyFrames::resume } else { BodyFrames::new };
+            open(folder, "bodies").map_err(output("making", &folder.join("bodies")))
+        };
+        let sub = folder.join("fields");
+        if fields {
+            std::fs::create_dir_all(&sub).map_err(output("making", &sub))?;
+        }
         Ok(Self {
-            fields: series("fields", fields)?,
-            bodies: series("bodies", bodies)?,
+            fields: if fields { Some(series("fields")?) } else { None },
+            bodies: if bodies { Some((frames()?, series("bodies")?)) } else { None },
             folder: folder.into(),
             listed: None,
         })
     }
 
     fn list(&mut self) -> Result<(), CouplingError> {
-        for series in [&self.fields, &self.bodies].into_iter().flatten() {
+        for series in self.fields.iter().chain(self.bodies.iter().map(|(_, series)| series)) {
             series
                 .save()
                 .map_err(|e| output("listing the snapshots in", series.path())(io::Error::other(e)))?;
@@ -87,10 +92,9 @@ impl Watch for FieldsWatch {
                 .map_err(output("writing", &path))?;
             series.add(info.time, name).map_err(|e| output("listing", &path)(io::Error::other(e)))?;
         }
-        if let Some(series) = &mut self.bodies {
-            let name = format!("bodies/{index:05}.vtp");
-            let path = self.folder.join(&name);
-            if write_over(&path, |out| view.write_bodies(out)).map_err(output("writing", &path))? {
+        if let Some((frames, series)) = &mut self.bodies {
+            let path = self.folder.join("bodies");
+            if let Some(name) = view.write_bodies(frames, index).map_err(output("writing to", &path))? {
                 series.add(info.time, name).map_err(|e| output("listing", &path)(io::Error::other(e)))?;
             }
         }

@@ -31,6 +31,41 @@ fn a_block_slides_without_a_fluid() {
     [whole, halves].iter().for_each(|out| std::fs::remove_dir_all(out).unwrap());
 }
 
+/// Frames of bodies with many polygons hold a point per body and the surface of all spheres once, and
+/// those of a resumed run the same.
+#[test]
+fn frames_of_many_bodies_hold_points() {
+    let text = r#"
+gravity = [0.0, 0.0, -9.81]
+grid = { cells = [10, 10, 10], size = [1.0, 1.0, 1.0] }
+sides = { x = "wall", y = "wall", z = "wall" }
+materials = { glass = { density = 2500.0, youngs_modulus = 1e6 } }
+contact = { wall_material = "glass" }
+time = { end = 0.1 }
+output = { snapshots = 2, images = false }
+[[factories]]
+type = "random"
+number = 70
+shape = { type = "sphere", radius = 0.05 }
+scale = { law = "uniform", low = 0.8, high = 1.2 }
+material = "glass"
+region = { lower = [0.0, 0.0, 0.0], upper = [1.0, 1.0, 1.0] }
+"#;
+    let [whole, halves] = ["points-whole", "points-halves"].map(folder);
+    run(text, &[], &quiet(&whole));
+    run(text, &["time.end=0.05", "output.snapshots=1"], &quiet(&halves));
+    run(text, &[], &Options { resume: true, ..quiet(&halves) });
+    for name in ["bodies.pvd", "bodies.py", "bodies/00002.vtp", "bodies/shapes/00000.vtp"] {
+        let [a, b] = [&whole, &halves].map(|out| std::fs::read(out.join(name)).unwrap());
+        assert!(a == b, "{name}");
+    }
+    let frame = std::fs::read(whole.join("bodies/00002.vtp")).unwrap();
+    let header = String::from_utf8_lossy(&frame);
+    assert!(header.contains("NumberOfPoints=\"70\"") && header.contains("Name=\"shape\""));
+    assert_eq!(std::fs::read_dir(whole.join("bodies/shapes")).unwrap().count(), 1);
+    [whole, halves].iter().for_each(|out| std::fs::remove_dir_all(out).unwrap());
+}
+
 /// Two balls that repel one another turn back before they touch, as fast as they came.
 #[test]
 fn balls_repel_one_another() {

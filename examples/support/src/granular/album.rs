@@ -4,8 +4,6 @@ use super::scene::Scene;
 use crate::Outcome;
 use crate::picture::solids::{Model, Portrait, Tint};
 use interfaces::{BodyId, Kinematics, Point, Pose};
-use std::fs::File;
-use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// How bright walls are.
@@ -44,45 +42,40 @@ fn wrapped(bodies: &Granulate, b: BodyId, corner: Point, grain: bool) -> Pose {
     if grain { Pose { position: bodies.periods().wrap(pose.position, corner), ..pose } } else { pose }
 }
 
-/// What is written for ParaView: its name, and whether that are points, one for each grain, or outlines of walls and of grains that are made of
-/// triangles.
-const SERIES: [(&str, bool); 2] = [("grains", true), ("outlines", false)];
+/// Series of the grains and of the walls for ParaView.
+const SERIES: [&str; 2] = ["grains", "walls"];
 
-/// Is a body among those whose outlines are written?
-pub(super) fn is_outlined(scene: &impl Scene, bodies: &Granulate, b: BodyId) -> bool {
-    b.0 < scene.first_grain() || bodies.shape(b).polyhedron().is_some()
-}
-
-/// `grains.pvd`, `outlines.pvd` and the files that they list; pictures.
+/// `grains.pvd`, `walls.pvd` and the files that they list; pictures.
 pub(super) struct Album {
     folder: PathBuf,
-    series: Vec<(&'static str, bool, fv_mesh::TimeSeries)>,
+    series: Vec<(&'static str, dem::BodyFrames, fv_mesh::TimeSeries)>,
     pictures: bool,
 }
 
 impl Album {
-    /// A new one; or the one of an earlier run, up to `time`. `outlines`: are there any?
+    /// Album of a new run, or of an interrupted one up to `resumed`. `walls`: whether there are any.
     pub(super) fn new(
         folder: &Path,
         pictures: bool,
         vtk: bool,
-        outlines: bool,
+        walls: bool,
         resumed: Option<f64>,
     ) -> Outcome<Self> {
         let mut series = Vec::new();
-        for (name, points) in SERIES {
+        for name in SERIES {
             let path = folder.join(format!("{name}.pvd"));
             if resumed.is_none() {
                 let _ = std::fs::remove_file(&path);
                 clear(&folder.join(name))?;
             }
-            if vtk && (points || outlines) {
-                std::fs::create_dir_all(folder.join(name))?;
-                let one = match resumed {
-                    None => fv_mesh::TimeSeries::new(path),
-                    Some(time) => fv_mesh::TimeSeries::resume(path, time)?,
-                };
-                series.push((name, points, one));
+            if vtk && (name == "grains" || walls) {
+                series.push(match resumed {
+                    None => (name, dem::BodyFrames::new(folder, name)?, fv_mesh::TimeSeries::new(path)),
+                    Some(time) => {
+                        let frames = dem::BodyFrames::resume(folder, name)?;
+                        (name, frames, fv_mesh::TimeSeries::resume(path, time)?)
+                    }
+                });
             }
         }
         if resumed.is_none() {
@@ -103,17 +96,10 @@ impl Album {
         bodies: &Granulate,
     ) -> Outcome<()> {
         let first = scene.first_grain();
-        for (name, points, series) in &mut self.series {
-            let path = format!("{name}/{index:05}.vtp");
-            let mut file = BufWriter::new(File::create(self.folder.join(&path))?);
-            if *points {
-                bodies.write_vtp_points(&mut file, corner(scene), bodies.ids().skip(first))?;
-            } else {
-                let which = bodies.ids().filter(|b| is_outlined(scene, bodies, *b));
-                bodies.write_vtp_of(&mut file, corner(scene), which)?;
-            }
-            file.flush()?;
-            series.push(time, path)?;
+        for (name, frames, series) in &mut self.series {
+            let grains = *name == "grains";
+            let which = bodies.ids().filter(|b| (b.0 >= first) == grains);
+            series.push(time, frames.write(bodies, corner(scene), which, index)?)?;
         }
         if self.pictures {
             let title = format!("t = {time:.3} s, {} grains", bodies.n_bodies() - first);

@@ -1,5 +1,5 @@
 //! The time loop.
-use super::album::{Album, is_outlined};
+use super::album::Album;
 use super::law::Granulate;
 use super::measures::{Totals, totals};
 use super::options::RunOptions;
@@ -112,7 +112,7 @@ pub(crate) fn fingerprint(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
 }
 
-/// Runs the scene from 0 to `end` \[s\] and writes, to `out`: `motion.csv`, `grains.pvd` and `outlines.pvd` with their `.vtp` files, `frames/*.png`, `state.bin`, and in
+/// Runs the scene from 0 to `end` \[s\] and writes, to `out`: `motion.csv`, `grains.pvd` and `walls.pvd` with their `.vtp` files, `frames/*.png`, `state.bin`, and in
 /// the end `bodies.csv`. `setup` tells all that a run that goes on must have in common with the one before.
 ///
 /// # Errors
@@ -139,17 +139,17 @@ pub fn run(
     let motion = out.join("motion.csv");
     let (mut history, mut album);
     let vtk = !options.no_vtk;
-    let outlines = bodies.ids().any(|b| is_outlined(scene, bodies, b));
+    let walls = scene.first_grain() > 0;
     if options.resume {
         clock = load(&state, scene, bodies, setup, &time_of)?;
         history = History::resume(&motion, columns, clock.row + 1)?;
-        album = Album::new(out, !options.no_images, vtk, outlines, Some(time_of(clock.row)))?;
+        album = Album::new(out, !options.no_images, vtk, walls, Some(time_of(clock.row)))?;
     } else {
         for old in ["state.bin", "state.bin.previous", "bodies.csv", "summary.png", "result.json"] {
             let _ = std::fs::remove_file(out.join(old));
         }
         history = History::new(&motion, columns)?;
-        album = Album::new(out, !options.no_images, vtk, outlines, None)?;
+        album = Album::new(out, !options.no_images, vtk, walls, None)?;
         scene.feed(bodies, 0.0)?;
         if scene.may_touch() {
             check_depth(scene, bodies)?;

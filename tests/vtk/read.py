@@ -1,10 +1,25 @@
-"""Reads VTK XML files and prints what is in them; ends with an error if a file cannot be read, is empty or has numbers that are not finite."""
+"""Reads VTK XML files and prints their content.
+
+Ends with an error if a file cannot be read, is empty or has numbers that are not finite, or if a surface in 3D is not closed.
+"""
 
 import math
 import sys
 
 from vtkmodules.vtkCommonCore import vtkObject
+from vtkmodules.vtkFiltersCore import vtkFeatureEdges
 from vtkmodules.vtkIOXML import vtkXMLGenericDataObjectReader
+
+
+def open_edges(surface):
+    """Number of edges without exactly two polygons."""
+    edges = vtkFeatureEdges()
+    edges.SetInputData(surface)
+    edges.FeatureEdgesOff()
+    edges.ManifoldEdgesOff()
+    edges.Update()
+    return edges.GetOutput().GetNumberOfLines()
+
 
 vtkObject.GlobalWarningDisplayOn()
 for path in sys.argv[1:]:
@@ -23,4 +38,7 @@ for path in sys.argv[1:]:
             arrays.append(array.GetName())
     if not arrays:
         sys.exit(f"{path}: no arrays")
+    bounds = data.GetBounds()
+    if data.GetClassName() == "vtkPolyData" and bounds[5] > bounds[4] and open_edges(data) > 0:
+        sys.exit(f"{path}: {open_edges(data)} edges without two polygons")
     print(f"{data.GetClassName()}: {data.GetNumberOfCells()} cells, {', '.join(arrays)}")

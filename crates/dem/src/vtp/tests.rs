@@ -1,10 +1,9 @@
 //! Files as another program reads them.
 use super::polygon_surface::EDGES;
 use super::*;
-use crate::{Cuboid, Disc, Ellipsoid, Material, Polygon, Shape};
+use crate::{Cuboid, Disc, Ellipsoid, Material, Polygon};
 use interfaces::{Freedom, Periods, Pose, Rotation};
 use std::collections::HashMap;
-use std::sync::Arc;
 
 /// An array as the header describes it and the appended block holds it.
 pub(super) struct Read {

@@ -5,6 +5,7 @@ mod crossings;
 mod error;
 mod meeting;
 mod obj;
+mod polygon;
 mod soup;
 mod sphere;
 mod stl;

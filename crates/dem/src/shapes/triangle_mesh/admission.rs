@@ -122,6 +122,12 @@ impl Checked {
             resolution: None,
         };
         let mut checked = Self { report, faces: Vec::new(), number: Vec::new(), tree: None };
+        let counts = [("vertices", vertices.len()), ("corners", 3 * faces.len())];
+        let excess = counts.into_iter().find_map(|(what, count)| MeshError::check_count(what, count).err());
+        if let Some(fault) = excess {
+            checked.report.faults.push(fault);
+            return checked;
+        }
         checked.sort_out(vertices, faces);
         if !everything && !checked.report.is_admissible() || checked.faces.is_empty() {
             return checked;

@@ -160,6 +160,36 @@ pub enum MeshError {
         /// Bytes that it has.
         bytes: usize,
     },
+    /// There is more than 32 bits can number.
+    #[error("the mesh has {count} {what}; no more than {most} can be numbered: give fewer triangles")]
+    TooMany {
+        /// Vertices, or corners of triangles.
+        what: &'static str,
+        /// Their number.
+        count: usize,
+        /// The largest number.
+        most: u32,
+    },
+    /// The path leads to a directory, device, pipe or socket.
+    #[error("{}: {kind} is no mesh file; give the path of a regular file", path.display())]
+    NoFile {
+        /// The path.
+        path: PathBuf,
+        /// Directory, device, pipe or socket.
+        kind: &'static str,
+    },
+    /// The file is larger than is read.
+    #[error(
+        "{}: {bytes} bytes are more than the limit of {limit} bytes; write the mesh as a binary file, or with fewer triangles", path.display()
+    )]
+    TooLarge {
+        /// The path.
+        path: PathBuf,
+        /// Its size \[bytes\].
+        bytes: u64,
+        /// The largest size \[bytes\].
+        limit: u64,
+    },
     /// The file cannot be read.
     #[error("{}: {what}", path.display())]
     File {
@@ -168,6 +198,16 @@ pub enum MeshError {
         /// Why.
         what: String,
     },
+}
+
+impl MeshError {
+    /// An error unless `count` fits in 32 bits.
+    pub(crate) fn check_count(what: &'static str, count: usize) -> Result<(), Self> {
+        if u32::try_from(count).is_err() {
+            return Err(Self::TooMany { what, count, most: u32::MAX });
+        }
+        Ok(())
+    }
 }
 
 /// Errors name this many faces at most.

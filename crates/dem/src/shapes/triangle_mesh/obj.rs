@@ -1,14 +1,18 @@
 //! The lines `v` and `f` of a Wavefront OBJ file.
 use super::MeshError;
-use super::text::{Words, number};
+use super::polygon::Triangulation;
+use super::text::{Format, Words, decoded, number};
 
 type Mesh = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 
-/// Vertices, in the file's unit, and triangles. All other lines are left out: texture, normals, groups, materials.
+/// Vertices, in the file's unit, and triangles. All other lines are skipped (texture, normals,
+/// groups, materials), and so is whatever follows three coordinates (weights, colours).
 pub(crate) fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
-    let mut words = Words::new("OBJ", bytes);
-    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
-    let mut corners: Vec<u32> = Vec::new();
+    let text = decoded(bytes);
+    let mut words = Words::new(Format::Obj, &text);
+    let mut vertices = Vec::new();
+    // Corners of all polygons, and where each of them ends.
+    let (mut corners, mut ends): (Vec<u32>, Vec<usize>) = (Vec::new(), Vec::new());
     while words.next_line() {
         match words.next_on_line().as_deref() {
             Some("v") => {
@@ -19,28 +23,30 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
                 vertices.push(vertex);
             }
             Some("f") => {
-                corners.clear();
-                loop {
-                    let goes_on = words.goes_on();
-                    while let Some(word) = words.next_on_line() {
-                        corners.push(vertex(&word, vertices.len()).map_err(|what| words.error(what))?);
-                    }
-                    if !(goes_on && words.next_line()) {
-                        break;
-                    }
+                let first = corners.len();
+                while let Some(word) = words.next_on_line() {
+                    corners.push(vertex(&word, vertices.len()).map_err(|what| words.error(what))?);
                 }
-                if corners.len() < 3 {
-                    return Err(words.error(format!("a face of {} vertices", corners.len())));
+                if corners.len() < first + 3 {
+                    return Err(words.error(format!("a face of {} vertices", corners.len() - first)));
                 }
-                faces.extend(corners.windows(2).skip(1).map(|pair| [corners[0], pair[0], pair[1]]));
+                ends.push(corners.len());
             }
             _ => {}
         }
     }
+    MeshError::check_count("vertices", vertices.len())?;
+    MeshError::check_count("corners", corners.len())?;
+    // Faces may come before their vertices.
+    let (mut faces, mut triangulation, mut first) = (Vec::new(), Triangulation::default(), 0);
+    for end in ends {
+        triangulation.append(&corners[first..end], &vertices, &mut faces);
+        first = end;
+    }
     Ok((vertices, faces))
 }
 
-/// The vertex that `5`, `5/1`, `5//2`, `5/1/2` say, counted from 1, or from the last one backward: −1.
+/// The vertex in `5`, `5/1`, `5//2` or `5/1/2`, counted from 1, or from the last one backward: −1.
 fn vertex(word: &str, vertices: usize) -> Result<u32, String> {
     let first = word.split('/').next().unwrap_or_default();
     let said: i64 = first.parse().map_err(|_| format!("{word:?} is no vertex"))?;

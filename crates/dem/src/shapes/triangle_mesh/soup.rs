@@ -1,10 +1,13 @@
 //! Triangles as a file has them.
 use super::{AdmissionReport, MeshError, TriangleMesh, obj, stl};
 use std::collections::HashMap;
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
-/// Triangles that need not be a body yet: what a file holds. Look at them with [`admission`](Self::admission), join vertices
-/// with [`welded`](Self::welded), then make a [`TriangleMesh`] of them.
+/// Triangles that need not be a body yet: what a file holds. Look at them with
+/// [`admission`](Self::admission), join vertices with [`welded`](Self::welded), then make a
+/// [`TriangleMesh`] of them.
 ///
 /// ```
 /// use dem::{MeshError, TriangleMesh, TriangleSoup};
@@ -25,35 +28,47 @@ pub struct TriangleSoup {
 }
 
 impl TriangleSoup {
-    /// What the bytes of an STL file hold, text or binary, several solids as one; `unit` is its unit of length \[m\] (1e-3 for
-    /// millimetres). Corners that are equal, digit by digit, are one vertex.
+    /// Largest size of a mesh file \[bytes\], 1 GiB: 2·10⁷ triangles of a binary STL file.
+    pub const LARGEST_FILE: u64 = 1 << 30;
+
+    /// Triangles of an STL file's bytes, text or binary, several solids as one; `unit` is its unit
+    /// of length \[m\] (1e-3 for millimetres). Corners that are equal, digit by digit, are one
+    /// vertex. Normals are not used and may be missing; bytes behind the triangles of a binary file
+    /// are skipped. Lines end with LF, CR or both; a byte-order mark (UTF-8, UTF-16) may come
+    /// first.
     ///
     /// # Errors
-    /// [`MeshError::Text`], [`MeshError::Truncated`] or [`MeshError::Unit`]; never a panic, whatever the bytes are.
+    /// [`MeshError::Text`], [`MeshError::Truncated`], [`MeshError::TooMany`] or
+    /// [`MeshError::Unit`]; never a panic, whatever the bytes are.
     pub fn from_stl_bytes(bytes: &[u8], unit: f64) -> Result<Self, MeshError> {
         let corners = stl::read(bytes)?;
-        Self::of_corners(&corners).scaled(unit)
+        Self::of_corners(&corners)?.scaled(unit)
     }
-    /// What the bytes of a Wavefront OBJ file hold: its lines `v` and `f`; polygons are cut up in fans from their first vertex.
-    /// `unit` is its unit of length \[m\].
+    /// Triangles of a Wavefront OBJ file's bytes: its lines `v` and `f`, with comments and
+    /// continuations. Polygons, convex or not, make fans around their first corners or are cut up
+    /// by clipping ears; corners that repeat the one before are left out. `unit` is its unit of
+    /// length \[m\]. Text as in [`from_stl_bytes`](Self::from_stl_bytes).
     ///
     /// # Errors
-    /// [`MeshError::Text`] or [`MeshError::Unit`]; never a panic, whatever the bytes are.
+    /// [`MeshError::Text`], [`MeshError::TooMany`] or [`MeshError::Unit`]; never a panic, whatever
+    /// the bytes are.
     pub fn from_obj_bytes(bytes: &[u8], unit: f64) -> Result<Self, MeshError> {
         let (vertices, faces) = obj::read(bytes)?;
         Self { vertices, faces }.scaled(unit)
     }
-    /// What an STL file holds: [`from_stl_bytes`](Self::from_stl_bytes).
+    /// Triangles of an STL file: [`from_stl_bytes`](Self::from_stl_bytes).
     ///
     /// # Errors
-    /// [`MeshError::File`] and [`MeshError::Unit`].
+    /// [`MeshError::File`], [`MeshError::NoFile`] unless it is a regular file,
+    /// [`MeshError::TooLarge`] beyond [`LARGEST_FILE`](Self::LARGEST_FILE), and
+    /// [`MeshError::Unit`].
     pub fn from_stl(path: impl AsRef<Path>, unit: f64) -> Result<Self, MeshError> {
         Self::from_file(path.as_ref(), unit, Self::from_stl_bytes)
     }
-    /// What an OBJ file holds: [`from_obj_bytes`](Self::from_obj_bytes).
+    /// Triangles of an OBJ file: [`from_obj_bytes`](Self::from_obj_bytes).
     ///
     /// # Errors
-    /// [`MeshError::File`] and [`MeshError::Unit`].
+    /// Those of [`from_stl`](Self::from_stl).
     pub fn from_obj(path: impl AsRef<Path>, unit: f64) -> Result<Self, MeshError> {
         Self::from_file(path.as_ref(), unit, Self::from_obj_bytes)
     }
@@ -64,7 +79,7 @@ impl TriangleSoup {
         read: impl Fn(&[u8], f64) -> Result<Self, MeshError>,
     ) -> Result<Self, MeshError> {
         let failed = |what: String| MeshError::File { path: path.into(), what };
-        let bytes = std::fs::read(path).map_err(|e| failed(e.to_string()))?;
+        let bytes = bytes_of(path, Self::LARGEST_FILE)?;
         read(&bytes, unit).map_err(|e| match e {
             MeshError::Unit { .. } => e,
             e => failed(e.to_string()),
@@ -72,7 +87,8 @@ impl TriangleSoup {
     }
 
     /// Triangles that are given by their corners.
-    fn of_corners(corners: &[[f64; 3]]) -> Self {
+    fn of_corners(corners: &[[f64; 3]]) -> Result<Self, MeshError> {
+        MeshError::check_count("corners", corners.len())?;
         let mut soup = Self::default();
         let mut numbers: HashMap<[u64; 3], u32> = HashMap::new();
         for triangle in corners.as_chunks::<3>().0 {
@@ -85,7 +101,7 @@ impl TriangleSoup {
                 })
             }));
         }
-        soup
+        Ok(soup)
     }
 
     fn scaled(mut self, unit: f64) -> Result<Self, MeshError> {
@@ -96,12 +112,13 @@ impl TriangleSoup {
         Ok(self)
     }
 
-    /// Joins vertices: one that is no farther than `tolerance` \[m\] from a vertex before it that is kept is replaced by that
-    /// one. Faces that lose a corner are left out.
+    /// Joins vertices: one that is no farther than `tolerance` \[m\] from a vertex before it that
+    /// is kept is replaced by that one. Faces that lose a corner are left out.
     ///
-    /// Files of single precision, and files of several surfaces that were meshed one by one, have vertices that should be one
-    /// but differ by round-off, about 1e-7 of the distance from the file's origin: then the mesh is
-    /// [not closed](MeshError::NotClosed). A tolerance of ten times that, and no more than a tenth of the shortest edge, is safe.
+    /// Files of single precision, and files of several surfaces that were meshed one by one, have
+    /// vertices that should be one but differ by round-off, about 1e-7 of the distance from the
+    /// file's origin: then the mesh is [not closed](MeshError::NotClosed). A tolerance of ten times
+    /// that, and no more than a tenth of the shortest edge, is safe.
     ///
     /// # Errors
     /// [`MeshError::Tolerance`] unless it is finite and not negative.
@@ -149,6 +166,28 @@ impl TriangleSoup {
     pub fn admission(&self, resolution: Option<f64>) -> AdmissionReport {
         AdmissionReport::of(&self.vertices, &self.faces, resolution)
     }
+}
+
+/// The bytes of a regular file that has no more of them than `limit`. Whether it is one is known
+/// before it is opened, so that pipes without a writer do not block.
+fn bytes_of(path: &Path, limit: u64) -> Result<Vec<u8>, MeshError> {
+    let failed = |e: std::io::Error| MeshError::File { path: path.into(), what: e.to_string() };
+    let about = std::fs::metadata(path).map_err(failed)?;
+    if !about.is_file() {
+        let kind = if about.is_dir() { "a directory" } else { "a device, pipe or socket" };
+        return Err(MeshError::NoFile { path: path.into(), kind });
+    }
+    let mut bytes = Vec::new();
+    if about.len() <= limit {
+        bytes.reserve_exact(about.len() as usize);
+        // Files may grow while they are read.
+        File::open(path).and_then(|file| file.take(limit + 1).read_to_end(&mut bytes)).map_err(failed)?;
+    }
+    let size = about.len().max(bytes.len() as u64);
+    if size > limit {
+        return Err(MeshError::TooLarge { path: path.into(), bytes: size, limit });
+    }
+    Ok(bytes)
 }
 
 impl TryFrom<TriangleSoup> for TriangleMesh {

@@ -1,27 +1,41 @@
 //! The corners of triangles in an STL file.
 use super::MeshError;
-use super::text::{Words, number};
+use super::text::{Format, Words, decoded, number};
 
 /// Bytes before the first triangle of a binary file, and of each triangle.
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
 
-/// Three corners per triangle, in the file's unit. A file is text if it begins with `solid` and is not just as long as a binary
-/// one would be (some programs begin binary files with `solid`, too).
+/// Words of a facet's normal: `normal` and three numbers.
+const NORMAL: usize = 4;
+
+/// Three corners per triangle, in the file's unit. A file is binary if it is as long as its number
+/// of triangles says, or if it is no text: some programs begin binary files with `solid`, too, and
+/// write bytes behind the last triangle.
 pub(crate) fn read(bytes: &[u8]) -> Result<Vec<[f64; 3]>, MeshError> {
-    // Other text is no binary file either.
-    let text = bytes.iter().take(HEADER).all(|b| b.is_ascii_graphic() || b.is_ascii_whitespace())
-        || bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     let triangles = bytes.get(80..HEADER).and_then(|n| n.first_chunk()).map(|n| u32::from_le_bytes(*n));
     let exact = |n: u32| (bytes.len() - HEADER) as u64 == TRIANGLE as u64 * u64::from(n);
+    if let Some(n) = triangles.filter(|n| exact(*n)) {
+        return binary(bytes, n);
+    }
+    let text = decoded(bytes);
     match triangles {
-        Some(n) if exact(n) || !text => binary(bytes, n),
-        _ => Text { words: Words::new("STL", bytes) }.solids(),
+        Some(n) if !is_text(&text) => binary(bytes, n),
+        _ => Text { words: Words::new(Format::Stl, &text) }.solids(),
     }
 }
 
+/// Whether these bytes are an STL file as text, which has no zero byte where binary files have the
+/// number of triangles and the first of them, nor unprintable ones unless in a name behind `solid`.
+fn is_text(bytes: &[u8]) -> bool {
+    let printable = |b: &u8| b.is_ascii_graphic() || b.is_ascii_whitespace();
+    let solid = bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+    let first = &bytes[..bytes.len().min(HEADER + TRIANGLE)];
+    !first.contains(&0) && (solid || first.iter().take(HEADER).all(printable))
+}
+
 fn binary(bytes: &[u8], triangles: u32) -> Result<Vec<[f64; 3]>, MeshError> {
-    // What follows the last triangle does not matter; what the header promises decides over no memory.
+    // Bytes behind the last triangle are skipped. No memory is taken for triangles that are not there.
     let records = bytes[HEADER..].as_chunks::<TRIANGLE>().0;
     let Some(records) = records.get(..triangles as usize) else {
         return Err(MeshError::Truncated { triangles, bytes: bytes.len() });
@@ -68,10 +82,19 @@ impl Text<'_> {
     }
 
     fn facet(&mut self, corners: &mut Vec<[f64; 3]>) -> Result<(), MeshError> {
-        self.expect("normal")?;
-        // Not used: it follows from the corners. Some files have "nan" here.
-        self.numbers()?;
-        self.expect("outer")?;
+        // The normal follows from the corners. Some files have "-nan(ind)" there, or less than three
+        // numbers, or nothing.
+        for _ in 0..=NORMAL {
+            match self.words.next() {
+                Some(word) if word.eq_ignore_ascii_case("outer") => return self.outer_loop(corners),
+                Some(_) => {}
+                None => return Err(self.words.error("the file ends before \"outer\"".into())),
+            }
+        }
+        Err(self.words.error("no \"outer\" behind a facet's normal".into()))
+    }
+
+    fn outer_loop(&mut self, corners: &mut Vec<[f64; 3]>) -> Result<(), MeshError> {
         self.expect("loop")?;
         for _ in 0..3 {
             self.expect("vertex")?;

@@ -119,11 +119,9 @@ fn bad_stl_is_named() {
     };
     assert_eq!(
         line(text.replacen("outer", "inner", 1).as_bytes()),
-        (3, "\"inner\" instead of \"outer\"".into())
+        (3, "no \"outer\" behind a facet's normal".into())
     );
     assert_eq!(line(text.replacen("vertex 0", "vertex 0,", 1).as_bytes()), (4, "\"0,\" is no number".into()));
-    let missing = text.replacen("facet normal 0 0 0", "facet normal 0 0", 1);
-    assert_eq!(line(missing.as_bytes()), (3, "\"outer\" is no number".into()));
     let end = line(&text.as_bytes()[..text.len() - 13]);
     assert!(end.1.contains("the file ends before"), "{end:?}");
     assert!(line(b"v 0 0 0").1.contains("instead of \"solid\""));
@@ -133,6 +131,16 @@ fn bad_stl_is_named() {
         assert!(matches!(TriangleSoup::from_stl_bytes(&binary(&faces), unit), Err(MeshError::Unit { .. })));
         assert!(matches!(TriangleSoup::from_obj_bytes(b"", unit), Err(MeshError::Unit { .. })));
     }
+}
+
+/// Faces and vertices are numbered by 32 bits.
+#[test]
+fn counts_beyond_32_bits_are_named() {
+    let most = u32::MAX as usize;
+    assert_eq!(MeshError::check_count("corners", most), Ok(()));
+    let error = MeshError::check_count("corners", most + 1).unwrap_err();
+    assert_eq!(error, MeshError::TooMany { what: "corners", count: most + 1, most: u32::MAX });
+    assert!(error.to_string().contains("4294967296 corners; no more than 4294967295"), "{error}");
 }
 
 #[test]

@@ -1,0 +1,2 @@
+//! Files of bodies as programs write them.
+mod limits;

@@ -3,6 +3,7 @@ mod admission;
 mod cluster;
 mod crossings;
 mod error;
+mod flat_faces;
 mod meeting;
 mod obj;
 mod polygon;
@@ -57,18 +58,18 @@ pub struct TriangleMesh {
 impl TriangleMesh {
     /// The body between these `vertices` \[m\], three of which make each of the `faces`,
     /// counter-clockwise seen from outside (or all of them clockwise: then they are turned). It is
-    /// moved so that its centre of mass is at the origin.
+    /// moved so that its centre of mass is at the origin. Faces without area between others, which
+    /// close the surface where a vertex lies in the middle of an edge, are flipped with a neighbour.
     ///
     /// # Errors
     /// [`MeshError`], naming the faces: the first fault that an [`AdmissionReport`] would tell.
     pub fn new(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<Self, MeshError> {
-        admission::check(vertices, faces)?;
+        let mut faces = admission::check(vertices, faces)?;
         let used = || faces.as_flattened().iter().map(|v| *v as usize);
         let (low, high) = corners(used().map(|v| Point::from(vertices[v])));
         // About the middle of the box, so that a mesh far from the origin loses no digits.
         let middle = nalgebra::center(&low, &high);
         let mut points: Vec<Vector> = vertices.iter().map(|v| Point::from(*v) - middle).collect();
-        let mut faces = faces.to_vec();
         let mut whole = Moments::of(&points, faces.iter().copied());
         if whole.volume < 0.0 {
             faces.iter_mut().for_each(|f| f.swap(1, 2));

@@ -1,6 +1,7 @@
 //! May triangles be a body?
 use super::crossings::{FaceTree, coincident};
 use super::error::{MeshError, named};
+use super::flat_faces::{FlatFaces, is_flat, relative_height};
 use super::thickness::{Thickness, Thinnest};
 use super::topology::Topology;
 use super::winding::winding_number;
@@ -8,7 +9,7 @@ use interfaces::{Aabb, Point, Vector};
 use std::fmt;
 
 /// No coordinate may be larger \[m\]: its fifth power is finite.
-const LARGEST: f64 = 1e50;
+pub(crate) const LARGEST: f64 = 1e50;
 /// A triangle is a sliver if its least height is a smaller share of its longest edge.
 const SLIVER: f64 = 0.01;
 
@@ -53,6 +54,11 @@ pub struct AdmissionReport {
     pub slivers: usize,
     /// The first eight of them.
     pub sliver_faces: Vec<usize>,
+    /// Number of faces without area whose longest edge has a neighbour to be flipped with, which
+    /// leaves the surface as it is. They are allowed.
+    pub flat: usize,
+    /// The first eight of them.
+    pub flat_faces: Vec<usize>,
     /// The thinnest wall: an estimate from rays, from every vertex and every face's centroid along their normals to the next face
     /// that looks back (within 60°) and is no neighbour. `None` if there is none.
     pub thinnest_wall: Option<Thinnest>,
@@ -91,9 +97,32 @@ impl AdmissionReport {
     }
 }
 
-/// The first thing that keeps triangles from being a body.
-pub(crate) fn check(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<(), MeshError> {
-    Checked::new(vertices, faces, false).report.faults.into_iter().next().map_or(Ok(()), Err)
+/// The faces of a body, those without area flipped away, or the first fault of them.
+pub(crate) fn check(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<Vec<[u32; 3]>, MeshError> {
+    let Checked { report, faces, .. } = Checked::new(vertices, faces, false);
+    report.faults.into_iter().next().map_or(Ok(faces), Err)
+}
+
+/// Faults of numbers: no faces, vertices that do not exist or are nowhere.
+pub(crate) fn number_faults(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Vec<MeshError> {
+    let mut faults = Vec::new();
+    if faces.is_empty() {
+        faults.push(MeshError::Empty { vertices: vertices.len() });
+    }
+    let missing = |face: &[u32; 3]| face.iter().copied().find(|v| *v as usize >= vertices.len());
+    let absent = faces.iter().enumerate().find_map(|(face, corners)| Some((face, missing(corners)?)));
+    if let Some((face, vertex)) = absent {
+        faults.push(MeshError::NoVertex { face, vertex, vertices: vertices.len() });
+    }
+    if let Some(vertex) = vertices.iter().position(|v| !is_place(v)) {
+        faults.push(MeshError::NotFinite { vertex, position: vertices[vertex] });
+    }
+    faults
+}
+
+/// Whether coordinates are finite, and not absurd.
+fn is_place(vertex: &[f64; 3]) -> bool {
+    vertex.iter().all(|x| x.abs() <= LARGEST)
 }
 
 /// A report so far, and what it is made from.
@@ -117,6 +146,8 @@ impl Checked {
             shells: Vec::new(),
             slivers: 0,
             sliver_faces: Vec::new(),
+            flat: 0,
+            flat_faces: Vec::new(),
             thinnest_wall: None,
             thinnest_gap: None,
             resolution: None,
@@ -128,7 +159,9 @@ impl Checked {
             checked.report.faults.push(fault);
             return checked;
         }
-        checked.sort_out(vertices, faces);
+        let flat = FlatFaces::flip(vertices, faces, 0.0);
+        (checked.report.flat, checked.report.flat_faces) = (flat.flipped.len(), named(flat.flipped));
+        checked.sort_out(vertices, &flat.faces);
         if !everything && !checked.report.is_admissible() || checked.faces.is_empty() {
             return checked;
         }
@@ -156,37 +189,23 @@ impl Checked {
 
     /// Keeps the faces that are triangles.
     fn sort_out(&mut self, vertices: &[[f64; 3]], faces: &[[u32; 3]]) {
+        self.report.faults.extend(number_faults(vertices, faces));
         let faults = &mut self.report.faults;
-        if faces.is_empty() {
-            faults.push(MeshError::Empty { vertices: vertices.len() });
-        }
-        let missing = |face: &[u32; 3]| face.iter().copied().find(|v| *v as usize >= vertices.len());
-        let absent = faces.iter().enumerate().find_map(|(face, corners)| Some((face, missing(corners)?)));
-        if let Some((face, vertex)) = absent {
-            faults.push(MeshError::NoVertex { face, vertex, vertices: vertices.len() });
-        }
-        let good = |v: &[f64; 3]| v.iter().all(|x| x.abs() <= LARGEST);
-        if let Some(vertex) = vertices.iter().position(|v| !good(v)) {
-            faults.push(MeshError::NotFinite { vertex, position: vertices[vertex] });
-        }
         let mut flat = Vec::new();
         for (f, face) in faces.iter().enumerate() {
-            if missing(face).is_some() || !face.iter().all(|v| good(&vertices[*v as usize])) {
+            if !face.iter().all(|v| vertices.get(*v as usize).is_some_and(is_place)) {
                 continue;
             }
-            let [a, b, c] = face.map(|v| Vector::from(vertices[v as usize]));
-            let longest = (b - a).norm_squared().max((c - a).norm_squared()).max((c - b).norm_squared());
-            let height = (b - a).cross(&(c - a)).norm() / longest;
-            // Not even for round-off of its longest edge; nothing is, if they are all one point.
-            if height > 1e-14 {
-                self.faces.push(*face);
-                self.number.push(f);
-                if height < SLIVER {
-                    self.report.slivers += 1;
-                    self.report.sliver_faces.push(f);
-                }
-            } else {
+            let corners = face.map(|v| Vector::from(vertices[v as usize]));
+            if is_flat(corners, 0.0) {
                 flat.push(f);
+                continue;
+            }
+            self.faces.push(*face);
+            self.number.push(f);
+            if relative_height(corners) < SLIVER {
+                self.report.slivers += 1;
+                self.report.sliver_faces.push(f);
             }
         }
         self.report.sliver_faces.truncate(8);
@@ -294,6 +313,9 @@ impl fmt::Display for AdmissionReport {
         }
         if self.slivers > 0 {
             writeln!(f, "slivers: {} faces, among them {:?}", self.slivers, self.sliver_faces)?;
+        }
+        if self.flat > 0 {
+            writeln!(f, "without area: {} faces, among them {:?}", self.flat, self.flat_faces)?;
         }
         for fault in &self.faults {
             writeln!(f, "fault: {fault}")?;

@@ -56,7 +56,9 @@ pub use rigid_bodies::{
 };
 pub use rigid_dynamics::RigidDynamics;
 #[cfg(feature = "mesh")]
-pub use shapes::{AdmissionReport, MeshError, Shell, Thinnest, TriangleMesh, TriangleSoup};
+pub use shapes::{
+    AdmissionReport, Changes, MeshError, RepairReport, Shell, Thinnest, TriangleMesh, TriangleSoup,
+};
 pub use shapes::{
     Capsule, ConvexPolyhedron, Cuboid, Cylinder, Disc, Ellipsoid, Facets, Form, HalfSpace, Implicit, Part,
     Polygon, Shape, SmoothConvex, Sphere, Union,

@@ -44,7 +44,9 @@ pub(crate) use polygon::{Piece, nearest_on_edge};
 pub use smooth_convex::SmoothConvex;
 pub use sphere::Sphere;
 #[cfg(feature = "mesh")]
-pub use triangle_mesh::{AdmissionReport, MeshError, Shell, Thinnest, TriangleMesh, TriangleSoup};
+pub use triangle_mesh::{
+    AdmissionReport, Changes, MeshError, RepairReport, Shell, Thinnest, TriangleMesh, TriangleSoup,
+};
 pub use union::{Part, Union};
 
 #[cfg(feature = "mesh")]

@@ -7,6 +7,8 @@ mod flat_faces;
 mod meeting;
 mod obj;
 mod polygon;
+mod repair;
+mod repair_report;
 mod soup;
 mod sphere;
 mod stl;
@@ -16,10 +18,12 @@ mod tests;
 mod text;
 mod thickness;
 mod topology;
+mod welding;
 mod winding;
 
 pub use admission::{AdmissionReport, Shell};
 pub use error::MeshError;
+pub use repair_report::{Changes, RepairReport};
 pub use soup::TriangleSoup;
 pub use thickness::Thinnest;
 
@@ -101,7 +105,8 @@ impl TriangleMesh {
     }
 
     /// The body in an STL file, text or binary, whose unit of length is `unit` \[m\] (1e-3 for
-    /// millimetres). If corners that should be one differ by round-off: [`TriangleSoup::welded`].
+    /// millimetres). If corners that should be one differ by round-off: [`TriangleSoup::welded`]; for
+    /// other faults: [`TriangleSoup::repaired`].
     ///
     /// # Errors
     /// Those of [`new`](Self::new) and [`TriangleSoup::from_stl`].

@@ -103,6 +103,11 @@ pub(crate) fn check(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<Vec<[u3
     report.faults.into_iter().next().map_or(Ok(faces), Err)
 }
 
+/// A report without the thinnest wall and gap.
+pub(crate) fn survey(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> AdmissionReport {
+    Checked::new(vertices, faces, true).report
+}
+
 /// Faults of numbers: no faces, vertices that do not exist or are nowhere.
 pub(crate) fn number_faults(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Vec<MeshError> {
     let mut faults = Vec::new();

@@ -29,13 +29,26 @@ impl FaceTree {
         Self { tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), boxes }
     }
 
-    /// The pairs of faces that have points in common besides corners and edges that they share. No face is degenerate.
+    /// The fault that some faces cross, named by their numbers.
     pub(crate) fn crossings(
         &self,
         faces: &[[u32; 3]],
         number: &[usize],
         at: impl Fn(u32) -> Point,
     ) -> Option<MeshError> {
+        let pairs = self.crossing_pairs(faces, number, at);
+        let (count, all) = (pairs.len(), pairs.len() < MOST);
+        (count > 0).then(|| MeshError::SelfIntersecting { count, all, faces: named(pairs) })
+    }
+
+    /// The pairs of faces, by their numbers, that have points in common other than those of corners
+    /// and edges that they share. No face is degenerate.
+    pub(crate) fn crossing_pairs(
+        &self,
+        faces: &[[u32; 3]],
+        number: &[usize],
+        at: impl Fn(u32) -> Point,
+    ) -> Vec<[usize; 2]> {
         // By a power of two, which commits no rounding.
         let largest = faces.as_flattened().iter().map(|v| at(*v).coords.amax()).fold(0.0, f64::max);
         let scale = 2.0_f64.powi(-largest.max(1e-300).log2().ceil() as i32);
@@ -55,8 +68,7 @@ impl FaceTree {
             }
         }
         pairs.sort_unstable();
-        let (count, all) = (pairs.len(), pairs.len() < MOST);
-        (count > 0).then(|| MeshError::SelfIntersecting { count, all, faces: named(pairs) })
+        pairs
     }
 }
 

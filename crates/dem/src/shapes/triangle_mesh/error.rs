@@ -1,4 +1,5 @@
 //! What can be wrong with a mesh.
+use super::RepairReport;
 use std::path::PathBuf;
 
 /// Why triangles do not make a body. Faces and vertices are counted from 0; no more than eight are named.
@@ -134,6 +135,18 @@ pub enum MeshError {
         /// Its value.
         unit: f64,
     },
+    /// A repaired mesh is no body.
+    #[error(
+        "the mesh cannot be repaired: near ({:.6e}, {:.6e}, {:.6e}) m {fault} (faces and vertices of the mesh after repair: {report})", at[0], at[1], at[2]
+    )]
+    NotRepaired {
+        /// The first fault that is left; its faces and vertices are those of the repaired mesh.
+        fault: Box<MeshError>,
+        /// Place of the first of them \[m\].
+        at: [f64; 3],
+        /// Changes so far.
+        report: Box<RepairReport>,
+    },
     /// The welding tolerance is not a length.
     #[error("the welding tolerance is {tolerance} m; give a finite length, 0 or more")]
     Tolerance {
@@ -201,6 +214,33 @@ pub enum MeshError {
 }
 
 impl MeshError {
+    /// Whether [`TriangleSoup::repaired`](crate::TriangleSoup::repaired) may mend it.
+    pub fn is_repairable(&self) -> bool {
+        match self {
+            Self::Degenerate { .. }
+            | Self::NotClosed { .. }
+            | Self::Inconsistent { .. }
+            | Self::NotManifold { .. }
+            | Self::Flat { .. }
+            | Self::Duplicate { .. }
+            | Self::Pinched { .. }
+            | Self::Coincident { .. }
+            | Self::SelfIntersecting { .. }
+            | Self::InsideOut { .. } => true,
+            Self::Empty { .. }
+            | Self::NoVertex { .. }
+            | Self::NotFinite { .. }
+            | Self::Unit { .. }
+            | Self::NotRepaired { .. }
+            | Self::Tolerance { .. }
+            | Self::Text { .. }
+            | Self::Truncated { .. }
+            | Self::TooMany { .. }
+            | Self::NoFile { .. }
+            | Self::TooLarge { .. }
+            | Self::File { .. } => false,
+        }
+    }
     /// An error unless `count` fits in 32 bits.
     pub(crate) fn check_count(what: &'static str, count: usize) -> Result<(), Self> {
         if u32::try_from(count).is_err() {

@@ -1,5 +1,6 @@
 //! Triangles as a file has them.
-use super::{AdmissionReport, MeshError, TriangleMesh, obj, stl};
+use super::welding::{Welded, is_collapsed};
+use super::{AdmissionReport, MeshError, RepairReport, TriangleMesh, obj, repair, stl};
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::Read;
@@ -126,40 +127,35 @@ impl TriangleSoup {
         if !(tolerance.is_finite() && tolerance >= 0.0) {
             return Err(MeshError::Tolerance { tolerance });
         }
-        // Boxes wider than the tolerance, and wide enough that they can be numbered: a vertex's like is in its own box or in one
-        // beside it.
-        let largest = self
-            .vertices
-            .as_flattened()
-            .iter()
-            .fold(0.0, |m: f64, x| if x.is_finite() { m.max(x.abs()) } else { m });
-        let width = (1.001 * tolerance).max(largest * 1e-15).max(f64::MIN_POSITIVE);
-        let mut boxes: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
-        let mut kept: Vec<[f64; 3]> = Vec::new();
-        let mut number = Vec::with_capacity(self.vertices.len());
-        for v in &self.vertices {
-            let home = v.map(|x| (x / width).floor() as i64);
-            let near = |w: &u32| {
-                let w = kept[*w as usize];
-                (0..3).map(|a| (w[a] - v[a]).powi(2)).sum::<f64>() <= tolerance * tolerance
-            };
-            let around = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9]);
-            let around = around.map(|i| [0, 1, 2].map(|a| home[a].saturating_add(i[a] - 1)));
-            let like = around.filter_map(|b| boxes.get(&b)).flatten().copied().filter(near).min();
-            number.push(like.unwrap_or_else(|| {
-                kept.push(*v);
-                boxes.entry(home).or_default().push(kept.len() as u32 - 1);
-                kept.len() as u32 - 1
-            }));
-        }
-        // Out of range is left so, to be named later.
-        let last = number.len() as u32;
-        self.faces
-            .iter_mut()
-            .flatten()
-            .for_each(|v| *v = number.get(*v as usize).copied().unwrap_or((*v).max(last)));
-        self.faces.retain(|[a, b, c]| a != b && b != c && c != a);
-        Ok(Self { vertices: kept, faces: self.faces })
+        let welded = Welded::new(&self.vertices, tolerance);
+        self.faces = welded.faces(&self.faces).filter(|f| !is_collapsed(*f)).collect();
+        Ok(Self { vertices: welded.kept, faces: self.faces })
+    }
+
+    /// Repairs what a file has wrong, and reports everything that was done, in this order (vertices
+    /// of no face are left out):
+    ///
+    /// 1. Vertices no farther apart than `weld` \[m\] are joined. By default those that are equal
+    ///    digit by digit, and if the surface is open then, those that differ by round-off of single
+    ///    precision, 2⁻²³ of the largest coordinate. Faces that lose a corner are left out.
+    /// 2. Of faces with the same three corners one is kept. Connected ones that divide the inside
+    ///    (every edge of theirs belongs to an even number of other faces) are all left out.
+    /// 3. Faces with a vertex of open edges on an open edge of theirs, within the tolerance, are
+    ///    divided there.
+    /// 4. Faces are turned to agree with their neighbours, fewer than half of each connected part.
+    /// 5. Faces without area, or thinner than the tolerance, are flipped with the neighbour across
+    ///    their longest edge, which leaves the surface as it is, and closed.
+    /// 6. Closed parts that cross, overlap or share edges are united: the surface of all places
+    ///    around which they go once or more, cut by exact arithmetic and rounded to the nearest
+    ///    numbers.
+    /// 7. Closed parts are turned outward, those within an odd number of others inward (cavities).
+    ///
+    /// # Errors
+    /// [`MeshError::Tolerance`] unless `weld` is finite and not negative.
+    /// [`MeshError::NotRepaired`] with the fault that is left and its place, if the result is no
+    /// body: holes are not filled, parts that touch in a vertex or along an edge not separated.
+    pub fn repaired(self, weld: Option<f64>) -> Result<(Self, RepairReport), MeshError> {
+        repair::repaired(self, weld)
     }
 
     /// May they be a body? [`AdmissionReport::of`].

@@ -177,6 +177,7 @@ impl Setup {
             ));
         }
         out.extend_from_slice(&self.doubtful_inlets);
+        out.extend_from_slice(&self.mended);
         self.doubt_measures(&mut out);
         self.doubt_contacts(&mut out);
         if self.fluid.is_some() {

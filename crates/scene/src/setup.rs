@@ -33,6 +33,7 @@ use crate::schema;
 use coupling::WeightBalance;
 use fv_mesh::{Axis, Fluid, Side, Sides};
 use interfaces::{Lattice, Point, Vector};
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use time::Span;
 
@@ -72,6 +73,8 @@ pub(crate) struct Setup {
     pub(crate) unused: Vec<String>,
     /// Warnings about the inlets.
     pub(crate) doubtful_inlets: Vec<String>,
+    /// Changes of mesh files, one entry per file and change.
+    pub(crate) mended: Vec<String>,
     /// All formulas of the file, to be asked whether they had a finite value wherever they were needed.
     pub(crate) formulas: Vec<Formula>,
 }
@@ -81,11 +84,20 @@ pub(crate) struct Context<'a> {
     /// Folder of the file: paths in it begin there.
     pub(crate) folder: &'a Path,
     pub(crate) dim: usize,
+    /// Changes of files, for warnings.
+    notes: RefCell<Vec<(String, String)>>,
 }
 
 impl Context<'_> {
     pub(crate) fn path(&self, text: &str) -> PathBuf {
         self.folder.join(text)
+    }
+    /// Keeps the first note of each key.
+    pub(crate) fn note(&self, key: String, text: String) {
+        let mut notes = self.notes.borrow_mut();
+        if notes.iter().all(|(known, _)| *known != key) {
+            notes.push((key, text));
+        }
     }
 }
 
@@ -104,7 +116,7 @@ impl Setup {
     fn read(root: &Reader<'_>, folder: &Path, name: String) -> Result<Self, Problem> {
         let axes = grid::read(root, folder)?;
         let dim = axes.len();
-        let context = Context { folder, dim };
+        let context = Context { folder, dim, notes: RefCell::default() };
         let sides = sides::read(root, &context)?;
         let fluid = flow::fluid(root)?;
         let turbulence = physics::turbulence(root, dim)?;
@@ -157,6 +169,7 @@ impl Setup {
             models: Vec::new(),
             unused: steady::unused(root, flow.algorithm),
             doubtful_inlets: Vec::new(),
+            mended: Vec::new(),
             formulas: Vec::new(),
             axes,
             sides,
@@ -168,6 +181,7 @@ impl Setup {
         setup.models = models::read(root, &setup.axes, &setup.bodies, (snapshots, &fields))?;
         setup.agrees(root)?;
         setup.doubtful_inlets = inlets::agrees(root, &setup.axes, &setup.sides, (!steady).then_some(end))?;
+        setup.mended = context.notes.take().into_iter().map(|(_, text)| text).collect();
         Ok(setup)
     }
 

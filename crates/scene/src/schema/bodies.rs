@@ -132,6 +132,20 @@ pub(super) static SHAPES: [(&str, &Table); 12] = [
             keys: &[
                 required("file", Kind::File, "The file, `.stl` or `.obj`.", "\"rock.stl\""),
                 optional("unit", LENGTH, "1", "Length that one unit of the file stands for.", "1e-3"),
+                optional(
+                    "weld",
+                    LENGTH,
+                    "0; with `repair` round-off of single precision if the surface is open",
+                    "Vertices no farther apart are joined.",
+                    "1e-7",
+                ),
+                optional(
+                    "repair",
+                    Kind::Flag,
+                    "false",
+                    "Repair the file: join vertices, leave out copies of faces, divide faces at vertices on open edges, turn faces and closed parts outward (cavities inward), flip faces without area, unite parts that cross. A warning lists what was done; what is no body then is refused.",
+                    "true",
+                ),
             ],
         },
     ),

@@ -4,8 +4,8 @@ use crate::expression::Expression;
 use crate::problem::Problem;
 use crate::reader::Reader;
 use dem::{
-    Capsule, ConvexPolyhedron, Cuboid, Cylinder, Disc, Ellipsoid, Implicit, Part, Polygon, Shape, Sphere,
-    TriangleMesh, Union,
+    Capsule, ConvexPolyhedron, Cuboid, Cylinder, Disc, Ellipsoid, Implicit, MeshError, Part, Polygon, Shape,
+    Sphere, TriangleMesh, TriangleSoup, Union,
 };
 use interfaces::{Aabb, Point, Pose, Rotation, Solid, Vector};
 use nalgebra::Unit;
@@ -168,10 +168,26 @@ pub(super) fn shape(
             let unit = factor * t.number("unit").unwrap_or(1.0);
             let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
             let told = |e: &dyn std::fmt::Display| t.fail("file", format!("{}: {e}", path.display()));
-            match extension.as_deref() {
-                Some("stl") => arc(TriangleMesh::from_stl(&path, unit), told),
-                Some("obj") => arc(TriangleMesh::from_obj(&path, unit), told),
-                _ => Err(told(&"which format? The name has to end in .stl or .obj")),
+            let repair = t.flag("repair").unwrap_or(false);
+            let soup = match extension.as_deref() {
+                Some("stl") => TriangleSoup::from_stl(&path, unit),
+                Some("obj") => TriangleSoup::from_obj(&path, unit),
+                _ => return Err(told(&"which format? The name has to end in .stl or .obj")),
+            };
+            let weld = t.number("weld");
+            let scaled = weld.map(|tolerance| factor * tolerance);
+            let mended = soup.and_then(|soup| mended(soup, scaled, repair)).map_err(|e| told(&e))?;
+            if let Some(changes) = mended.changes {
+                // Once, whatever the sizes.
+                let key = format!("{} {weld:?} {repair}", path.display());
+                context.note(key, format!("{}: {changes}", path.display()));
+            }
+            match TriangleMesh::try_from(mended.soup) {
+                Ok(mesh) => Ok(Arc::new(mesh)),
+                Err(e) if e.is_repairable() => {
+                    Err(told(&format!("{e}; repair = true mends some such faults")))
+                }
+                Err(e) => Err(told(&e)),
             }
         }
         "formula" => Ok(Arc::new(formula(body, key, &t, context, factor)?)),
@@ -184,6 +200,28 @@ pub(super) fn shape(
             arc(Union::new(t.tables("parts").iter().map(part).collect::<Result<_, _>>()?), fail)
         }
     }
+}
+
+/// A mesh file's triangles and what was done to them.
+struct Mended {
+    soup: TriangleSoup,
+    changes: Option<String>,
+}
+
+/// Triangles with vertices joined up to `weld` \[m\], and repaired, if either is requested.
+fn mended(soup: TriangleSoup, weld: Option<f64>, repair: bool) -> Result<Mended, MeshError> {
+    if repair {
+        let (soup, report) = soup.repaired(weld)?;
+        return Ok(Mended { soup, changes: (!report.is_empty()).then(|| format!("repaired: {report}")) });
+    }
+    let Some(tolerance) = weld else { return Ok(Mended { soup, changes: None }) };
+    let before = [soup.vertices.len(), soup.faces.len()];
+    let soup = soup.welded(tolerance)?;
+    let [joined, lost] = [before[0] - soup.vertices.len(), before[1] - soup.faces.len()];
+    let changes = format!(
+        "{joined} vertices up to {tolerance:.3e} m from others were joined, and {lost} faces lost by it"
+    );
+    Ok(Mended { soup, changes: (joined > 0).then_some(changes) })
 }
 
 /// How the body in `t` is turned.

@@ -5,6 +5,7 @@ mod exits;
 mod files;
 mod heat;
 mod ledger;
+mod mesh_files;
 mod models;
 mod numbers;
 mod physics;

@@ -1,11 +1,14 @@
 //! Bodies given as closed triangle meshes.
 mod admission;
+mod box_tree;
 mod cluster;
 mod crossings;
 mod error;
 mod flat_faces;
 mod meeting;
+mod nesting;
 mod obj;
+mod oriented_box;
 mod polygon;
 mod repair;
 mod repair_report;

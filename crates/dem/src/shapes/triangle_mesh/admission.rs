@@ -2,9 +2,9 @@
 use super::crossings::{FaceTree, coincident};
 use super::error::{MeshError, named};
 use super::flat_faces::{FlatFaces, is_flat, relative_height};
+use super::nesting;
 use super::thickness::{Thickness, Thinnest};
 use super::topology::Topology;
-use super::winding::winding_number;
 use interfaces::{Aabb, Point, Vector};
 use std::fmt;
 
@@ -178,17 +178,17 @@ impl Checked {
         if !everything && !checked.report.is_admissible() {
             return checked;
         }
-        let mut same = coincident(&checked.faces, at);
+        let mut same = coincident(&checked.faces, vertices);
         if !same.is_empty() {
             same.sort_unstable();
             checked.report.faults.push(MeshError::Coincident { count: same.len(), vertices: named(same) });
         }
-        let tree = FaceTree::new(&checked.faces, at);
-        checked.report.faults.extend(tree.crossings(&checked.faces, &checked.number, at));
-        checked.tree = Some(tree);
+        let tree = FaceTree::new(&checked.faces, vertices);
+        checked.report.faults.extend(tree.crossings(&checked.number));
         if everything || checked.report.is_admissible() {
-            checked.nest(at, &topology);
+            checked.nest(nesting::depths(&topology.shells, &tree, vertices));
         }
+        checked.tree = Some(tree);
         checked
     }
 
@@ -244,25 +244,8 @@ impl Checked {
         }
     }
 
-    /// Which shell is in which, and are they turned as they should be?
-    fn nest(&mut self, at: impl Fn(u32) -> Point + Copy, topology: &Topology) {
-        let n = topology.shells.len();
-        let around = |shell: &Vec<u32>| {
-            let corners = shell.iter().flat_map(|f| self.faces[*f as usize]).map(at);
-            let start = (Point::from([f64::INFINITY; 3]), Point::from([f64::NEG_INFINITY; 3]));
-            corners.fold(start, |(low, high), c| (low.inf(&c), high.sup(&c)))
-        };
-        let boxes: Vec<(Point, Point)> = topology.shells.iter().map(around).collect();
-        let depth = |i: usize| {
-            let x = at(self.faces[topology.shells[i][0] as usize][0]);
-            let may_hold = |j: &usize| *j != i && boxes[*j].0 <= x && x <= boxes[*j].1;
-            let holds = |j: &usize| {
-                let own = topology.shells[*j].iter().map(|f| &self.faces[*f as usize]);
-                winding_number(own, at, x).abs() > 0.5
-            };
-            (0..n).filter(|j| may_hold(j) && holds(j)).count()
-        };
-        let depths: Vec<usize> = (0..n).map(depth).collect();
+    /// Whether shells at these depths are turned as they should be.
+    fn nest(&mut self, depths: Vec<usize>) {
         let whole = self.report.volume;
         let mut wrong = Vec::new();
         for (shell, depth) in self.report.shells.iter_mut().zip(depths) {

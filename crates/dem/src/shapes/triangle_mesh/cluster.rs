@@ -1,4 +1,5 @@
 //! A few neighbouring triangles and a box around them.
+use super::oriented_box::OrientedBox;
 use crate::shapes::triangle::{Part, Triangle};
 use interfaces::{Point, Vector};
 use std::ops::Range;
@@ -10,10 +11,7 @@ const MOST: usize = 8;
 /// nearly theirs: few clusters have to be opened to find the nearest of all triangles.
 #[derive(Clone, Debug)]
 pub(crate) struct Cluster {
-    /// Of the box.
-    axes: [Vector; 3],
-    middle: Vector,
-    half: Vector,
+    around: OrientedBox,
     pub(crate) faces: Range<u32>,
 }
 
@@ -30,29 +28,14 @@ impl Cluster {
         let far = |a: &Vector, b: &Vector| a.norm_squared().total_cmp(&b.norm_squared());
         let along = corners().map(|c| level(c - start)).max_by(far).and_then(|v| v.try_normalize(0.0));
         let along = along.unwrap_or_else(|| level(Vector::x()));
-        let axes = [along, normal.cross(&along), normal];
-        let turned = || corners().map(|c| Vector::from(axes.map(|a| a.dot(&c))));
-        let low = turned().fold(Vector::repeat(f64::INFINITY), |low, c| low.inf(&c));
-        let high = turned().fold(Vector::repeat(f64::NEG_INFINITY), |high, c| high.sup(&c));
-        // A little wider, for round-off: the distance to the box must not be more than theirs.
-        let half =
-            (high - low) * (0.5 * (1.0 + 1e-12)) + Vector::repeat(1e-14 * low.abs().sup(&high.abs()).max());
-        Self { axes, middle: 0.5 * (low + high), half, faces }
-    }
-
-    /// The square of the distance of `x` from the box, which is not more than that from any of its triangles.
-    #[inline]
-    fn least(&self, x: Point) -> f64 {
-        let turned = Vector::from(self.axes.map(|a| a.dot(&x.coords)));
-        let gap = (turned - self.middle).abs() - self.half;
-        gap.map(|g| g.max(0.0)).norm_squared()
+        Self { around: OrientedBox::along([along, normal.cross(&along), normal], corners()), faces }
     }
 
     /// The triangle nearest to `x`, if any is nearer than the root of `most`: the distance squared, and the
     /// triangle's number, x − point and where the point lies.
     #[inline]
     pub(crate) fn nearest(&self, triangles: &[Triangle], x: Point, most: f64) -> Option<(f64, Found)> {
-        if self.least(x) >= most {
+        if self.around.square_distance(x.coords) >= most {
             return None;
         }
         let mut best = (most, None);

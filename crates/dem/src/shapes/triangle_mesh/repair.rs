@@ -198,8 +198,7 @@ impl Repair {
         let sheets = Sheets::new(faces, &edges);
         let number: Vec<usize> = (0..faces.len()).filter(|f| !is_flat(self.corners(*f), 0.0)).collect();
         let solid: Vec<[u32; 3]> = number.iter().map(|f| faces[*f]).collect();
-        let at = |v: u32| Point::from(self.soup.vertices[v as usize]);
-        let pairs = FaceTree::new(&solid, at).crossing_pairs(&solid, &number, at);
+        let pairs = FaceTree::new(&solid, &self.soup.vertices).crossing_pairs(&number);
         // Parts that are united, in groups.
         let mut groups = Sets::new(sheets.open.len());
         let mut affected = vec![false; sheets.open.len()];

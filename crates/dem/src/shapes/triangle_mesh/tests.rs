@@ -1,5 +1,6 @@
 //! Mass, distances and signs of meshes; what is refused.
 mod admission;
+mod cost;
 mod crossings;
 mod reading;
 mod signs;

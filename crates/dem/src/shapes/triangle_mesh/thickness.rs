@@ -2,7 +2,6 @@
 use super::crossings::FaceTree;
 use crate::shapes::triangle::Triangle;
 use interfaces::{Point, Vector};
-use parry3d::partitioning::BvhNode;
 
 /// Least cosine between the way across and the other face's normal: 60°.
 const FACING: f64 = 0.5;
@@ -31,6 +30,22 @@ struct Look<'a> {
     through: f64,
 }
 
+/// Faces below a node of a tree.
+#[derive(Clone, Copy)]
+struct Below {
+    /// Least and largest components of their normals.
+    normals: [Vector; 2],
+    /// A vertex that all have.
+    hub: Option<u32>,
+}
+
+impl Below {
+    fn join(self, other: Self) -> Self {
+        let [[a, b], [c, d]] = [self.normals, other.normals];
+        Self { normals: [a.inf(&c), b.sup(&d)], hub: self.hub.filter(|_| self.hub == other.hub) }
+    }
+}
+
 /// Faces as the search needs them.
 pub(crate) struct Thickness<'a> {
     pub(crate) faces: &'a [[u32; 3]],
@@ -38,6 +53,8 @@ pub(crate) struct Thickness<'a> {
     pub(crate) tree: &'a FaceTree,
     triangles: Vec<Triangle>,
     normals: Vec<Vector>,
+    /// Summaries of all nodes of the tree.
+    below: Vec<Below>,
 }
 
 impl<'a> Thickness<'a> {
@@ -56,9 +73,11 @@ impl<'a> Thickness<'a> {
                 Triangle::new(a, b, c)
             })
             .collect();
-        let normals =
+        let normals: Vec<Vector> =
             triangles.iter().map(|t| t.cross().try_normalize(0.0).unwrap_or_default() * outward).collect();
-        Self { faces, number, tree, triangles, normals }
+        let own = |f: u32| Below { normals: [normals[f as usize]; 2], hub: Some(tree.hubs[f as usize]) };
+        let below = tree.tree.sums(own, Below::join);
+        Self { faces, number, tree, triangles, normals, below }
     }
 
     /// The thinnest wall and the thinnest gap. From every vertex and every centroid rays go inward and outward along the normal
@@ -93,10 +112,12 @@ impl<'a> Thickness<'a> {
         for (best, through) in best.iter_mut().zip([1.0, -1.0]) {
             let look = Look { from: from.into(), along: -through * normal, own, through };
             let most = best.map_or(f64::INFINITY, |b: Thinnest| b.thickness);
-            let found = self.tree.tree.find_best(
+            let found = self.tree.tree.first_ahead(
+                from,
+                look.along,
                 most,
-                |node, _| look.least(node),
-                |g, _| {
+                |n| look.may_face(&self.below[n]),
+                |g| {
                     look.facing(&self.triangles[g as usize], self.normals[g as usize], self.faces[g as usize])
                 },
             );
@@ -109,22 +130,14 @@ impl<'a> Thickness<'a> {
 }
 
 impl Look<'_> {
-    /// How far ahead a box is; infinite if it is not.
-    fn least(&self, node: &BvhNode) -> f64 {
-        let (low, high) = (node.mins(), node.maxs());
-        let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
-        for a in 0..3 {
-            // Infinities of the right sign where the ray runs along the box; beside it there is nothing.
-            let [t, u] = [low[a], high[a]].map(|side| (side - self.from[a]) / self.along[a]);
-            if t.is_nan() || u.is_nan() {
-                continue;
-            }
-            (enter, leave) = (enter.max(t.min(u)), leave.min(t.max(u)));
-        }
-        // A little wider, for round-off.
-        if enter <= leave * (1.0 + 1e-12) { enter * (1.0 - 1e-12) } else { f64::MAX }
+    /// Whether one of these faces may be opposite.
+    fn may_face(&self, below: &Below) -> bool {
+        let along = self.through * self.along;
+        let [least, most] = below.normals;
+        let facing: f64 = (0..3).map(|a| (along[a] * least[a]).max(along[a] * most[a])).sum();
+        // But for round-off.
+        facing >= FACING - 1e-12 && !below.hub.is_some_and(|v| self.own.contains(&v))
     }
-
     /// How far the triangle is, if the ray meets it and it is opposite.
     fn facing(&self, triangle: &Triangle, normal: Vector, vertices: [u32; 3]) -> Option<f64> {
         let opposite = self.through * normal.dot(&self.along) >= FACING

@@ -1,0 +1,64 @@
+//! Overlaps of fifteen kinds of bodies keep the errors that the documentation states.
+#[path = "../../src/draw.rs"]
+#[allow(dead_code)]
+mod draw;
+mod kinds;
+mod poses;
+mod quadrature;
+mod reference;
+
+use dem::OverlapSolver;
+use kinds::KINDS;
+use std::collections::HashMap;
+
+/// Poses per pair of kinds.
+const POSES: u64 = 12;
+/// Accuracy of references, as a share of the smaller body: where one body has flat faces, and where
+/// none has.
+const REFERENCE: [f64; 2] = [1e-7, 1e-6];
+
+/// Largest errors by pairs of words, as the page has them.
+fn documented() -> HashMap<[&'static str; 2], f64> {
+    let page = include_str!("../../../../docs/overlaps.md");
+    let rows = page.lines().filter_map(|line| {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        let (first, second) = cells.get(1)?.split_once(", ")?;
+        Some(([first, second], cells.get(2)?.parse().ok()?))
+    });
+    rows.collect()
+}
+
+/// Word of a kind in the table.
+fn word(kind: usize) -> &'static str {
+    match KINDS[kind] {
+        "sphere" => "sphere",
+        "ellipsoid" => "ellipsoid",
+        "capsule" => "capsule",
+        "cylinder" => "cylinder",
+        _ => "flat",
+    }
+}
+
+#[test]
+fn every_pair_keeps_its_documented_error() {
+    let table = documented();
+    assert_eq!(table.len(), 15);
+    let mut solver = OverlapSolver::new();
+    let (mut met, mut faults) = (0, Vec::new());
+    for (i, j) in (0..KINDS.len()).flat_map(|i| (i..KINDS.len()).map(move |j| (i, j))) {
+        let (p, q) = (word(i), word(j));
+        let error = *table.get(&[p, q]).or_else(|| table.get(&[q, p])).expect("a row");
+        let reference = REFERENCE[usize::from(p != "flat" && q != "flat")];
+        for case in 0..POSES {
+            let (a, b, at_a, at_b) = poses::pose(i, j, case);
+            let m = poses::measure(&mut solver, (&a, &at_a), (&b, &at_b));
+            met += usize::from(m.volume > 0.0);
+            let sound = m.of_body <= error.max(reference) && m.gradient <= error;
+            if !sound {
+                faults.push(format!("{} and {}, case {case}: {m:?}", KINDS[i], KINDS[j]));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{} faults:\n{}", faults.len(), faults.join("\n"));
+    assert!(met > 700, "{met} pairs met");
+}

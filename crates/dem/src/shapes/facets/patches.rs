@@ -188,16 +188,20 @@ const DIRECTIONS: usize = 16;
 /// Three directions: those along and across the smallest rectangle within the surface, and the mean normal.
 fn axes(triangles: impl Iterator<Item = [Vector; 3]> + Clone) -> [Vector; 3] {
     let [u, v, normal] = within(mean_normal(triangles.clone()));
+    let places: Vec<[f64; 2]> = triangles.flatten().map(|x| [x.dot(&u), x.dot(&v)]).collect();
     let mut best = (f64::INFINITY, [u, v]);
     for k in 0..DIRECTIONS {
         let (sin, cos) = (std::f64::consts::FRAC_PI_2 * k as f64 / DIRECTIONS as f64).sin_cos();
-        let axes = [cos * u + sin * v, cos * v - sin * u];
-        let [length, width] = axes.each_ref().map(|axis| {
-            let [low, high] = reach(triangles.clone().flatten(), axis);
-            high - low
-        });
-        if length * width < best.0 {
-            best = (length * width, axes);
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for [x, y] in &places {
+            for (i, x) in [cos * x + sin * y, cos * y - sin * x].into_iter().enumerate() {
+                low[i] = if x < low[i] { x } else { low[i] };
+                high[i] = if x > high[i] { x } else { high[i] };
+            }
+        }
+        let area = (high[0] - low[0]) * (high[1] - low[1]);
+        if area < best.0 {
+            best = (area, [cos * u + sin * v, cos * v - sin * u]);
         }
     }
     let [long, wide] = best.1;

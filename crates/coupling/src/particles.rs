@@ -7,6 +7,7 @@ use fv_mesh::CartesianGrid;
 use ibm::{Forcing, Layer};
 use interfaces::{
     Bodies, BodyId, Checkpoint, Dynamics, Renumbering, RestartError, Twist, Vector, VelocityField, Wrench,
+    is_longer,
 };
 use nalgebra::{Matrix6, Vector6};
 
@@ -563,9 +564,9 @@ fn fit<const D: usize, B: Bodies>(
         let bounds = bodies.aabb(body);
         for axis in 0..D {
             let (size, length) = (bounds.extent()[axis], grid.lengths()[axis]);
-            // As long as a period, a body closes on itself; shapes are known in single precision.
+            // As long as a period, a body closes on itself.
             let most = if periodic(axis) { length + grid.spacing()[axis] } else { length };
-            if size > most * (1.0 + f64::from(f32::EPSILON)) {
+            if is_longer(size, most) {
                 return Err(CouplingError::TooLarge { body, axis, size, length });
             }
         }

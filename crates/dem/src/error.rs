@@ -155,7 +155,7 @@ pub enum DemError {
         /// The longest sub-step \[s\].
         longest: f64,
     },
-    /// A body is too large for its periodic box.
+    /// A body is longer than a period by more than [`interfaces::LENGTH_PRECISION`] of it.
     #[error(
         "body {} is {size:.3e} m long along axis {axis}, more than the period of {period:.3e} m, so it would overlap itself: take a smaller body or a longer period", body.0
     )]

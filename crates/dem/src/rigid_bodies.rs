@@ -25,6 +25,7 @@ use body::{Body, Constants, Kind, Loads, is_finite, shared};
 use contacts::{Chunk, Patch, Wall, wall_of};
 use interfaces::{
     Aabb, Bodies, BodyId, Freedom, Inertia, Kinematics, Periods, Point, Pose, Solid, Twist, Vector, Wrench,
+    is_longer,
 };
 use meeting::shift;
 use near::Listed;
@@ -233,7 +234,7 @@ impl<L: ContactLaw> RigidBodies<L> {
         for axis in 0..3 {
             // Contact with its own image does nothing to a body that is held.
             if let Some(period) = self.periods.along(axis)
-                && extent[axis] > period
+                && is_longer(extent[axis], period)
                 && constants.movable()
             {
                 return Err(DemError::Period { body, axis, size: extent[axis], period });

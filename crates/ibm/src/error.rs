@@ -49,7 +49,8 @@ pub enum IbmError {
         /// The spacing \[m\].
         spacing: f64,
     },
-    /// A body is longer than the period of the grid by more than a cell.
+    /// A body is longer than the period of the grid by more than a cell (and
+    /// [`interfaces::LENGTH_PRECISION`] of both).
     #[error(
         "body {} is {size:.3e} m long along axis {axis}, longer than the period of {period:.3e} m by more than a cell: make the body smaller or the box larger", body.0
     )]

@@ -1,7 +1,7 @@
 //! The λ field, body by body.
 use crate::IbmError;
 use crate::projection::Projector;
-use interfaces::{Aabb, Bodies, BodyId, Lattice, Pose, Renumbering, Vector};
+use interfaces::{Aabb, Bodies, BodyId, Lattice, Pose, Renumbering, Vector, is_longer};
 
 /// A node with something solid in its control volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -206,7 +206,7 @@ pub(crate) fn check<B: Bodies + ?Sized>(lattice: &Lattice, bodies: &B, body: Bod
     let extent = bodies.aabb(body).extent();
     for axis in 0..lattice.dim {
         if let Some(period) = lattice.axes[axis].period()
-            && extent[axis] > period + widest(lattice, axis)
+            && is_longer(extent[axis], period + widest(lattice, axis))
         {
             return Err(IbmError::TooLarge { body, axis, size: extent[axis], period });
         }

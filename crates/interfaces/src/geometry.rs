@@ -135,6 +135,25 @@ impl Aabb {
     }
 }
 
+/// Relative precision of the lengths of bodies, 4.8e-7. Coordinates of mesh files are in single
+/// precision, each rounded by up to ε/2 of itself (ε = 2⁻²³), so an extent is off by up to ε times
+/// the farthest coordinate: 4 ε of the extent for a body that is up to four times as far from the
+/// file's origin as it is long.
+pub const LENGTH_PRECISION: f64 = 4.0 * f32::EPSILON as f64;
+
+/// Whether a `size` \[m\] is more than `room` \[m\], a period or the length of a box, by more than
+/// [`LENGTH_PRECISION`] of that.
+///
+/// ```
+/// use interfaces::is_longer;
+/// // Half a metre and its nearest number in single precision that is larger.
+/// assert!(!is_longer(f64::from(0.5_f32.next_up()), 0.5));
+/// assert!(is_longer(0.5 * (1.0 + 1e-6), 0.5));
+/// ```
+pub fn is_longer(size: f64, room: f64) -> bool {
+    size > room * (1.0 + LENGTH_PRECISION)
+}
+
 /// The periods of space: `None` where a direction does not repeat.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Periods {

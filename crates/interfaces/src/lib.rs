@@ -39,7 +39,9 @@ pub use bodies::{Bodies, BodyId, Dynamics, Freedom, Inertia, Kinematics, Load};
 pub use cut_cells::{CutCells, OpenFace, WallPiece};
 pub use cut_walls::{CutComponent, CutFace, CutNode, CutWalls, Link, SolidPoint};
 pub use film::UnresolvedFilm;
-pub use geometry::{Aabb, Periods, Point, Pose, Rotation, Twist, Vector, Wrench};
+pub use geometry::{
+    Aabb, LENGTH_PRECISION, Periods, Point, Pose, Rotation, Twist, Vector, Wrench, is_longer,
+};
 pub use lattice::{Lattice, VelocityField};
 pub use law_of_the_wall::LawOfTheWall;
 pub use mesh::{Cell, MeshGeometry};

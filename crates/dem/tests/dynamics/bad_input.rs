@@ -60,6 +60,19 @@ fn materials() {
     }
 }
 
+/// A wall from a file in single precision that is as long as the period is longer than it by 1e-8
+/// m, and is taken.
+#[test]
+fn bodies_may_be_as_long_as_the_period() {
+    let with = |length: f64| {
+        let mut bodies = RigidBodies::new(Periods::new([Some(0.3), None, None]));
+        let wall = Cuboid::new([length, 0.1, 0.1]).unwrap();
+        bodies.add(wall, elastic(), Pose::at([0.0; 3]), Twist::default(), Freedom::FREE)
+    };
+    assert!(f64::from(0.3_f32) > 0.3 + 1e-8 && with(f64::from(0.3_f32)).is_ok());
+    assert!(matches!(with(0.3 * (1.0 + 7e-7)), Err(DemError::Period { axis: 0, .. })));
+}
+
 #[test]
 fn starts() {
     let (still, free) = (Twist::default(), Periods::default());

@@ -22,7 +22,7 @@ use super::SmoothForcing;
 use super::markers::Markers;
 use crate::crowd::Crowd;
 use crate::neighbour::Neighbour;
-use interfaces::{Bodies, BodyId, Pose, VelocityField};
+use interfaces::{Bodies, BodyId, LENGTH_PRECISION, Pose, VelocityField};
 
 /// Least number of overlapping sheets that is relaxed. Single convex bodies have up to 1.3 (a cube
 /// of four cells at its corners), two coincident sheets 2. Moved by a third down, cubes are relaxed
@@ -36,9 +36,6 @@ const SHEETS: f64 = 1.5;
 /// (`tabulated_films_are_those_of_bodies_in_turn`); up, no bodies are
 /// (`sheets_of_several_bodies_are_forced_at_once`).
 const JOINT_SHEETS: f64 = 1.6;
-
-/// Precision of coordinates in parts of the period: files of shapes hold single-precision numbers.
-const PRECISION: f64 = 4.0 * f32::EPSILON as f64;
 
 impl SmoothForcing {
     /// Whether markers of body `b` reach others of its own over a periodic side, as it is turned or
@@ -75,7 +72,7 @@ impl SmoothForcing {
         let lattice = velocity.lattice(0);
         Neighbour::list(lattice, bodies, b, 1.0, std::iter::once(b).filter(|_| images), neighbours);
         let periods = lattice.axes[..dim].iter().filter_map(|nodes| nodes.period());
-        let outwards = PRECISION * periods.fold(0.0, f64::max);
+        let outwards = LENGTH_PRECISION * periods.fold(0.0, f64::max);
         for (m, overlap) in markers.overlaps.iter_mut().enumerate() {
             let x = pose.position + markers.surface[m] + outwards * markers.slip.normal(m);
             if neighbours

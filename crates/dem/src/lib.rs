@@ -32,6 +32,7 @@ mod overlap;
 pub mod placing;
 #[cfg(feature = "placing")]
 mod population;
+mod prescribed_motion;
 mod rigid_bodies;
 mod rigid_dynamics;
 mod shapes;
@@ -51,6 +52,7 @@ pub use overlap::FacetIndex;
 pub use overlap::{BoxKind, CellOverlap, Normal, Overlap, OverlapSolver, Refinement, Route, SubBox, overlap};
 #[cfg(feature = "placing")]
 pub use population::{Entrant, Inflow, Origin, Population};
+pub use prescribed_motion::PrescribedMotion;
 pub use rigid_bodies::{
     Contact, DEEP, Depth, Partner, RestingDepth, RigidBodies, Sleep, Tether, resting_depth,
 };

@@ -1,6 +1,6 @@
 //! From a setup to what the libraries run.
 use crate::build_error::BuildError;
-use crate::cast::Cast;
+use crate::cast::{Cast, Script};
 use crate::physics::{Physics, Segregated};
 use crate::setup::{Algorithm, Bodies, ContactLawChoice, ForcingChoice, InflowSetup, Motion, Setup};
 use crate::still::Still;
@@ -216,10 +216,12 @@ impl Setup {
             let (freedom, twist) = match &body.motion {
                 Motion::Free(freedom) => (*freedom, body.twist),
                 Motion::Fixed => (Freedom::NONE, Twist::default()),
-                motion @ Motion::Prescribed { .. } => {
-                    scripts.push((number, motion.clone()));
+                formulas @ Motion::Prescribed { .. } => {
+                    let motion = formulas.prescribed(body.pose.position).unwrap_or_default();
                     // Over a millionth of the run.
-                    (Freedom::NONE, motion.velocity(0.0, 1e-6 * self.end))
+                    let twist = motion.velocity(0.0, 1e-6 * self.end);
+                    scripts.push(Script { number, formulas: formulas.clone(), motion });
+                    (Freedom::NONE, twist)
                 }
             };
             let b = bodies.add(body.shape.clone(), body.material, body.pose, twist, freedom)?;

@@ -124,7 +124,10 @@ impl BuildError {
             return Self::Scene(Box::new(document.problem(&key, message)));
         }
         match self.key(setup) {
-            Some(key) => Self::Scene(Box::new(document.problem(&key, self.to_string()))),
+            Some(key) => {
+                let doubt = setup.unit_doubt(&key).map(|doubt| format!("; {doubt}")).unwrap_or_default();
+                Self::Scene(Box::new(document.problem(&key, format!("{self}{doubt}"))))
+            }
             None => self,
         }
     }

@@ -1,7 +1,7 @@
 //! The bodies of a scene: free, held, told how to move, coming and going.
 use crate::setup::Motion;
 use dem::placing::PlacingError;
-use dem::{ContactLaw, Origin, Population, RigidBodies, RigidDynamics};
+use dem::{ContactLaw, Origin, Population, PrescribedMotion, RigidBodies, RigidDynamics};
 use interfaces::{
     Bodies, BodyId, Checkpoint, Dynamics, Freedom, Inertia, Kinematics, Load, Pose, Renumbering,
     RestartError, Solid, Twist, Vector, Wrench,
@@ -11,59 +11,25 @@ use interfaces::{
 pub(crate) struct Cast<L: ContactLaw> {
     bodies: Population<L>,
     inflows: usize,
-    /// Who moves by formulas: number at the start, and how.
-    scripts: Vec<(usize, Motion)>,
+    scripts: Vec<Script>,
     /// Where they are in the list now.
     places: Vec<Option<BodyId>>,
     /// Time at the start of the step \[s\].
     time: f64,
 }
 
-/// Derivatives are differences over this share of a step.
-const SHARE: f64 = 1e-2;
-
-impl Motion {
-    fn shift(&self, t: f64) -> Vector {
-        match self {
-            Self::Prescribed { shift: Some(shift), .. } => Vector::from(shift.each_ref().map(|s| s.at(&[t]))),
-            _ => Vector::zeros(),
-        }
-    }
-    fn angle(&self, t: f64) -> Vector {
-        match self {
-            Self::Prescribed { turn: Some((angle, axis)), .. } => angle.at(&[t]) * **axis,
-            _ => Vector::zeros(),
-        }
-    }
-    /// Mean velocity from `t` to `t + dt`.
-    pub(crate) fn mean(&self, t: f64, dt: f64) -> Twist {
-        let rate = |f: fn(&Self, f64) -> Vector| (f(self, t + dt) - f(self, t)) / dt;
-        Twist { linear: rate(Self::shift), angular: rate(Self::angle) }
-    }
-    /// Velocity at `t`, from differences over a part of `dt` to both sides, or to the one where the formulas have a value.
-    pub(crate) fn velocity(&self, t: f64, dt: f64) -> Twist {
-        let h = SHARE * dt;
-        let both = self.mean(t - h, 2.0 * h);
-        let finite = |twist: &Twist| (twist.linear + twist.angular).iter().all(|v| v.is_finite());
-        if finite(&both) {
-            return both;
-        }
-        let before = self.mean(t - h, h);
-        if finite(&before) { before } else { self.mean(t, h) }
-    }
-    /// Notes whether the formulas have a value at `t`.
-    fn try_at(&self, t: f64) {
-        if let Self::Prescribed { shift, turn } = self {
-            shift.iter().flatten().chain(turn.iter().map(|(angle, _)| angle)).for_each(|f| {
-                f.needed(&[t]);
-            });
-        }
-    }
+/// Motion of a body by formulas.
+pub(crate) struct Script {
+    /// The body's number at the start.
+    pub(crate) number: usize,
+    /// Its formulas.
+    pub(crate) formulas: Motion,
+    pub(crate) motion: PrescribedMotion,
 }
 
 impl<L: ContactLaw> Cast<L> {
     /// Bodies with so many inflows, of whom some (by their number at the start) move by formulas.
-    pub(crate) fn new(bodies: Population<L>, inflows: usize, scripts: Vec<(usize, Motion)>) -> Self {
+    pub(crate) fn new(bodies: Population<L>, inflows: usize, scripts: Vec<Script>) -> Self {
         let places = vec![None; scripts.len()];
         let mut cast = Self { bodies, inflows, scripts, places, time: 0.0 };
         cast.find();
@@ -82,17 +48,17 @@ impl<L: ContactLaw> Cast<L> {
         self.places.fill(None);
         for b in self.bodies.ids() {
             if let Origin::Start(start) = self.bodies.origin(b)
-                && let Some(place) = self.scripts.iter().position(|(number, _)| *number == start)
+                && let Some(place) = self.scripts.iter().position(|script| script.number == start)
             {
                 self.places[place] = Some(b);
             }
         }
     }
 
-    fn direct(&mut self, twist: impl Fn(&Motion) -> Twist) {
-        for ((_, motion), place) in self.scripts.iter().zip(&self.places) {
+    fn direct(&mut self, twist: impl Fn(&PrescribedMotion) -> Twist) {
+        for (script, place) in self.scripts.iter().zip(&self.places) {
             if let Some(b) = place {
-                self.bodies.set_twist(*b, twist(motion));
+                self.bodies.set_twist(*b, twist(&script.motion));
             }
         }
     }
@@ -140,7 +106,7 @@ impl<L: ContactLaw> Dynamics for Cast<L> {
     /// Those who move by formulas are where these say at the end, up to round-off, and have the velocity there.
     fn advance(&mut self, dt: f64) -> Result<(), PlacingError> {
         let time = self.time;
-        self.scripts.iter().for_each(|(_, motion)| motion.try_at(time + dt));
+        self.scripts.iter().for_each(|script| script.formulas.try_at(time + dt));
         self.direct(|motion| motion.mean(time, dt));
         self.bodies.advance(dt)?;
         self.direct(|motion| motion.velocity(time + dt, dt));

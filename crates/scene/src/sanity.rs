@@ -2,12 +2,13 @@
 mod blockage;
 mod contacts;
 mod exits;
+mod units;
 
 use crate::setup::{Algorithm, BodySetup, Setup, SurfaceVelocity, is_open};
 use blockage::Blockage;
 use coupling::WeightBalance;
 use fv_mesh::{Axis, Convection, Profile, Side, WallStress};
-use interfaces::Aabb;
+use interfaces::{Aabb, LENGTH_PRECISION};
 
 /// Cells so much longer than wide are hardly meant.
 const THIN: f64 = 1000.0;
@@ -178,6 +179,7 @@ impl Setup {
         }
         out.extend_from_slice(&self.doubtful_inlets);
         out.extend_from_slice(&self.mended);
+        self.doubt_units(&mut out);
         self.doubt_measures(&mut out);
         self.doubt_contacts(&mut out);
         if self.fluid.is_some() {
@@ -349,7 +351,7 @@ impl Setup {
                 ));
             }
             let (gap, cell) = (axis.length() - widest, axis.length() / axis.cells() as f64);
-            let closed = gap <= f64::from(f32::EPSILON) * axis.length();
+            let closed = gap <= LENGTH_PRECISION * axis.length();
             if matches!(pair[0], Side::Periodic) && !closed && gap < UNRESOLVED * cell {
                 out.push(format!(
                     "along {name} the largest body is {:.2} cells shorter than the period: flow through the gap to its own image is not resolved; make the body as long as the period, which closes it, or the gap wider than {UNRESOLVED:.0} cells",

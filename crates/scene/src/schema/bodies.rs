@@ -146,6 +146,17 @@ pub(super) static SHAPES: [(&str, &Table); 12] = [
                     "Repair the file: join vertices, leave out copies of faces, divide faces at vertices on open edges, turn faces and closed parts outward (cavities inward), flip faces without area, unite parts that cross. A warning lists what was done; what is no body then is refused.",
                     "true",
                 ),
+                optional(
+                    "placement",
+                    Kind::Word(&[
+                        ("centre of mass", "its centre of mass"),
+                        ("box", "the centre of the box around it, as the file has it"),
+                        ("file", "the origin of the file's coordinates"),
+                    ]),
+                    "centre of mass",
+                    "The point of the mesh that `position`, a lattice or a table places, and about which `orientation` turns it. With \"file\" and a position of zero the body is where the file has it. Random places do not depend on it.",
+                    "\"file\"",
+                ),
             ],
         },
     ),
@@ -193,13 +204,18 @@ static PART: Table = Table {
     ],
 };
 
-const POSITION_OR_ORIGIN: Key =
-    optional("position", POINT, "the origin", "Where its centre is.", "[1e-3, 0.0, 0.0]");
+const POSITION_OR_ORIGIN: Key = optional(
+    "position",
+    POINT,
+    "the origin",
+    "Where it is, by the same point as bodies.",
+    "[1e-3, 0.0, 0.0]",
+);
 const ORIENTATION: Key = optional(
     "orientation",
     Kind::Either(&TURNS),
     "0",
-    "How it is turned: an angle about z in degrees, or an axis and an angle.",
+    "How it is turned about the point at `position`: an angle about z in degrees, or an axis and an angle.",
     "{ axis = [1.0, 1.0, 0.0], angle = 30.0 }",
 );
 
@@ -236,7 +252,7 @@ pub(super) const VELOCITY: Key = optional(
     "velocity",
     Kind::List(&Kind::Number(Range::Any, "m/s"), 2, 3),
     "0",
-    "Velocity at the start.",
+    "Velocity of the centre of mass at the start.",
     "[0.0, -0.01]",
 );
 const SPIN: Key = optional(
@@ -257,7 +273,7 @@ pub(super) static BODY: Table = Table {
         required(
             "position",
             POINT,
-            "Where its centre of mass is; of a formula, where the origin of its coordinates is.",
+            "Where its centre of mass is; of a formula, where the origin of its coordinates is; of a mesh, where the point is that its `placement` chooses.",
             "[5e-3, 1.6e-2]",
         ),
         ORIENTATION,
@@ -344,6 +360,13 @@ static MOTIONS: [(&str, &Table); 5] = [
                     "z",
                     "About which axis.",
                     "[0.0, 0.0, 1.0]",
+                ),
+                optional(
+                    "pivot",
+                    POINT,
+                    "its centre of mass",
+                    "A point of the axis, a hinge, by its place in the scene at t = 0. `shift` moves it, too.",
+                    "[0.0, 0.0]",
                 ),
             ],
         },

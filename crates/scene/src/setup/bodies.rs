@@ -6,7 +6,7 @@ use crate::expression::Expression;
 use crate::problem::Problem;
 use crate::reader::Reader;
 use coupling::WeightBalance;
-use dem::{HalfSpace, Material, PairProperties, Shape, Tether};
+use dem::{HalfSpace, Material, PairProperties, PrescribedMotion, Shape, Tether};
 use fv_mesh::{Axis, Fluid, Side};
 use ibm::Kernel;
 use interfaces::{Aabb, Freedom, Point, Pose, Twist, Vector};
@@ -21,6 +21,8 @@ pub(crate) struct BodySetup {
     /// The key that made it: `bodies.2`, `factories.0`.
     pub(crate) origin: String,
     pub(crate) shape: Arc<dyn Shape>,
+    /// Unit of length of the file, if it is a mesh \[m\].
+    pub(crate) unit: Option<f64>,
     pub(crate) material: Material,
     pub(crate) pose: Pose,
     pub(crate) twist: Twist,
@@ -46,11 +48,36 @@ pub(crate) enum Motion {
     /// The flow, gravity and contacts, as far as it is free.
     Free(Freedom),
     Fixed,
-    /// Formulas of the time: displacement, and angle about an axis.
+    /// Formulas of the time: displacement, and angle about an axis through the pivot, or the centre
+    /// of mass without one.
     Prescribed {
         shift: Option<[Expression; 3]>,
         turn: Option<(Expression, Unit<Vector>)>,
+        pivot: Option<Point>,
     },
+}
+
+impl Motion {
+    /// The motion by formulas of a body whose centre of mass is here at the start, if it is one.
+    pub(crate) fn prescribed(&self, centre: Point) -> Option<PrescribedMotion> {
+        let Self::Prescribed { shift, turn, pivot } = self.clone() else { return None };
+        let mut motion = PrescribedMotion::default().with_pivot(pivot.unwrap_or(centre), centre);
+        if let Some(shift) = shift {
+            motion = motion.with_shift(move |t| Vector::from(shift.each_ref().map(|s| s.at(&[t]))));
+        }
+        if let Some((angle, axis)) = turn {
+            motion = motion.with_turn(axis, move |t| angle.at(&[t]));
+        }
+        Some(motion)
+    }
+    /// Notes whether the formulas have a value at `t` \[s\].
+    pub(crate) fn try_at(&self, t: f64) {
+        if let Self::Prescribed { shift, turn, .. } = self {
+            shift.iter().flatten().chain(turn.iter().map(|(angle, _)| angle)).for_each(|f| {
+                f.needed(&[t]);
+            });
+        }
+    }
 }
 
 /// All about bodies.
@@ -462,15 +489,17 @@ fn body(
         }),
     };
     let surface = SurfaceVelocity::read(t, &motion, dim)?;
-    let (shape, centre) = shapes::placed(t, "shape", context)?;
+    let placed = shapes::shape(t, "shape", context, 1.0)?;
     let orientation = shapes::orientation(t)?;
-    let position = t.point_of("position", dim)?.unwrap_or_default() + orientation * centre;
+    let position = t.point_of("position", dim)?.unwrap_or_default();
+    let pose = placed.pose(Pose { position, orientation });
     Ok(BodySetup {
         name: t.text("name").map_or_else(|| number.to_string(), Into::into),
         origin: format!("bodies.{number}"),
-        shape,
+        unit: shapes::unit(t),
+        shape: placed.shape,
         material: materials.of(t)?,
-        pose: Pose { position, orientation },
+        pose,
         twist,
         motion,
         tether,
@@ -497,12 +526,16 @@ fn motion(t: &Reader<'_>, dim: usize) -> Result<Motion, Problem> {
                 return Err(motion.fail("axis", "bodies of a plane scene turn about z only; leave this out"));
             }
             let turn = motion.formula("angle", &["t"])?.map(|angle| (angle, axis));
+            let pivot = motion.point_of("pivot", dim)?;
+            if pivot.is_some() && turn.is_none() {
+                return Err(motion.fail("pivot", "nothing turns about it; give `angle`, or leave this out"));
+            }
             if shift.is_none() && turn.is_none() {
                 return Err(
                     motion.fail_here("how does it move? Give `shift` or `angle`, or make it \"fixed\"")
                 );
             }
-            Motion::Prescribed { shift, turn }
+            Motion::Prescribed { shift, turn, pivot }
         }
         _ => Motion::Free(freedom(dim)),
     })

@@ -1,5 +1,6 @@
 //! Many bodies at once.
 use super::bodies::{BodySetup, Materials, Motion, freedom};
+use super::shapes::PlacedShape;
 use super::{Context, is_open, shapes};
 use crate::problem::Problem;
 use crate::reader::Reader;
@@ -35,6 +36,8 @@ pub(crate) struct InflowSetup {
     pub(crate) twist: Twist,
     /// Shapes that are handed out in turn: enough of them that a distribution of sizes is met.
     pub(crate) shapes: Vec<Arc<dyn Shape>>,
+    /// Unit of length of the file, if they are meshes \[m\].
+    pub(crate) unit: Option<f64>,
 }
 
 /// Share of a region that random addition may be asked to fill.
@@ -73,6 +76,7 @@ pub(super) fn read(
                 name: list.len().to_string(),
                 origin: format!("factories.{number}"),
                 shape,
+                unit: shapes::unit(&t),
                 material: factory.material,
                 pose,
                 twist: own.unwrap_or(twist),
@@ -194,15 +198,14 @@ impl Factory<'_> {
         scale.map_err(|e| self.t.fail("scale", e))
     }
     /// One shape per factor; equal factors share one.
-    fn shapes(&self, factors: &[f64]) -> Result<Vec<Arc<dyn Shape>>, Problem> {
-        let recipe = shapes::recipe(self.t, "shape", self.context);
-        let mut made: Option<(f64, Arc<dyn Shape>)> = None;
+    fn shapes(&self, factors: &[f64]) -> Result<Vec<PlacedShape>, Problem> {
+        let mut made: Option<(f64, PlacedShape)> = None;
         factors
             .iter()
             .map(|&factor| match &made {
                 Some((last, shape)) if *last == factor => Ok(shape.clone()),
                 _ => {
-                    let shape = recipe(factor)?;
+                    let shape = shapes::shape(self.t, "shape", self.context, factor)?;
                     made = Some((factor, shape.clone()));
                     Ok(shape)
                 }
@@ -231,8 +234,8 @@ impl Factory<'_> {
         let lattice = CrystalLattice::new(kind, distance).map_err(|e| t.fail("distance", e))?;
         let jitter = t.number("jitter").unwrap_or(0.0);
         let factors = self.scale()?;
-        let radius = self.shapes(&[1.0])?[0].bounding_radius();
-        let margin = radius + jitter + self.gap();
+        let reach = self.shapes(&[1.0])?[0].reach();
+        let margin = reach + jitter + self.gap();
         let mut points = lattice.in_box(&self.region()?, margin).map_err(|e| t.fail_here(e))?;
         if let Some(number) = t.whole("number") {
             if number > points.len() {
@@ -257,11 +260,9 @@ impl Factory<'_> {
         }
         let shapes = self.shapes(&factors.sample(points.len(), self.seed()))?;
         let turns = self.orientations().of(self.seed());
-        let poses = points
-            .into_iter()
-            .zip(turns)
-            .map(|(position, orientation)| (Pose { position, orientation }, None));
-        Ok((shapes, poses.collect()))
+        let references = points.into_iter().zip(turns);
+        let references = references.map(|(position, orientation)| (Pose { position, orientation }, None));
+        Ok(placed(shapes, references))
     }
 
     fn random(&self, there: &[BodySetup]) -> Result<Made, Problem> {
@@ -271,7 +272,7 @@ impl Factory<'_> {
         let factors = match (t.whole("number"), t.number("fraction")) {
             (Some(number), None) => scale.sample(number, self.seed()),
             (None, Some(fraction)) => {
-                let volume = self.shapes(&[1.0])?[0].inertia(1.0).volume;
+                let volume = self.shapes(&[1.0])?[0].shape.inertia(1.0).volume;
                 let dim = self.context.dim as i32;
                 scale
                     .until(fraction * region.volume(), |factor| volume * factor.powi(dim), self.seed())
@@ -286,7 +287,7 @@ impl Factory<'_> {
             return Err(t.fail("fraction", "not even one body makes up this share; give a larger one"));
         }
         // Random addition jams far below that; to find out takes long.
-        let volume = self.shapes(&[1.0])?[0].inertia(1.0).volume;
+        let volume = self.shapes(&[1.0])?[0].shape.inertia(1.0).volume;
         let filled: f64 = factors.iter().map(|f| volume * f.powi(self.context.dim as i32)).sum();
         if filled > MOST_FILLED * region.volume() {
             let message = format!(
@@ -304,9 +305,10 @@ impl Factory<'_> {
         for other in there {
             placing = placing.with_obstacle(&*other.shape, other.pose);
         }
-        let borrowed: Vec<&dyn Shape> = shapes.iter().map(|shape| &**shape).collect();
+        let borrowed: Vec<&dyn Shape> = shapes.iter().map(|placed| &*placed.shape).collect();
         let poses = placing.place(&borrowed, self.seed()).map_err(|e| t.fail_here(e))?;
         drop(borrowed);
+        let shapes = shapes.into_iter().map(|placed| placed.shape).collect();
         Ok((shapes, poses.into_iter().map(|pose| (pose, None)).collect()))
     }
 
@@ -318,7 +320,7 @@ impl Factory<'_> {
         let rows = read_bodies(std::io::BufReader::new(file)).map_err(|e| told(&e))?;
         let factors: Vec<f64> = rows.iter().map(|row| row.size.unwrap_or(1.0)).collect();
         let shapes = self.shapes(&factors)?;
-        Ok((shapes, rows.into_iter().map(|row| (row.pose, row.twist)).collect()))
+        Ok(placed(shapes, rows.into_iter().map(|row| (row.pose, row.twist))))
     }
 
     fn inflow(&self, origin: usize) -> Result<InflowSetup, Problem> {
@@ -328,6 +330,7 @@ impl Factory<'_> {
         let velocity = t.vector_of("velocity", self.context.dim)?.unwrap_or_default();
         let region = self.inflow_region(velocity)?;
         let shapes = self.shapes(&scale.sample(number, self.seed()))?;
+        let shapes: Vec<_> = shapes.into_iter().map(|placed| placed.shape).collect();
         self.check_room(region, &shapes)?;
         Ok(InflowSetup {
             origin: format!("factories.{origin}"),
@@ -341,6 +344,14 @@ impl Factory<'_> {
             material: self.material,
             twist: Twist { linear: velocity, ..Twist::default() },
             shapes,
+            unit: shapes::unit(t),
         })
     }
+}
+
+/// Shapes whose reference points are at these poses.
+fn placed(shapes: Vec<PlacedShape>, references: impl Iterator<Item = (Pose, Option<Twist>)>) -> Made {
+    let poses =
+        shapes.iter().zip(references).map(|(placed, (pose, twist))| (placed.pose(pose), twist)).collect();
+    (shapes.into_iter().map(|placed| placed.shape).collect(), poses)
 }

@@ -40,27 +40,55 @@ impl Solid for ByFormula {
     }
 }
 
-/// A shape that can be made in any size.
-pub(crate) type Recipe<'a> = Box<dyn Fn(f64) -> Result<Arc<dyn Shape>, Problem> + 'a>;
-
-/// The shape in `key`, to be enlarged by a factor.
-pub(super) fn recipe<'a>(body: &'a Reader<'a>, key: &'static str, context: &'a Context<'_>) -> Recipe<'a> {
-    Box::new(move |factor| shape(body, key, context, factor))
+/// A shape with the point that places it and about which it is turned, the reference point: the
+/// origin of a formula's coordinates, the one that `placement` chooses of a mesh, the centre of
+/// mass of all others.
+#[derive(Clone)]
+pub(crate) struct PlacedShape {
+    pub(crate) shape: Arc<dyn Shape>,
+    /// Centre of mass from the reference point \[m\].
+    centre: Vector,
 }
 
-/// The shape in `key`, and where its centre of mass is in the coordinates that its formula, if it has one, is written in.
-pub(super) fn placed(
-    body: &Reader<'_>,
-    key: &str,
-    context: &Context<'_>,
-) -> Result<(Arc<dyn Shape>, Vector), Problem> {
-    match body.choice(key, "type") {
-        Some(("formula", t)) => {
-            let shape = formula(body, key, &t, context, 1.0)?;
-            let centre = shape.centre().coords;
-            Ok((Arc::new(shape), centre))
+impl PlacedShape {
+    fn by_centre(shape: Arc<dyn Shape>) -> Self {
+        Self { shape, centre: Vector::zeros() }
+    }
+    /// Pose of the centre of mass if the reference point has this one.
+    pub(crate) fn pose(&self, reference: Pose) -> Pose {
+        Pose { position: reference.to_world(self.centre.into()), orientation: reference.orientation }
+    }
+    /// Radius of a ball around the reference point that holds the body however it is turned \[m\].
+    pub(crate) fn reach(&self) -> f64 {
+        self.centre.norm() + self.shape.bounding_radius()
+    }
+}
+
+/// Values of `placement`.
+#[derive(Clone, Copy)]
+enum Placement {
+    CentreOfMass,
+    Box,
+    File,
+}
+
+impl Placement {
+    fn read(t: &Reader<'_>) -> Self {
+        match t.text("placement") {
+            Some("box") => Self::Box,
+            Some("file") => Self::File,
+            Some("centre of mass") | None => Self::CentreOfMass,
+            Some(word) => unreachable!("placement \"{word}\" is not in the schema"),
         }
-        _ => Ok((shape(body, key, context, 1.0)?, Vector::zeros())),
+    }
+    /// The centre of mass of a mesh from its reference point \[m\].
+    fn centre(self, mesh: &TriangleMesh) -> Vector {
+        let bounds = mesh.aabb();
+        match self {
+            Self::CentreOfMass => Vector::zeros(),
+            Self::Box => -nalgebra::center(&bounds.min, &bounds.max).coords,
+            Self::File => mesh.origin().coords,
+        }
     }
 }
 
@@ -95,7 +123,7 @@ pub(super) fn shape(
     key: &str,
     context: &Context<'_>,
     factor: f64,
-) -> Result<Arc<dyn Shape>, Problem> {
+) -> Result<PlacedShape, Problem> {
     let Some((kind, t)) = body.choice(key, "type") else {
         return Err(body.fail(key, "the shape is missing"));
     };
@@ -105,9 +133,9 @@ pub(super) fn shape(
     fn arc<E: std::fmt::Display>(
         shape: Result<impl Shape + 'static, E>,
         fail: impl Fn(&dyn std::fmt::Display) -> Problem,
-    ) -> Result<Arc<dyn Shape>, Problem> {
+    ) -> Result<PlacedShape, Problem> {
         match shape {
-            Ok(shape) => Ok(Arc::new(shape)),
+            Ok(shape) => Ok(PlacedShape::by_centre(Arc::new(shape))),
             Err(e) => Err(fail(&e)),
         }
     }
@@ -182,20 +210,24 @@ pub(super) fn shape(
                 let key = format!("{} {weld:?} {repair}", path.display());
                 context.note(key, format!("{}: {changes}", path.display()));
             }
-            match TriangleMesh::try_from(mended.soup) {
-                Ok(mesh) => Ok(Arc::new(mesh)),
-                Err(e) if e.is_repairable() => {
-                    Err(told(&format!("{e}; repair = true mends some such faults")))
-                }
-                Err(e) => Err(told(&e)),
-            }
+            let mesh = TriangleMesh::try_from(mended.soup).map_err(|e| {
+                let remedy = if e.is_repairable() { "; repair = true mends some such faults" } else { "" };
+                told(&format!("{e}{remedy}"))
+            })?;
+            let centre = Placement::read(&t).centre(&mesh);
+            Ok(PlacedShape { shape: Arc::new(mesh), centre })
         }
-        "formula" => Ok(Arc::new(formula(body, key, &t, context, factor)?)),
+        "formula" => {
+            let shape = formula(body, key, &t, context, factor)?;
+            let centre = shape.centre().coords;
+            Ok(PlacedShape { shape: Arc::new(shape), centre })
+        }
         _ => {
             let part = |t: &Reader<'_>| -> Result<Part, Problem> {
                 let position = factor * t.vector_of("position", context.dim)?.unwrap_or_default();
                 let pose = Pose { position: position.into(), orientation: orientation(t)? };
-                Ok(Part { shape: shape(t, "shape", context, factor)?, pose })
+                let placed = shape(t, "shape", context, factor)?;
+                Ok(Part { pose: placed.pose(pose), shape: placed.shape })
             };
             arc(Union::new(t.tables("parts").iter().map(part).collect::<Result<_, _>>()?), fail)
         }
@@ -222,6 +254,12 @@ fn mended(soup: TriangleSoup, weld: Option<f64>, repair: bool) -> Result<Mended,
         "{joined} vertices up to {tolerance:.3e} m from others were joined, and {lost} faces lost by it"
     );
     Ok(Mended { soup, changes: (joined > 0).then_some(changes) })
+}
+
+/// The unit of length of the mesh that the shape of the body in `t` is, if it is one \[m\].
+pub(super) fn unit(t: &Reader<'_>) -> Option<f64> {
+    let (kind, shape) = t.choice("shape", "type")?;
+    (kind == "mesh").then(|| shape.number("unit").unwrap_or(1.0))
 }
 
 /// How the body in `t` is turned.

@@ -9,6 +9,7 @@ mod mesh_files;
 mod models;
 mod numbers;
 mod physics;
+mod placement;
 mod spoilt;
 mod steady;
 mod surfaces;

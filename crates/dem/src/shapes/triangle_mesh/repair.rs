@@ -10,7 +10,7 @@ use super::flat_faces::{FLAT, FlatFaces, is_flat};
 use super::topology::Sets;
 use super::welding::{Welded, is_collapsed, largest};
 use super::{MeshError, RepairReport, TriangleSoup};
-use interfaces::{Point, Vector};
+use interfaces::Vector;
 use sheets::{Edge, Sheets, edges};
 use std::collections::HashSet;
 

@@ -52,7 +52,7 @@ fn turned((vertices, faces): Faces) -> Faces {
 
 /// Bodies of about n faces whose boxes along the axes meet by the thousand.
 fn kinds(n: u32) -> Vec<(&'static str, Faces)> {
-    let zigzag = |i: u32| if i % 2 == 0 { 0.5 } else { -0.5 };
+    let zigzag = |i: u32| if i.is_multiple_of(2) { 0.5 } else { -0.5 };
     vec![
         ("can", can(n / 4, 1.0)),
         ("turned can", turned(can(n / 4, 1.0))),

@@ -109,8 +109,9 @@ impl Sheets {
         face
     }
 
-    /// Finds the regions that [several](Self::several) sheets bound: calls `region` with the numbers of the faces of each, and with whether
-    /// each of the `origins`, points within the convex body, is in it.
+    /// Finds the regions that [several](Self::several) sheets bound: calls `region` with the
+    /// numbers of the faces of each, and with whether each of the `origins`, points within the
+    /// convex body, is in it.
     pub(super) fn regions<const N: usize>(
         &mut self,
         origins: [Vector; N],

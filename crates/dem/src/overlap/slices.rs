@@ -172,7 +172,8 @@ impl Slices {
         if scene.symmetric && ends[0] == 0.0 {
             round[0] = false;
         }
-        let (sums, of) = sweep::sweep(ends, round, arcs, scene.tolerance, |h| {
+        let places = [(ends[0], round[0]), (ends[1], round[1])];
+        let (sums, of) = sweep::sweep(&places, arcs, scene.tolerance, |h| {
             at(h, one, two);
             region.section(one, two, scene.slack)
         });

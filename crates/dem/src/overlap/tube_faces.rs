@@ -1,19 +1,20 @@
-//! A capsule or cylinder and a body of flat faces, convex or not: exact sums over the faces within it.
+//! A capsule or cylinder and a body of flat faces, convex or not: exact sums over the faces within
+//! it.
 //!
-//! Lengths are divided by the radius; z is the axis, h half the length of the straight part. With the
-//! outward normals n of the faces and A₊, A₋ the areas of the body's sections at z = ±h within the
-//! unit circle, the divergence theorem for the field (0, 0, z), which does not pass the mantle, gives for
-//! the straight part
+//! Lengths are divided by the radius; z is the axis, h half the length of the straight part. With
+//! the outward normals n of the faces and A₊, A₋ the areas of the body's sections at z = ±h within
+//! the unit circle, the divergence theorem for the field (0, 0, z), which does not pass the mantle,
+//! gives for the straight part
 //!
 //! - V = Σ n_z ∫ z dA + h (A₊ + A₋),
 //! - ∫ z dV = Σ n_z ∫ z²/2 dA + h² (A₊ − A₋)/2,
 //! - ∫ x dV = −Σ n_x ∫ (1 − x² − y²)/2 dA, and the same of y.
 //!
-//! Sections are summed along rays from their centres: A = \[centre inside\] π − Σ of what lies beyond the
-//! segments in which faces cross the plane. What a half ball at an end shares with the body is summed
-//! along rays from its centre, too ([`ball_faces`](super::ball_faces)), over the parts of faces beyond
-//! the plane of its flat side: no ray runs in that plane. Everywhere S = −Σ n ∫ dA, and the moment about
-//! the centroid follows from Σ ∫ x dA × n.
+//! Sections are summed along rays from their centres: A = \[centre inside\] π − Σ of what lies
+//! beyond the segments in which faces cross the plane. What a half ball at an end shares with the
+//! body is summed along rays from its centre, too ([`ball_faces`](super::ball_faces)), over the
+//! parts of faces beyond the plane of its flat side: no ray runs in that plane. Everywhere S = −Σ n
+//! ∫ dA, and the moment about the centroid follows from Σ ∫ x dA × n.
 mod level;
 mod mantle;
 mod section;
@@ -36,8 +37,8 @@ use std::f64::consts::PI;
 /// radius.
 const NOTHING: f64 = 1e-12;
 
-/// Squared distance from the centre of an end, in radii, at which the direction of an edge from there is
-/// rounding: the tube is moved off such an edge.
+/// Squared distance from the centre of an end, in radii, at which the direction of an edge from
+/// there is rounding: the tube is moved off such an edge.
 const ON_EDGE2: f64 = 1e-22;
 /// Moves off an edge, in radii, the second one if the edge goes along the first.
 const STEPS: [[f64; 3]; 2] = [[0.48e-10, 0.64e-10, 0.6e-10], [0.64e-10, -0.48e-10, 0.6e-10]];
@@ -248,8 +249,8 @@ impl TubeFaces {
         out.extend(region(a, &sums, shares, apart));
     }
 
-    /// Sums over all faces that the tube reaches, listed by sheets unless the body is convex; `None` if
-    /// there are none.
+    /// Sums over all faces that the tube reaches, listed by sheets unless the body is convex;
+    /// `None` if there are none.
     fn sum(&mut self, a: &Tube, map: &Map, b: &impl Faces) -> Option<Sums> {
         let reach = map.axis.map(|n| {
             let across = if a.round { 1.0 } else { (1.0 - n * n).max(0.0).sqrt() };
@@ -282,8 +283,8 @@ impl TubeFaces {
         sums
     }
 
-    /// Parts of a convex face between the ends and, moved to their centres, beyond them; the segments in
-    /// which it crosses the planes of the ends, the lower first.
+    /// Parts of a convex face between the ends and, moved to their centres, beyond them; the
+    /// segments in which it crosses the planes of the ends, the lower first.
     fn split(&mut self, a: &Tube, corners: &[Vector]) -> [Option<[Vector; 2]>; 2] {
         let Self { below, middle, beyond: [lower, upper], .. } = self;
         let above = level::cut(corners, a.half, below, upper);
@@ -298,7 +299,8 @@ impl TubeFaces {
         [under, above]
     }
 
-    /// Integrals over a convex face, given by its corners counter-clockwise; `None` where it is off the tube.
+    /// Integrals over a convex face, given by its corners counter-clockwise; `None` where it is off
+    /// the tube.
     fn face(&mut self, a: &Tube, corners: &[Vector]) -> Option<Part> {
         let normal = normal(a, corners)?;
         let mut part = Part { normal, area: 0.0, moment: Vector::zeros(), sums: Sums::default() };
@@ -319,7 +321,8 @@ impl TubeFaces {
         touched.then_some(part)
     }
 
-    /// Shares of the planes and half spaces at the ends, by all faces and the numbers that their integrals use.
+    /// Shares of the planes and half spaces at the ends, by all faces and the numbers that their
+    /// integrals use.
     fn shares(&mut self, a: &Tube, map: &Map, b: &impl Faces) -> Shares {
         let (mut plane, mut solid) = ([0.0; 2], [0.0; 2]);
         let mut corners = std::mem::take(&mut self.corners);
@@ -409,7 +412,8 @@ impl Part {
     }
 }
 
-/// Whether the centres of the ends are inside, by the signs of sums that are known; `None` where they are not.
+/// Whether the centres of the ends are inside, by the signs of sums that are known; `None` where
+/// they are not.
 fn ends_inside(sums: &Sums) -> Option<[bool; 2]> {
     let beyond = sums.sections.map(|s| s.area);
     let sign = beyond.map(|b| if b.abs() > NOTHING { Some(b > 0.0) } else { None });

@@ -3,6 +3,8 @@
 #[allow(dead_code)]
 mod draw;
 mod kinds;
+// Some fields are for the bench and for messages.
+#[allow(dead_code)]
 mod poses;
 mod quadrature;
 mod reference;

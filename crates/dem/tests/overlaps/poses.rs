@@ -4,12 +4,13 @@ use crate::kinds::{Body, draw};
 use crate::reference;
 use dem::{Overlap, OverlapSolver};
 use interfaces::{Point, Pose, Vector};
-use std::fmt;
 
 /// Case number `case` of the kinds `i` and `j`.
 pub(crate) fn pose(i: usize, j: usize, case: u64) -> (Body, Body, Pose, Pose) {
     let mut random = Draw((i as u64 * 1000 + j as u64) << 40 | case << 8 | 11);
-    (0..8).for_each(|_| drop(random.next()));
+    (0..8).for_each(|_| {
+        random.next();
+    });
     let (a, b) = (draw(i, &mut random), draw(j, &mut random));
     let reach = a.shape.bounding_radius() + b.shape.bounding_radius();
     let at_a = Pose { position: Point::from(random.direction()), orientation: random.turn() };
@@ -63,41 +64,5 @@ pub(crate) fn measure(
         of_volume: if expected > 1e-6 * small { error / expected } else { 0.0 },
         gradient: (after - volume - mean.dot(&step)).abs() / small,
         time,
-    }
-}
-
-/// Largest differences over many poses.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Table {
-    met: usize,
-    worst: [(f64, u64); 3],
-    times: Vec<(f64, u64)>,
-}
-
-impl Table {
-    pub(crate) fn add(&mut self, m: Measured, case: u64) {
-        self.met += usize::from(m.volume > 0.0);
-        for (worst, now) in self.worst.iter_mut().zip([m.of_body, m.of_volume, m.gradient]) {
-            // Also where it is not a number.
-            if !(now <= worst.0) {
-                *worst = (now, case);
-            }
-        }
-        self.times.push((m.time, case));
-    }
-}
-
-impl fmt::Display for Table {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut times = self.times.clone();
-        times.sort_by(|x, y| x.0.total_cmp(&y.0));
-        let n = times.len();
-        let [body, volume, gradient] = self.worst;
-        let (median, most, longest) = (times[n / 2].0, times[n * 99 / 100].0, times[n - 1]);
-        write!(
-            f,
-            "{} | {:.1e} | {:.1e} | {:.1e} | {median:.1} | {most:.0} | {:.0} | {} {} {} {}",
-            self.met, body.0, volume.0, gradient.0, longest.0, body.1, volume.1, gradient.1, longest.1
-        )
     }
 }

@@ -24,7 +24,7 @@ const GAUSS: [f64; 4] =
     [0.129_484_966_168_869_7, 0.279_705_391_489_276_64, 0.381_830_050_505_118_93, 0.417_959_183_673_469_4];
 
 /// Pieces at the start, so that narrow peaks are sampled.
-const PIECES: usize = 4;
+const PIECES: usize = 8;
 
 /// ∫ f over a range to an absolute error.
 pub(crate) fn integrate([low, high]: [f64; 2], error: f64, f: &impl Fn(f64) -> f64) -> f64 {

@@ -3,7 +3,6 @@ use crate::kinds::{Body, ConvexPart, Geometry};
 use crate::quadrature::integrate;
 use interfaces::{Pose, Vector};
 use nalgebra::Matrix3;
-use std::f64::consts::PI;
 
 /// x ↦ linear·x + shift.
 #[derive(Clone, Copy)]
@@ -35,7 +34,8 @@ impl Affine {
     }
 }
 
-/// Volume that two bodies share \[m³\], to about 1e-9 of the smaller body where one has flat faces, else to 1e-7.
+/// Volume that two bodies share \[m³\], to about 1e-9 of the smaller body where one has flat faces,
+/// else to 1e-7.
 pub(crate) fn volume(a: &Body, at_a: &Pose, b: &Body, at_b: &Pose) -> f64 {
     let small = a.volume().min(b.volume());
     match (&a.geometry, &b.geometry) {
@@ -227,7 +227,8 @@ fn cut(polygon: &mut Vec<[f64; 2]>, above: impl Fn([f64; 2]) -> f64) {
     *polygon = kept;
 }
 
-/// Area that a polygon shares with the disc of radius r around the origin: triangles and sectors seen from the origin.
+/// Area that a polygon shares with the disc of radius r around the origin: triangles and sectors
+/// seen from the origin.
 fn disc_and_polygon(r: f64, polygon: &[[f64; 2]]) -> f64 {
     let n = polygon.len();
     let side = |i: usize| {
@@ -250,7 +251,8 @@ fn disc_and_polygon(r: f64, polygon: &[[f64; 2]]) -> f64 {
     (0..n).map(side).sum()
 }
 
-/// Volume of the intersection of two convex parts: pyramids from a point over what both leave of each plane.
+/// Volume of the intersection of two convex parts: pyramids from a point over what both leave of
+/// each plane.
 fn convex_parts(p: &ConvexPart, q: &ConvexPart) -> f64 {
     let corner = |part: &ConvexPart, pick: fn(f64, f64) -> f64| {
         Vector::from_fn(|a, _| part.vertices.iter().map(|v| v[a]).reduce(pick).expect("vertices"))

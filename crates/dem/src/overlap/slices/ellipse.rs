@@ -30,8 +30,8 @@ enum Common {
 }
 
 impl Pair {
-    /// The same in the quadrant where the centre of the ellipse has positive coordinates, and the signs that
-    /// lead back.
+    /// The same in the quadrant where the centre of the ellipse has positive coordinates, and the
+    /// signs that lead back.
     fn reflected(&self) -> (Self, Place) {
         let signs = self.centre.map(|x| if x < 0.0 { -1.0 } else { 1.0 });
         let same = |v: Place| v.component_mul(&signs);
@@ -57,8 +57,8 @@ impl Pair {
         [b * cos * y - a * sin * x, a * a * sin * sin + b * b * cos * cos - a * cos * x - b * sin * y]
     }
 
-    /// Lower bound of the distance between the disc and the ellipse, exact where they are apart, and its
-    /// change with the height.
+    /// Lower bound of the distance between the disc and the ellipse, exact where they are apart,
+    /// and its change with the height.
     pub(super) fn gap(&self) -> (f64, f64) {
         let (pair, _) = self.reflected();
         if pair.holds(Place::zeros()) {
@@ -75,7 +75,15 @@ impl Pair {
     }
     /// Parameter of the point nearest to the origin, in the quadrant opposite to the centre.
     fn nearest(&self) -> f64 {
-        root([PI, 1.5 * PI], |t| self.change(t))
+        root([PI, 1.5 * PI], PI + self.towards_centre(), |t| self.change(t))
+    }
+    /// Parameter of the point farthest from the origin, in the quadrant of the centre.
+    fn farthest(&self) -> f64 {
+        root([0.0, 0.5 * PI], self.towards_centre(), |t| self.change(t).map(|x| -x))
+    }
+    /// Parameter of the point behind the centre on the line from the origin.
+    fn towards_centre(&self) -> f64 {
+        (self.centre.y * self.semi_axes.x).atan2(self.centre.x * self.semi_axes.y)
     }
 
     /// Integrals over the common region and along the arcs of the disc, the first body.
@@ -164,35 +172,46 @@ impl Pair {
 
     /// The arcs of the ellipse within the disc, for a centre with positive coordinates.
     ///
-    /// Along the ellipse the distance from the origin rises from its least, in the quadrant opposite to the
-    /// centre, to its greatest, in that of the centre. In between it has two more extremes if the
-    /// origin is within the evolute, in the quadrant beside the longer axis.
+    /// Along the ellipse the distance from the origin rises from its least, in the quadrant
+    /// opposite to the centre, to its greatest, in that of the centre. In between it has two more
+    /// extremes if the origin is within the evolute, in the quadrant beside the longer axis.
     fn common(&self) -> Common {
         let [a, b] = [self.semi_axes.x, self.semi_axes.y];
         let [u, v] = [self.centre.x, self.centre.y];
-        let near = self.nearest();
-        if self.level(near)[0] >= 0.0 {
+        let extremes = self.inner_extremes(a, b, u, v);
+        // Any point within the disc and any beyond it will do, if there is one arc.
+        let (mut near, mut far) = (PI + self.towards_centre(), self.towards_centre());
+        let [mut least, mut most] = [near, far].map(|t| self.level(t)[0]);
+        if least >= 0.0 || extremes.is_some() {
+            near = self.nearest();
+            least = self.level(near)[0];
+        }
+        if least >= 0.0 {
             return if self.holds(Place::zeros()) { Common::Disc } else { Common::Nothing };
         }
-        let far = root([0.0, 0.5 * PI], |t| self.change(t).map(|x| -x));
-        if self.level(far)[0] <= 0.0 {
+        if most <= 0.0 || extremes.is_some() {
+            far = self.farthest();
+            most = self.level(far)[0];
+        }
+        if most <= 0.0 {
             return Common::Ellipse;
         }
+        // Where a cosine between the two is zero.
+        let share = ((most + least) / (most - least)).clamp(-1.0, 1.0).acos() / PI;
         let crossing = |range: [f64; 2]| {
-            root(range, |t| {
+            root(range, range[0] + share * (range[1] - range[0]), |t| {
                 let [level, half] = self.level(t);
                 [level, 2.0 * half]
             })
         };
         // Falling from beyond the arc to its start, rising to its end.
         let falls = |from: f64, to: f64| {
-            root([from, to], |t| {
+            root([from, to], to - share * (to - from), |t| {
                 let [level, half] = self.level(t);
                 [-level, -2.0 * half]
             })
         };
         let whole = |[start, end]: [f64; 2]| Common::Arcs([[start, end]; 2], 1);
-        let extremes = self.inner_extremes(a, b, u, v);
         let Some([first, second]) = extremes else {
             return whole([falls(far, near), crossing([near, far + TAU])]);
         };
@@ -223,9 +242,9 @@ impl Pair {
             }
         }
     }
-    /// Parameters of the two extremes of the distance besides the least and the greatest one, upwards.
-    /// There, with C = |cos θ| and S = |sin θ|, a u/C + b v/S = |a² − b²|: a convex function of θ,
-    /// least where tan³ = b v/(a u).
+    /// Parameters of the two extremes of the distance besides the least and the greatest one,
+    /// upwards. There, with C = |cos θ| and S = |sin θ|, a u/C + b v/S = |a² − b²|: a convex
+    /// function of θ, least where tan³ = b v/(a u).
     fn inner_extremes(&self, a: f64, b: f64, u: f64, v: f64) -> Option<[f64; 2]> {
         let (p, q, difference) = (a * u, b * v, (a - b).abs() * (a + b));
         if p >= difference || q >= difference {
@@ -243,16 +262,16 @@ impl Pair {
             let value = difference * sin * cos - p * sin - q * cos;
             [value, difference * (cos - sin) * (cos + sin) - p * cos + q * sin]
         };
-        let low = root([0.0, middle], f);
-        let high = root([middle, 0.5 * PI], |t| f(t).map(|x| -x));
+        let low = root([0.0, middle], 0.5 * middle, f);
+        let high = root([middle, 0.5 * PI], 0.5 * middle + 0.25 * PI, |t| f(t).map(|x| -x));
         Some(if a > b { [PI - high, PI - low] } else { [TAU - high, TAU - low] })
     }
 }
 
-/// The root of a function, given with its slope, that rises from negative to positive values over a range:
-/// Newton's method between brackets.
-fn root([mut low, mut high]: [f64; 2], f: impl Fn(f64) -> [f64; 2]) -> f64 {
-    let mut x = 0.5 * (low + high);
+/// The root of a function, given with its slope, that rises from negative to positive values over a
+/// range: Newton's method from a `start`, between brackets.
+fn root([mut low, mut high]: [f64; 2], start: f64, f: impl Fn(f64) -> [f64; 2]) -> f64 {
+    let mut x = start;
     for _ in 0..STEPS {
         let [value, slope] = f(x);
         if value == 0.0 {
@@ -265,7 +284,7 @@ fn root([mut low, mut high]: [f64; 2], f: impl Fn(f64) -> [f64; 2]) -> f64 {
         }
         let next = x - value / slope;
         let next = if next > low && next < high { next } else { 0.5 * (low + high) };
-        if (next - x).abs() <= 1e-15 * x.abs() {
+        if (next - x).abs() <= 4e-16 * x.abs() {
             return next;
         }
         x = next;

@@ -6,13 +6,12 @@ use super::slice::Place;
 use super::tube::{Ends, Tube};
 use super::{heights, sweep};
 use crate::overlap::Overlap;
-use crate::overlap::integrals::Integrals;
 use crate::{Ellipsoid, Shape};
 use interfaces::{Pose, Vector};
 use nalgebra::{Matrix2, Matrix3, SymmetricEigen};
 
-/// An ellipsoid (x − c)ᵀM(x − c) ≤ 1 beside a tube along z: its sections are ellipses of one shape and
-/// orientation, with their axes along x and y.
+/// An ellipsoid (x − c)ᵀM(x − c) ≤ 1 beside a tube along z: its sections are ellipses of one shape
+/// and orientation, with their axes along x and y.
 struct EllipsoidInTube {
     radius: f64,
     half: f64,
@@ -45,17 +44,15 @@ pub(super) fn overlap(
         let (value, change) = pair.at(h).gap();
         Gap { value, change }
     })?;
-    let (mut sums, mut of) = (Integrals::default(), [false; 2]);
     // The tube's curvature jumps where its straight part ends.
-    let inner = [-pair.half, pair.half].map(|h| h.clamp(ends[0], ends[1]));
-    let places = [(ends[0], true), (inner[0], false), (inner[1], false), (ends[1], true)];
-    for part in places.windows(2).filter(|w| w[0].0 < w[1].0) {
-        let round = [0, 1].map(|i| part[i].1 || ends.contains(&part[i].0));
-        let range = [part[0].0, part[1].0];
-        let (found, met) = sweep::sweep(range, round, true, tolerance, |h| pair.at(h).section());
-        sums = sums + found;
-        of = [of[0] | met[0], of[1] | met[1]];
+    let inner = [-pair.half, pair.half].map(|h| (h, false));
+    let (mut places, mut n) = ([(ends[0], true); 4], 1);
+    for place in inner.into_iter().filter(|p| p.0 > ends[0] && p.0 < ends[1]) {
+        places[n] = place;
+        n += 1;
     }
+    places[n] = (ends[1], true);
+    let (mut sums, of) = sweep::sweep(&places[..=n], true, tolerance, |h| pair.at(h).section());
     // Flat ends within the ellipsoid.
     let mut flat = [false; 2];
     if pair.ends == Ends::Flat {

@@ -22,19 +22,22 @@ const FINE: f64 = 1e-6;
 /// Pieces after which breaks are no longer looked for.
 const NOISY: usize = 200;
 
-/// The integrals over the heights `ends` to a share of `tolerance` of the volume, and whether pieces of the first and the
-/// second body's surface were met.
+/// The integrals over the heights between `places`, upwards, to a share of `tolerance` of the volume, and
+/// whether pieces of the first and the second body's surface were met.
 ///
 /// The integrand has breaks where pieces of the outline appear or vanish: these heights are found, and what lies between
-/// is integrated for itself. Its ends are round where a slice of a tube shrinks to a line, and where there are `arcs` perhaps
-/// everywhere, since one may touch a line there.
+/// is integrated for itself. Inner places are breaks that are known. Places are round where a slice of a tube shrinks to a
+/// line, and where there are `arcs` perhaps everywhere, since one may touch a line there.
 pub(super) fn sweep(
-    ends: [f64; 2],
-    round: [bool; 2],
+    places: &[(f64, bool)],
     arcs: bool,
     tolerance: f64,
     mut section: impl FnMut(f64) -> Section,
 ) -> (Integrals, [bool; 2]) {
+    let (Some(first), Some(last)) = (places.first(), places.last()) else {
+        return (Integrals::default(), [false; 2]);
+    };
+    let ends = [first.0, last.0];
     let near = [0, 1].map(|i| {
         let h = ends[i] + (ends[1 - i] - ends[i]) * (NEAR * tolerance).max(1e-10);
         Some((h, section(h).mark))
@@ -52,7 +55,11 @@ pub(super) fn sweep(
         scale: 0.0,
         scale_area: 0.0,
     };
-    sweep.push(Piece { ends, round, part: [-1.0, 1.0], near });
+    for (i, pair) in places.windows(2).enumerate() {
+        let [low, high] = [pair[0], pair[1]];
+        let near = [near[0].filter(|_| i == 0), near[1].filter(|_| i + 2 == places.len())];
+        sweep.push(Piece { near, ..Piece::between(low, high) });
+    }
     while sweep.n > 0 {
         sweep.n -= 1;
         sweep.tried += 1;

@@ -57,12 +57,13 @@ struct Moments {
 }
 
 impl Mantle {
-    /// The part of a convex polygon, counter-clockwise about its unit `normal`, within the cylinder.
+    /// The part of a convex polygon, counter-clockwise about its unit `normal`, within the
+    /// cylinder.
     ///
-    /// The region is bounded by straight lines and by arcs of an ellipse: it is the polygon of their
-    /// ends plus a segment per arc, a circular one as seen along the axis. The polygon is parted at
-    /// the plane through the axis along the face's horizontal lines, so that no arc spans more than
-    /// half a turn and none is mistaken for its complement.
+    /// The region is bounded by straight lines and by arcs of an ellipse: it is the polygon of
+    /// their ends plus a segment per arc, a circular one as seen along the axis. The polygon is
+    /// parted at the plane through the axis along the face's horizontal lines, so that no arc spans
+    /// more than half a turn and none is mistaken for its complement.
     pub(super) fn new(corners: &[Vector], normal: Vector, scratch: &mut Scratch) -> Self {
         let flat = normal.xy().norm();
         let (out_x, out_y) = if flat > 0.0 { (normal.x / flat, normal.y / flat) } else { (1.0, 0.0) };
@@ -129,8 +130,8 @@ fn half_of(all: &[Place], side: f64, half: &mut Vec<Place>) {
     }
 }
 
-/// The part of a convex polygon within the unit circle of (q, t), as the ends of its straight sides and
-/// arcs in order.
+/// The part of a convex polygon within the unit circle of (q, t), as the ends of its straight sides
+/// and arcs in order.
 fn common_region(polygon: &[Place], common: &mut Vec<Place>) {
     common.clear();
     for (i, p) in polygon.iter().enumerate() {
@@ -201,8 +202,8 @@ impl Moments {
         }
         sum
     }
-    /// Adds the segment between an arc and its chord; lengths along s are `stretch` times as long as
-    /// seen along the axis.
+    /// Adds the segment between an arc and its chord; lengths along s are `stretch` times as long
+    /// as seen along the axis.
     fn add_arc(&mut self, p: &Place, next: &Place, (s, t): (f64, f64), (v, w): (f64, f64), stretch: f64) {
         let (dq, dt) = (next.q - p.q, next.t - p.t);
         let chord = dq.hypot(dt);

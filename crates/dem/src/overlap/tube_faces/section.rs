@@ -2,8 +2,8 @@
 use crate::overlap::ball_faces::edge::Edge;
 use interfaces::Vector;
 
-/// Integrals between segments of a section's outline and the unit circle, along rays from the centre of
-/// the circle; positive where the centre is on the inner side of a segment.
+/// Integrals between segments of a section's outline and the unit circle, along rays from the
+/// centre of the circle; positive where the centre is on the inner side of a segment.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Beyond {
     /// ∫ dA.
@@ -84,8 +84,8 @@ impl Beyond {
     }
 }
 
-/// Angle under which the centre sees the segment from `p` to `q`, by the numbers that [`Beyond::new`]
-/// uses; negative where the centre is on its right.
+/// Angle under which the centre sees the segment from `p` to `q`, by the numbers that
+/// [`Beyond::new`] uses; negative where the centre is on its right.
 pub(super) fn angle(p: Vector, q: Vector) -> f64 {
     Line::new(p, q).map_or(0.0, |l| {
         let d = l.distance;

@@ -67,8 +67,8 @@ fn one_within_the_other() {
     }
 }
 
-/// A box cut in two by a plane shares the sum of what its halves share; centres of ends on faces, edges and corners of
-/// them included.
+/// A box cut in two by a plane shares the sum of what its halves share; centres of ends on faces,
+/// edges and corners of them included.
 #[test]
 fn halves_of_a_box_add_up() {
     let whole = Cuboid::new([1.2, 1.0, 0.8]).unwrap();

@@ -17,21 +17,27 @@
 //! ∫ dA, and the moment about the centroid follows from Σ ∫ x dA × n.
 mod level;
 mod mantle;
+mod part;
 mod section;
 mod segment;
 #[cfg(test)]
 mod tests;
+mod tube;
+mod wall_box;
+
+pub(crate) use tube::Tube;
+pub(crate) use wall_box::WallBox;
 
 use super::Overlap;
 use super::ball_faces::face::{self, Face};
 use super::ball_faces::{Faces, contained, within};
 use super::sheets::Sheets;
-use crate::{Capsule, Cylinder, HalfSpace, Shape, SmoothConvex};
-use interfaces::{Point, Pose, Vector};
+use interfaces::{Pose, Vector};
 use mantle::Mantle;
 use nalgebra::Matrix3;
-use section::Beyond;
+use part::{Part, Sums};
 use std::f64::consts::PI;
+use tube::Map;
 
 /// Areas of sections and volumes of half balls of which not even the sign is known, in units of the
 /// radius.
@@ -45,138 +51,6 @@ const STEPS: [[f64; 3]; 2] = [[0.48e-10, 0.64e-10, 0.6e-10], [0.64e-10, -0.48e-1
 
 /// Half a unit ball.
 const HALF_BALL: f64 = 2.0 / 3.0 * PI;
-
-/// A capsule or cylinder at a pose.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Tube {
-    /// \[m\].
-    radius: f64,
-    /// Half the length of the straight part, in radii.
-    half: f64,
-    round: bool,
-    /// \[m³\].
-    volume: f64,
-    at: Pose,
-}
-
-impl Tube {
-    pub(crate) fn capsule(shape: &Capsule, at: &Pose) -> Self {
-        let radius = shape.radius();
-        Self {
-            radius,
-            half: 0.5 * shape.length() / radius,
-            round: true,
-            volume: shape.inertia(1.0).volume,
-            at: *at,
-        }
-    }
-    pub(crate) fn cylinder(shape: &Cylinder, at: &Pose) -> Self {
-        let radius = shape.radius();
-        Self {
-            radius,
-            half: 0.5 * shape.length() / radius,
-            round: false,
-            volume: shape.inertia(1.0).volume,
-            at: *at,
-        }
-    }
-    fn top(&self) -> f64 {
-        self.half + if self.round { 1.0 } else { 0.0 }
-    }
-    fn holds(&self, x: &Vector) -> bool {
-        let beyond = (x.z.abs() - self.half).max(0.0);
-        let flat2 = x.x * x.x + x.y * x.y;
-        if self.round { flat2 + beyond * beyond <= 1.0 } else { flat2 <= 1.0 && beyond == 0.0 }
-    }
-    /// Length of the segment from `p` to `q` within the tube.
-    fn length_within(&self, p: Vector, q: Vector) -> f64 {
-        let way = q - p;
-        let (o, u) = (Point::from(p), way);
-        let chord = if self.round {
-            Capsule::new(1.0, 2.0 * self.half).ok().and_then(|c| c.chord(o, u))
-        } else {
-            Cylinder::new(1.0, 2.0 * self.half).ok().and_then(|c| c.chord(o, u))
-        };
-        chord.map_or(0.0, |[from, to]| (to.min(1.0) - from.max(0.0)).max(0.0) * way.norm())
-    }
-}
-
-/// From the frame of the body to that of the tube, in radii.
-struct Map {
-    /// Middle of the tube in the frame of the body \[m\].
-    centre: Point,
-    /// Axis of the tube there.
-    axis: Vector,
-    linear: Matrix3<f64>,
-}
-
-impl Map {
-    fn new(a: &Tube, at_b: &Pose) -> Self {
-        let turn = (a.at.orientation.inverse() * at_b.orientation).to_rotation_matrix();
-        Self {
-            centre: at_b.to_body(a.at.position),
-            axis: turn.inverse_transform_vector(&Vector::z()),
-            linear: turn.matrix() / a.radius,
-        }
-    }
-    fn apply(&self, x: Point) -> Vector {
-        self.linear * (x - self.centre)
-    }
-}
-
-/// Sums over faces, about the middle of the tube.
-#[derive(Clone, Copy, Debug)]
-struct Sums {
-    /// Volume and ∫ x dV but for what the centres of the ends add if they are inside.
-    volume: f64,
-    first: Vector,
-    gradient: Vector,
-    /// Σ ∫ x dA × n.
-    torque: Vector,
-    /// A₋ − A₊.
-    flux: f64,
-    /// Integrals beyond the segments of the sections, of the lower end first.
-    sections: [Beyond; 2],
-    /// Squared distance of the nearest edge within a half ball from its centre.
-    nearest2: f64,
-}
-
-impl Default for Sums {
-    fn default() -> Self {
-        let (zero, none) = (Vector::zeros(), Beyond::default());
-        Self {
-            volume: 0.0,
-            first: zero,
-            gradient: zero,
-            torque: zero,
-            flux: 0.0,
-            sections: [none; 2],
-            nearest2: f64::INFINITY,
-        }
-    }
-}
-
-impl Sums {
-    /// Squared distance of the nearest edge or segment from the centre of an end.
-    fn nearest2(&self) -> f64 {
-        self.sections.iter().fold(self.nearest2, |least, s| least.min(s.nearest2))
-    }
-    fn add(&mut self, o: &Self) {
-        self.volume += o.volume;
-        self.first += o.first;
-        self.gradient += o.gradient;
-        self.torque += o.torque;
-        self.flux += o.flux;
-        self.sections[0].add(&o.sections[0]);
-        self.sections[1].add(&o.sections[1]);
-        self.nearest2 = self.nearest2.min(o.nearest2);
-    }
-    /// Adds a part of a face by its normal, ∫ dA and ∫ x dA.
-    fn add_area(&mut self, normal: Vector, area: f64, moment: Vector) {
-        self.gradient -= normal * area;
-        self.torque += moment.cross(&normal);
-    }
-}
 
 /// Shares of the whole that the centres of the ends see of the body: 1 inside, 0 outside, between
 /// if they are on its surface.
@@ -368,50 +242,6 @@ fn normal(a: &Tube, corners: &[Vector]) -> Option<Vector> {
     (normal.dot(&first).abs() <= a.half * normal.z.abs() + across).then_some(normal)
 }
 
-/// Integrals over the part of one face.
-#[derive(Clone, Copy, Debug)]
-struct Part {
-    normal: Vector,
-    area: f64,
-    moment: Vector,
-    sums: Sums,
-}
-
-impl Part {
-    /// Adds a segment of the section at an end.
-    fn add_section(&mut self, a: &Tube, end: usize, p: Vector, q: Vector) {
-        let (beyond, sign) = (Beyond::new(p, q), [-1.0, 1.0][end]);
-        self.sums.volume -= a.half * beyond.area;
-        self.sums.first.z -= sign * 0.5 * a.half * a.half * beyond.area;
-        if a.round {
-            self.sums.first.z -= sign * beyond.second;
-        }
-        self.sums.sections[end].add(&beyond);
-    }
-    fn add_mantle(&mut self, m: &Mantle) {
-        let n = self.normal;
-        self.area += m.area;
-        self.moment += m.moment;
-        self.sums.add_area(n, m.area, m.moment);
-        self.sums.flux += n.z * m.area;
-        self.sums.volume += n.z * m.moment.z;
-        self.sums.first += Vector::new(-n.x * m.second, -n.y * m.second, 0.5 * n.z * m.z2);
-    }
-    /// Adds the part within the half ball at an end, of a polygon seen from its centre.
-    fn add_ball(&mut self, a: &Tube, end: usize, polygon: &[Vector], places: &mut Vec<[f64; 2]>) {
-        let centre = Vector::z() * [-a.half, a.half][end];
-        places.resize(polygon.len(), [0.0; 2]);
-        let Some(part) = Face::new(polygon).and_then(|f| f.part(places, |_, _| {})) else { return };
-        let moment = part.moment + centre * part.area;
-        self.area += part.area;
-        self.moment += moment;
-        self.sums.add_area(part.normal, part.area, moment);
-        self.sums.volume -= part.beyond;
-        self.sums.first -= centre * part.beyond + part.normal * part.second;
-        self.sums.nearest2 = self.sums.nearest2.min(part.nearest2);
-    }
-}
-
 /// Whether the centres of the ends are inside, by the signs of sums that are known; `None` where
 /// they are not.
 fn ends_inside(sums: &Sums) -> Option<[bool; 2]> {
@@ -461,46 +291,4 @@ fn region(a: &Tube, sums: &Sums, shares: Shares, apart: Vector) -> Option<Overla
         moment: world(moment) * r.powi(3),
         pivot: Matrix3::zeros(),
     })
-}
-
-/// A wall as a closed box, larger than the tube, whose upper side is the wall.
-pub(crate) struct WallBox {
-    corners: [Point; 8],
-    wall: HalfSpace,
-}
-
-impl WallBox {
-    pub(crate) fn new(a: &Tube, wall: &HalfSpace) -> Self {
-        let n = wall.normal();
-        let size = 4.0 * (a.half + 1.0) * a.radius;
-        let u = n.cross(&Vector::ith(n.iamin(), 1.0)).normalize();
-        let v = n.cross(&u);
-        let foot = a.at.position - n * wall.signed_distance(a.at.position);
-        let corners = std::array::from_fn(|i| {
-            let side = |bit: usize| if i >> bit & 1 == 0 { -size } else { size };
-            let depth = if i & 4 == 0 { -2.0 * size } else { 0.0 };
-            foot + u * side(0) + v * side(1) + n * depth
-        });
-        Self { corners, wall: *wall }
-    }
-}
-
-impl Faces for WallBox {
-    fn n_corners(&self) -> usize {
-        self.corners.len()
-    }
-    fn corner(&self, i: u32) -> Point {
-        self.corners[i as usize]
-    }
-    fn each(&self, visit: impl FnMut(&[u32])) {
-        const LOOPS: [[u32; 4]; 6] =
-            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        LOOPS.iter().map(|l| l.as_slice()).for_each(visit);
-    }
-    fn convex(&self) -> bool {
-        true
-    }
-    fn holds(&self, x: Point) -> bool {
-        self.wall.signed_distance(x) <= 0.0
-    }
 }

@@ -55,8 +55,7 @@ impl Table {
     fn add(&mut self, m: Measured, case: u64) {
         self.met += usize::from(m.volume > 0.0);
         for (worst, now) in self.worst.iter_mut().zip([m.of_body, m.of_volume, m.gradient]) {
-            // Also where it is not a number.
-            if !(now <= worst.0) {
+            if now.is_nan() || now > worst.0 {
                 *worst = (now, case);
             }
         }

@@ -274,7 +274,7 @@ fn region(a: &Tube, sums: &Sums, shares: Shares, apart: Vector) -> Option<Overla
             first.z += sign * (HALF_BALL * a.half * solid + 0.25 * PI * plane);
         }
     }
-    if !(volume > NOTHING * f64::EPSILON) {
+    if volume.is_nan() || volume <= NOTHING * f64::EPSILON {
         return None;
     }
     let arm = first / volume;

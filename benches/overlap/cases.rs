@@ -128,10 +128,9 @@ pub(crate) fn all() -> Outcome<Vec<Case>> {
         .tree(),
         Case {
             a: Box::new(Capsule::new(0.3, 1.0)?),
-            reference: fine(Route::Slices),
             ..Case::new("capsule and cube", Cuboid::new([1.0; 3])?, 0.02)
         }
-        .converging("slices", Route::Slices)
+        .exact("closed form", Route::ClosedForm)
         .tree(),
         Case::new("rocks of 1280 triangles", rock(3)?, 0.02).exact("crossings", Route::Crossings).tree(),
         Case { reference: tree(1e-6), posing: tree(1e-2), ..Case::new("tori, by distances", torus, 0.02) }

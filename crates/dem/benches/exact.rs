@@ -1,6 +1,6 @@
 //! CPU time per pair of every exact route: `cargo bench -p dem --bench exact`. Those that approximate have benches of their own
 //! (`columns`, `tree`). `-- spheres` takes only the pairs with this word.
-use dem::{ConvexPolyhedron, Cuboid, OverlapSolver, Shape, Sphere, TriangleMesh};
+use dem::{Capsule, ConvexPolyhedron, Cuboid, Cylinder, OverlapSolver, Shape, Sphere, TriangleMesh};
 use interfaces::{Point, Pose, Rotation, Vector};
 
 /// Median CPU time of a call \[µs\], over nine runs.
@@ -117,6 +117,14 @@ fn main() {
     row("cubes, deep", &cube, &cube, at([0.1, 0.0, 0.0], [0.3, 0.2, 0.5]));
     row("cubes, apart, spheres around meet", &cube, &cube, at([1.35, 0.2, 0.1], [0.3, 0.2, 0.5]));
     row("sphere and cube", &ball, &cube, at([1.2, 0.6, 0.3], [0.3, 0.2, 0.5]));
+    let capsule = Capsule::new(0.3, 1.0).expect("a capsule");
+    let cylinder = Cylinder::new(0.3, 1.0).expect("a cylinder");
+    for (name, tube) in [("capsule", &capsule as &dyn Shape), ("cylinder", &cylinder)] {
+        row(&format!("{name} and cube, side in"), tube, &cube, at([0.7, 0.1, 0.0], [0.3, 0.2, 0.5]));
+        row(&format!("{name} and cube, deep"), tube, &cube, at([0.2, 0.1, 0.0], [0.3, 0.2, 0.5]));
+        let rocks = mesh(3, rock);
+        row(&format!("{name} and rocks, 1280 triangles"), tube, &rocks, at([1.0, 0.4, 0.3], [0.3, 0.2, 0.5]));
+    }
     let direction = Vector::new(0.8, 0.5, 0.33).normalize();
     let turn = [0.3, 0.7, -0.4];
     let corners: Vec<[f64; 3]> = mesh(0, |_| 1.0).vertices().iter().map(|v| (*v).into()).collect();

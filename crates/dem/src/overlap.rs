@@ -15,6 +15,7 @@ mod sheets;
 mod slices;
 mod solver;
 pub(crate) mod tree;
+mod tube;
 mod tube_faces;
 mod walls;
 

@@ -26,7 +26,7 @@ use super::facets::holds;
 use super::sheets::Sheets;
 use crate::ConvexPolyhedron;
 use crate::shapes::Facets;
-use face::{Face, Part, polygon_angle};
+use face::{Face, Part, polygon_angle, seen_angle};
 use interfaces::{Point, Polyhedron, Pose, Rotation, Vector};
 use nalgebra::Matrix3;
 use std::f64::consts::PI;
@@ -272,11 +272,7 @@ impl BallFaces {
         b.each(|face| {
             corners.clear();
             corners.extend(face.iter().map(|i| map(b.corner(*i))));
-            plane.resize(face.len(), [0.0; 2]);
-            angle += match Face::new(corners) {
-                Some(f) => f.solid_angle(plane),
-                None => polygon_angle(corners),
-            };
+            angle += seen_angle(corners, plane);
         });
         angle
     }

@@ -19,24 +19,25 @@ mod piece;
 mod region;
 mod rules;
 mod slice;
+mod sliced_tube;
 mod sums;
 mod sweep;
 #[cfg(test)]
 mod tests;
 mod touches;
-mod tube;
 mod vertex;
 
 use super::Overlap;
 use super::integrals::Integrals;
+use super::tube::{Ends, Tube};
 use crate::{Form, Shape};
 use frame::Frame;
-use interfaces::{Pose, Vector};
+use interfaces::Pose;
 #[cfg(test)]
 pub(super) use outline::segment;
 use region::Region;
 use slice::Slice;
-use tube::{Ends, SlicedTube, Tube};
+use sliced_tube::SlicedTube;
 
 /// The finest tolerance worth asking for.
 const FINEST: f64 = 1e-12;
@@ -75,7 +76,7 @@ impl Slices {
             out[first..].iter_mut().for_each(|o| *o = o.swapped());
             return found;
         }
-        let Some(tube) = tube_of(a.0, a.1) else { return false };
+        let Some(tube) = Tube::of(a.0, a.1) else { return false };
         match b.0 {
             Form::Ellipsoid(q) => {
                 let apart = tube.at.position - b.1.position;
@@ -85,7 +86,7 @@ impl Slices {
                     out.extend(ellipsoid::overlap(&tube, q, b.1, normal, tolerance));
                 }
             }
-            _ => match tube_of(b.0, b.1) {
+            _ => match Tube::of(b.0, b.1) {
                 Some(other) => out.extend(self.tubes(&tube, &other, tolerance)),
                 None => return false,
             },
@@ -130,7 +131,7 @@ impl Slices {
         let frame = Frame::new(origin, a.axis, across);
         let slack = SLACK * (a.bound() + b.bound() + apart.norm());
         let scene = Scene { slack, tolerance, symmetric };
-        let sliced = [a.sliced(&frame), b.sliced(&frame)];
+        let sliced = [a, b].map(|tube| SlicedTube::new(tube, &frame));
         let found = if known { known::integrate(sliced, tolerance) } else { None };
         let [first, second] = sliced;
         let found = found.or_else(|| self.integrate(&scene, first, second))?;
@@ -195,16 +196,4 @@ struct Swept {
     sums: Integrals,
     base: f64,
     of: [bool; 2],
-}
-
-/// A sphere, capsule or cylinder.
-fn tube_of(form: &Form<'_>, at: &Pose) -> Option<Tube> {
-    let axis = at.orientation * Vector::z();
-    let (radius, half, ends) = match form {
-        Form::Sphere(s) => (s.radius(), 0.0, Ends::Round),
-        Form::Capsule(c) => (c.radius(), 0.5 * c.length(), Ends::Round),
-        Form::Cylinder(c) => (c.radius(), 0.5 * c.length(), Ends::Flat),
-        _ => return None,
-    };
-    Some(Tube { radius, half, ends, axis, at: *at })
 }

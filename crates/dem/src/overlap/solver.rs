@@ -6,7 +6,7 @@ use super::half_space::HalfSpaceOverlap;
 use super::plane::PlaneOverlap;
 use super::slices::Slices;
 use super::tree::{AdaptiveTree, Exhausted, Normal, Refinement, SubBox};
-use super::tube_faces::{Tube, TubeFaces, WallBox};
+use super::tube_faces::{TubeFaces, UnitTube, WallBox};
 use super::{Overlap, closed, columns, outline, walls};
 use crate::{DemError, Form, Shape};
 use interfaces::Pose;
@@ -283,7 +283,7 @@ impl OverlapSolver {
                 }
             }
             (Form::Capsule(_) | Form::Cylinder(_), Form::Hull(_) | Form::Facets(_)) => {
-                let Some(tube) = tube_of(a, at_a) else { return false };
+                let Some(tube) = UnitTube::of(a, at_a) else { return false };
                 match b {
                     Form::Hull(q) if q.n_faces() <= FEW_FACES => {
                         self.tube_faces.overlap(&tube, *q, at_b, out)
@@ -308,8 +308,8 @@ impl OverlapSolver {
                     )),
                     Form::Ellipsoid(p) => out.extend(walls::ellipsoid(p, at_a, &w)),
                     Form::Cylinder(p) => out.extend(walls::cylinder(p, at_a, &w)),
-                    Form::Capsule(p) => {
-                        let tube = Tube::capsule(p, at_a);
+                    Form::Capsule(_) => {
+                        let Some(tube) = UnitTube::of(a, at_a) else { return false };
                         let wall = WallBox::new(&tube, &w);
                         self.tube_faces.overlap(&tube, &wall, &Pose::at([0.0; 3]), out);
                     }
@@ -321,14 +321,6 @@ impl OverlapSolver {
             _ => return false,
         }
         true
-    }
-}
-
-fn tube_of(form: &Form<'_>, at: &Pose) -> Option<Tube> {
-    match form {
-        Form::Capsule(p) => Some(Tube::capsule(p, at)),
-        Form::Cylinder(p) => Some(Tube::cylinder(p, at)),
-        _ => None,
     }
 }
 

@@ -22,14 +22,14 @@ mod section;
 mod segment;
 #[cfg(test)]
 mod tests;
-mod tube;
+mod unit_tube;
 mod wall_box;
 
-pub(crate) use tube::Tube;
+pub(crate) use unit_tube::UnitTube;
 pub(crate) use wall_box::WallBox;
 
 use super::Overlap;
-use super::ball_faces::face::{self, Face};
+use super::ball_faces::face;
 use super::ball_faces::{Faces, contained, within};
 use super::sheets::Sheets;
 use interfaces::{Pose, Vector};
@@ -37,7 +37,7 @@ use mantle::Mantle;
 use nalgebra::Matrix3;
 use part::{Part, Sums};
 use std::f64::consts::PI;
-use tube::Map;
+use unit_tube::Map;
 
 /// Areas of sections and volumes of half balls of which not even the sign is known, in units of the
 /// radius.
@@ -84,7 +84,7 @@ pub(crate) struct TubeFaces {
 
 impl TubeFaces {
     /// Adds the regions that `a` shares with `b`.
-    pub(crate) fn overlap(&mut self, a: &Tube, b: &impl Faces, at_b: &Pose, out: &mut Vec<Overlap>) {
+    pub(crate) fn overlap(&mut self, a: &UnitTube<'_>, b: &impl Faces, at_b: &Pose, out: &mut Vec<Overlap>) {
         let (mut a, mut map) = (*a, Map::new(a, at_b));
         let apart = a.at.position - at_b.position;
         if (0..b.n_corners() as u32).all(|i| a.holds(&map.apply(b.corner(i)))) {
@@ -125,7 +125,7 @@ impl TubeFaces {
 
     /// Sums over all faces that the tube reaches, listed by sheets unless the body is convex;
     /// `None` if there are none.
-    fn sum(&mut self, a: &Tube, map: &Map, b: &impl Faces) -> Option<Sums> {
+    fn sum(&mut self, a: &UnitTube<'_>, map: &Map, b: &impl Faces) -> Option<Sums> {
         let reach = map.axis.map(|n| {
             let across = if a.round { 1.0 } else { (1.0 - n * n).max(0.0).sqrt() };
             (a.half * n.abs() + across) * a.radius
@@ -159,7 +159,7 @@ impl TubeFaces {
 
     /// Parts of a convex face between the ends and, moved to their centres, beyond them; the
     /// segments in which it crosses the planes of the ends, the lower first.
-    fn split(&mut self, a: &Tube, corners: &[Vector]) -> [Option<[Vector; 2]>; 2] {
+    fn split(&mut self, a: &UnitTube<'_>, corners: &[Vector]) -> [Option<[Vector; 2]>; 2] {
         let Self { below, middle, beyond: [lower, upper], .. } = self;
         let above = level::cut(corners, a.half, below, upper);
         // The mirror image is cut, whose segments run the other way around.
@@ -175,7 +175,7 @@ impl TubeFaces {
 
     /// Integrals over a convex face, given by its corners counter-clockwise; `None` where it is off
     /// the tube.
-    fn face(&mut self, a: &Tube, corners: &[Vector]) -> Option<Part> {
+    fn face(&mut self, a: &UnitTube<'_>, corners: &[Vector]) -> Option<Part> {
         let normal = normal(a, corners)?;
         let mut part = Part { normal, area: 0.0, moment: Vector::zeros(), sums: Sums::default() };
         let segments = self.split(a, corners);
@@ -197,7 +197,7 @@ impl TubeFaces {
 
     /// Shares of the planes and half spaces at the ends, by all faces and the numbers that their
     /// integrals use.
-    fn shares(&mut self, a: &Tube, map: &Map, b: &impl Faces) -> Shares {
+    fn shares(&mut self, a: &UnitTube<'_>, map: &Map, b: &impl Faces) -> Shares {
         let (mut plane, mut solid) = ([0.0; 2], [0.0; 2]);
         let mut corners = std::mem::take(&mut self.corners);
         b.each(|face| {
@@ -211,12 +211,7 @@ impl TubeFaces {
                 }
                 let polygon = &beyond[end];
                 if polygon.len() > 2 {
-                    places.resize(polygon.len(), [0.0; 2]);
-                    let angle = match Face::new(polygon) {
-                        Some(f) => f.solid_angle(places),
-                        None => face::polygon_angle(polygon),
-                    };
-                    solid[end] += angle / (2.0 * PI);
+                    solid[end] += face::seen_angle(polygon, places) / (2.0 * PI);
                 }
             }
         });
@@ -226,7 +221,7 @@ impl TubeFaces {
 }
 
 /// Unit normal of a face, `None` if it has no area or its box is off that of the tube.
-fn normal(a: &Tube, corners: &[Vector]) -> Option<Vector> {
+fn normal(a: &UnitTube<'_>, corners: &[Vector]) -> Option<Vector> {
     let limit = Vector::new(1.0, 1.0, a.top());
     let start = (Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY));
     let (low, high) = corners.iter().fold(start, |(low, high), x| (low.inf(x), high.sup(x)));
@@ -263,7 +258,7 @@ fn ends_inside(sums: &Sums) -> Option<[bool; 2]> {
 }
 
 /// The region whose faces have the `sums`, back in the world; `None` if it is empty.
-fn region(a: &Tube, sums: &Sums, shares: Shares, apart: Vector) -> Option<Overlap> {
+fn region(a: &UnitTube<'_>, sums: &Sums, shares: Shares, apart: Vector) -> Option<Overlap> {
     let (mut volume, mut first) = (sums.volume, sums.first);
     for (end, sign) in [(0, -1.0), (1, 1.0)] {
         let (plane, solid) = (shares.plane[end], shares.solid[end]);

@@ -173,7 +173,6 @@ fn prism(size: f64, corners: &[[f64; 2]], parts: &[[usize; 4]]) -> Body {
         let (j, m) = ((i + 1) % n as u32, n as u32);
         faces.extend([[i, j, m + j], [i, m + j, m + i]]);
     }
-    // Caps: parts share corners, T-junctions apart from the L's inner corner do not occur.
     for part in parts {
         let quad = part.map(|i| i as u32);
         for [p, q, r] in [[0, 1, 2], [0, 2, 3]].map(|t| t.map(|i: usize| quad[i])) {

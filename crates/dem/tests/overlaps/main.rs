@@ -1,10 +1,7 @@
 //! Overlaps of fifteen kinds of bodies keep the errors that the documentation states.
 #[path = "../../src/draw.rs"]
-#[allow(dead_code)]
 mod draw;
 mod kinds;
-// Some fields are for the bench and for messages.
-#[allow(dead_code)]
 mod poses;
 mod quadrature;
 mod reference;
@@ -54,6 +51,7 @@ fn every_pair_keeps_its_documented_error() {
         for case in 0..POSES {
             let (a, b, at_a, at_b) = poses::pose(i, j, case);
             let m = poses::measure(&mut solver, (&a, &at_a), (&b, &at_b));
+            assert!(m.volume <= m.smaller * (1.0 + error), "{m:?}");
             met += usize::from(m.volume > 0.0);
             let sound = m.of_body <= error.max(reference) && m.gradient <= error;
             if !sound {

@@ -31,7 +31,7 @@ pub(in crate::overlap) struct Integrals {
 }
 
 /// Points and weights of Gauss and Legendre, the positive half.
-const EIGHT: [(f64, f64); 4] = [
+pub(in crate::overlap) const EIGHT: [(f64, f64); 4] = [
     (0.183_434_642_495_649_8, 0.362_683_783_378_362),
     (0.525_532_409_916_329, 0.313_706_645_877_887_27),
     (0.796_666_477_413_626_7, 0.222_381_034_453_374_48),

@@ -50,15 +50,15 @@ struct Plane<'a> {
     places: &'a [[f64; 2]],
 }
 
-/// An edge within reach: its ends, where on its line they are, its distance from the foot of the centre, its length and its
-/// direction in the plane.
-struct Side {
-    ends: [Vector; 2],
-    from: f64,
-    to: f64,
-    distance: f64,
-    length: f64,
-    direction: [f64; 2],
+/// An edge within reach: its ends, their places on its line, its distance from the foot of the centre, its length
+/// and its direction in the plane.
+pub(in crate::overlap) struct Side {
+    pub(in crate::overlap) ends: [Vector; 2],
+    pub(in crate::overlap) from: f64,
+    pub(in crate::overlap) to: f64,
+    pub(in crate::overlap) distance: f64,
+    pub(in crate::overlap) length: f64,
+    pub(in crate::overlap) direction: [f64; 2],
 }
 
 impl Side {
@@ -67,7 +67,7 @@ impl Side {
     ///
     /// A shallow contact hangs on the small differences between the radius and the distances of corners and edges. These are
     /// the same for all faces around: |x|² of a corner, and the chord's distance taken from one end, however the edge is run along.
-    fn within(&self, height: f64, disc2: Option<f64>) -> Option<Edge> {
+    pub(in crate::overlap) fn within(&self, height: f64, disc2: Option<f64>) -> Option<Edge> {
         let [p, q] = self.ends;
         let along = (q - p) * self.length.recip();
         let (s, t) = (p.dot(&along), q.dot(&along));
@@ -271,7 +271,7 @@ impl Face<'_> {
     }
 
     /// Solid angle of the face seen from the centre, from the very numbers that [`part`](Self::part) uses.
-    pub(in crate::overlap) fn solid_angle(&self, places: &mut [[f64; 2]]) -> f64 {
+    fn solid_angle(&self, places: &mut [[f64; 2]]) -> f64 {
         let Some(plane) = self.plane(places) else { return 0.0 };
         let height = self.height.abs();
         let mut sum = 0.0;
@@ -286,6 +286,16 @@ impl Face<'_> {
         }
         let angle = plane.turn() - sum;
         if self.height < 0.0 { -angle } else { angle }
+    }
+}
+
+/// Solid angle of any convex face seen from the centre, where the ball reaches it from the very numbers that
+/// [`part`](Face::part) uses; `places` is memory.
+pub(in crate::overlap) fn seen_angle(corners: &[Vector], places: &mut Vec<[f64; 2]>) -> f64 {
+    places.resize(corners.len(), [0.0; 2]);
+    match Face::new(corners) {
+        Some(face) => face.solid_angle(places),
+        None => polygon_angle(corners),
     }
 }
 

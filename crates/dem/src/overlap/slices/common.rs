@@ -2,8 +2,8 @@
 use super::flat::Flat;
 use super::lanes::{Lanes, Places, WIDTH};
 use super::slice::Place;
+use super::sliced_tube::SlicedTube;
 use super::sums::{Sampled, Sums, Weighted};
-use super::tube::SlicedTube;
 use super::vertex::{Curve, Vertex};
 use pulp::{Arch, Simd, WithSimd};
 

@@ -3,9 +3,9 @@ use super::adaptive;
 use super::lanes::WIDTH;
 use super::piece::Piece;
 use super::sums::Sampled;
-use super::tube::Tube;
 use crate::Overlap;
 use crate::overlap::integrals::Integrals;
+use crate::overlap::tube::Tube;
 
 /// Sine of the angle between axes below which their straight parts are not taken for crossing.
 const STEEP: f64 = 1e-3;

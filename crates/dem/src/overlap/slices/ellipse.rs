@@ -1,4 +1,4 @@
-//! What a disc and an ellipse share.
+//! Intersection of a disc and an ellipse.
 use super::outline::{Section, segment};
 use super::slice::{Place, Tag, cross};
 use std::f64::consts::{PI, TAU};

@@ -3,16 +3,16 @@ use super::apart::Gap;
 use super::ellipse::Pair;
 use super::frame::Frame;
 use super::slice::Place;
-use super::tube::{Ends, Tube};
 use super::{heights, sweep};
 use crate::overlap::Overlap;
+use crate::overlap::tube::{Ends, Tube};
 use crate::{Ellipsoid, Shape};
 use interfaces::{Pose, Vector};
 use nalgebra::{Matrix2, Matrix3, SymmetricEigen};
 
-/// An ellipsoid (x − c)ᵀM(x − c) ≤ 1 beside a tube along z: its sections are ellipses of one shape
-/// and orientation, with their axes along x and y.
-struct EllipsoidInTube {
+/// A tube along z and an ellipsoid, whose sections across z are ellipses of one shape and
+/// orientation, with their axes along x and y.
+struct TubeAndEllipsoid {
     radius: f64,
     half: f64,
     ends: Ends,
@@ -25,7 +25,7 @@ struct EllipsoidInTube {
     reach: f64,
 }
 
-/// What the tube, the first body, and an ellipsoid share; `normal` where the gradient gives none.
+/// Overlap of the tube, the first body, and an ellipsoid; `normal` is used if the gradient is zero.
 pub(super) fn overlap(
     tube: &Tube,
     b: &Ellipsoid,
@@ -33,8 +33,8 @@ pub(super) fn overlap(
     normal: Vector,
     tolerance: f64,
 ) -> Option<Overlap> {
-    let (pair, frame) = EllipsoidInTube::new(tube, b, at_b);
-    let top = pair.half + if pair.ends == Ends::Round { pair.radius } else { 0.0 };
+    let (pair, frame) = TubeAndEllipsoid::new(tube, b, at_b);
+    let top = tube.top();
     let own = [pair.centre.z - pair.reach, pair.centre.z + pair.reach];
     let range = [own[0].max(-top), own[1].min(top)];
     if range[0] >= range[1] {
@@ -54,12 +54,10 @@ pub(super) fn overlap(
     places[n] = (ends[1], true);
     let (mut sums, of) = sweep::sweep(&places[..=n], true, tolerance, |h| pair.at(h).section());
     // Flat ends within the ellipsoid.
-    let mut flat = [false; 2];
     if pair.ends == Ends::Flat {
-        for (i, sign) in [(0, -1.0), (1, 1.0)] {
-            if ends[i] == sign * pair.half {
-                let section = pair.at(ends[i]).section();
-                flat[i] = section.area > 0.0;
+        for (end, sign) in [(ends[0], -1.0), (ends[1], 1.0)] {
+            if end == sign * pair.half {
+                let section = pair.at(end).section();
                 sums.area.z += sign * section.area;
                 sums.moment += Vector::new(section.first.y, -section.first.x, 0.0) * sign;
             }
@@ -72,7 +70,7 @@ pub(super) fn overlap(
     }
 }
 
-impl EllipsoidInTube {
+impl TubeAndEllipsoid {
     fn new(tube: &Tube, b: &Ellipsoid, at_b: &Pose) -> (Self, Frame) {
         let frame = Frame::new(tube.at.position, tube.at.orientation * Vector::x(), tube.axis);
         let turn = |frame: &Frame| {

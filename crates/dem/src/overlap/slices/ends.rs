@@ -1,7 +1,7 @@
 //! Round ends: closed forms where they meet nothing but round or flat ends, balls where they meet other parts of one body only.
-use super::tube::{Ends, Tube};
 use crate::Overlap;
 use crate::overlap::closed;
+use crate::overlap::tube::{Ends, Tube};
 use interfaces::{Point, Vector};
 
 /// The ball at an end of a tube.

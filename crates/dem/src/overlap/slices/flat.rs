@@ -1,7 +1,8 @@
 //! One slice of a tube.
 use super::common::Stop;
 use super::slice::{Place, cross};
-use super::tube::{Ends, SlicedTube};
+use super::sliced_tube::SlicedTube;
+use crate::overlap::tube::Ends;
 
 /// Places where a circle crosses the outline of a tube's slice, at most.
 const CROSSINGS: usize = 8;

@@ -2,9 +2,9 @@
 use super::common::{Common, Outline};
 use super::lanes::WIDTH;
 use super::piece::Piece;
+use super::sliced_tube::SlicedTube;
 use super::sums::Sampled;
 use super::touches::{TOUCHES, Touches, touches};
-use super::tube::SlicedTube;
 use super::{Swept, adaptive};
 use crate::overlap::integrals::Integrals;
 

@@ -1,7 +1,8 @@
 //! Heights at which what slices of two tubes share gets or loses a piece of its outline.
 use super::circle::Circle;
 use super::slice::{Place, cross};
-use super::tube::{Ends, SlicedTube};
+use super::sliced_tube::SlicedTube;
+use crate::overlap::tube::Ends;
 
 /// Heights at most.
 pub(super) const TOUCHES: usize = 64;

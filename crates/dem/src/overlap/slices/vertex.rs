@@ -1,7 +1,8 @@
 //! Corners of the outline of what slices of two tubes share.
 use super::lanes::{Lanes, Places};
 use super::slice::{Place, cross};
-use super::tube::{Ends, SlicedTube};
+use super::sliced_tube::SlicedTube;
+use crate::overlap::tube::Ends;
 use pulp::Simd;
 
 /// One curve of a tube's outline, the same at all heights but for the width.

@@ -1,5 +1,5 @@
 //! Integrals over the part of a face within a tube, and their sums.
-use super::Tube;
+use super::UnitTube;
 use super::mantle::Mantle;
 use super::section::Beyond;
 use crate::overlap::ball_faces::face::Face;
@@ -70,7 +70,7 @@ pub(super) struct Part {
 
 impl Part {
     /// Adds a segment of the section at an end.
-    pub(super) fn add_section(&mut self, a: &Tube, end: usize, p: Vector, q: Vector) {
+    pub(super) fn add_section(&mut self, a: &UnitTube<'_>, end: usize, p: Vector, q: Vector) {
         let (beyond, sign) = (Beyond::new(p, q), [-1.0, 1.0][end]);
         self.sums.volume -= a.half * beyond.area;
         self.sums.first.z -= sign * 0.5 * a.half * a.half * beyond.area;
@@ -89,7 +89,13 @@ impl Part {
         self.sums.first += Vector::new(-n.x * m.second, -n.y * m.second, 0.5 * n.z * m.z2);
     }
     /// Adds the part within the half ball at an end, of a polygon seen from its centre.
-    pub(super) fn add_ball(&mut self, a: &Tube, end: usize, polygon: &[Vector], places: &mut Vec<[f64; 2]>) {
+    pub(super) fn add_ball(
+        &mut self,
+        a: &UnitTube<'_>,
+        end: usize,
+        polygon: &[Vector],
+        places: &mut Vec<[f64; 2]>,
+    ) {
         let centre = Vector::z() * [-a.half, a.half][end];
         places.resize(polygon.len(), [0.0; 2]);
         let Some(part) = Face::new(polygon).and_then(|f| f.part(places, |_, _| {})) else { return };

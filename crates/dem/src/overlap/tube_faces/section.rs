@@ -1,5 +1,5 @@
 //! Sections of a body across the axis, from its faces.
-use crate::overlap::ball_faces::edge::Edge;
+use crate::overlap::ball_faces::face::Side;
 use interfaces::Vector;
 
 /// Integrals between segments of a section's outline and the unit circle, along rays from the
@@ -20,60 +20,28 @@ impl Default for Beyond {
     }
 }
 
-/// A directed segment, the body on its left.
-struct Line {
-    from: f64,
-    to: f64,
-    length: f64,
-    /// Distance from the centre, positive where that is on the left.
-    distance: f64,
-}
-
-impl Line {
-    fn new(p: Vector, q: Vector) -> Option<Self> {
-        let (x, y) = (q.x - p.x, q.y - p.y);
-        let length = x.hypot(y);
-        if length == 0.0 {
-            return None;
-        }
-        let (u, v) = (x / length, y / length);
-        let (from, to) = (p.x * u + p.y * v, q.x * u + q.y * v);
-        let near = if from.abs() < to.abs() { p } else { q };
-        // No negative zero.
-        let distance = near.x * v - near.y * u + 0.0;
-        Some(Self { from, to, length, distance })
+/// The segment from `p` to `q`, seen from the axis in the plane across it.
+fn side(p: Vector, q: Vector) -> Option<Side> {
+    let ends = [p, q].map(|x| Vector::new(x.x, x.y, 0.0));
+    let step = ends[1] - ends[0];
+    let length = step.norm();
+    if length == 0.0 {
+        return None;
     }
+    let [u, v] = [step.x / length, step.y / length];
+    let [from, to] = ends.map(|x| x.x * u + x.y * v);
+    let near = if from.abs() < to.abs() { p } else { q };
+    // No negative zero.
+    let distance = near.x * v - near.y * u + 0.0;
+    Some(Side { ends, from, to, distance, length, direction: [u, v] })
 }
 
 impl Beyond {
     /// The part beyond the segment from `p` to `q`, of which the horizontal coordinates count.
     pub(super) fn new(p: Vector, q: Vector) -> Self {
-        let Some(line) = Line::new(p, q) else { return Self::default() };
-        let Line { from, to, length, distance } = line;
-        let half2 = (1.0 - distance) * (1.0 + distance);
-        if half2 <= 0.0 {
+        let Some(edge) = side(p, q).and_then(|side| side.within(0.0, Some(1.0))) else {
             return Self::default();
-        }
-        let half = half2.sqrt();
-        let rest = |x: Vector| 1.0 - x.x * x.x - x.y * x.y;
-        let ways = |s: f64, rest: f64| {
-            let far = half + s.abs();
-            if s > 0.0 { (rest / far, far) } else { (far, rest / far) }
         };
-        let (from, to, length, before, after) = match (rest(p) > 0.0, rest(q) > 0.0) {
-            (false, false) if from < 0.0 && to > 0.0 => (-half, half, 2.0 * half, 0.0, 0.0),
-            (false, false) => return Self::default(),
-            (true, true) => (from, to, length, ways(from, rest(p)).1, ways(to, rest(q)).0),
-            (true, false) => {
-                let (after, before) = ways(from, rest(p));
-                (from, half, after, before, 0.0)
-            }
-            (false, true) => {
-                let (after, before) = ways(to, rest(q));
-                (-half, to, before, 0.0, after)
-            }
-        };
-        let edge = Edge { height: 0.0, disc2: 1.0, distance, from, to, length, before, after };
         let beyond = edge.beyond();
         Self { area: beyond.area, second: beyond.second, nearest2: edge.centre2() }
     }
@@ -87,7 +55,7 @@ impl Beyond {
 /// Angle under which the centre sees the segment from `p` to `q`, by the numbers that
 /// [`Beyond::new`] uses; negative where the centre is on its right.
 pub(super) fn angle(p: Vector, q: Vector) -> f64 {
-    Line::new(p, q).map_or(0.0, |l| {
+    side(p, q).map_or(0.0, |l| {
         let d = l.distance;
         (d * (l.to - l.from)).atan2(d * d + l.from * l.to)
     })

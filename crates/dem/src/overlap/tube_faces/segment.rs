@@ -1,4 +1,5 @@
 //! Moments of a circular segment.
+use crate::overlap::ball_faces::edge::EIGHT;
 
 /// Moments of the segment that a chord cuts off the unit disc. Coordinates: u from the chord along
 /// its outward normal, v along the chord from its middle.
@@ -14,13 +15,6 @@ pub(super) struct Segment {
     pub(super) v2: f64,
 }
 
-/// Points and weights of the rule of Gauss and Legendre with eight points, the positive half.
-const EIGHT: [(f64, f64); 4] = [
-    (0.183_434_642_495_649_8, 0.362_683_783_378_362),
-    (0.525_532_409_916_329, 0.313_706_645_877_887_27),
-    (0.796_666_477_413_626_7, 0.222_381_034_453_374_48),
-    (0.960_289_856_497_536_3, 0.101_228_536_290_376_26),
-];
 /// Half angle up to which the rule is exact to rounding; from here on differences in the closed
 /// forms cost no more than three digits.
 const SHORT: f64 = 0.2;

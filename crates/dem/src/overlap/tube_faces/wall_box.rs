@@ -1,5 +1,5 @@
 //! Plane walls as faces.
-use super::Tube;
+use super::UnitTube;
 use crate::HalfSpace;
 use crate::overlap::ball_faces::Faces;
 use interfaces::{Point, Vector};
@@ -11,7 +11,7 @@ pub(crate) struct WallBox {
 }
 
 impl WallBox {
-    pub(crate) fn new(a: &Tube, wall: &HalfSpace) -> Self {
+    pub(crate) fn new(a: &UnitTube<'_>, wall: &HalfSpace) -> Self {
         let n = wall.normal();
         let size = 4.0 * (a.half + 1.0) * a.radius;
         let u = n.cross(&Vector::ith(n.iamin(), 1.0)).normalize();

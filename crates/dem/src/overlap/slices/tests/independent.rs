@@ -5,7 +5,7 @@ use super::super::region::Region;
 use super::super::slice::Slice;
 use super::super::sweep::per_height;
 use super::super::touches::touches;
-use super::super::{Frame, STEEP, Slices, known, tube_of};
+use super::super::{Frame, STEEP, SlicedTube, Slices, Tube, known};
 use super::*;
 use crate::draw::Draw;
 use interfaces::Vector;
@@ -42,7 +42,7 @@ fn pair(draw: &mut Draw, round: usize) -> (Box<dyn Shape>, Pose, Box<dyn Shape>,
 
 /// By a sweep.
 fn swept(slices: &mut Slices, a: &dyn Shape, at_a: Pose, b: &dyn Shape, at_b: Pose) -> Option<Overlap> {
-    let [a, b] = [(a, at_a), (b, at_b)].map(|(s, at)| tube_of(&s.form(), &at).unwrap());
+    let [a, b] = [(a, at_a), (b, at_b)].map(|(s, at)| Tube::of(&s.form(), &at).unwrap());
     // A ball has no axis.
     if a.half > 0.0 {
         slices.along_both(&a, &b, 1e-11, false)
@@ -90,13 +90,13 @@ fn all_is_smooth_between_known_heights() {
         let mut errors = Vec::new();
         while errors.len() < 400 {
             let (a, at_a, b, at_b) = pair(&mut draw, kinds);
-            let [first, second] = [(&a, at_a), (&b, at_b)].map(|(s, at)| tube_of(&s.form(), &at).unwrap());
+            let [first, second] = [(&a, at_a), (&b, at_b)].map(|(s, at)| Tube::of(&s.form(), &at).unwrap());
             let across = first.axis.cross(&second.axis);
             if across.norm() < STEEP {
                 continue;
             }
             let frame = Frame::new(at_a.position, first.axis, across);
-            let tubes = [first.sliced(&frame), second.sliced(&frame)];
+            let tubes = [SlicedTube::new(&first, &frame), SlicedTube::new(&second, &frame)];
             let exact = swept(&mut slices, &*a, at_a, &*b, at_b).unwrap().volume;
             errors.extend(known::integrate(tubes, 1.0).map(|found| (found.sums.volume / exact - 1.0).abs()));
         }
@@ -112,14 +112,14 @@ fn outlines_are_the_same_between_known_heights() {
     let [mut one, mut two] = [Slice::default(), Slice { body: 1, ..Slice::default() }];
     for round in 0..900 {
         let (a, at_a, b, at_b) = pair(&mut draw, [2, 3, 5][round % 3]);
-        let [first, second] = [(&a, at_a), (&b, at_b)].map(|(s, at)| tube_of(&s.form(), &at).unwrap());
+        let [first, second] = [(&a, at_a), (&b, at_b)].map(|(s, at)| Tube::of(&s.form(), &at).unwrap());
         let across = first.axis.cross(&second.axis);
         // Where axes are all but parallel places along them are rounded by more.
         if across.norm() < 0.05 {
             continue;
         }
         let frame = Frame::new(at_a.position, first.axis, across);
-        let tubes = [first.sliced(&frame), second.sliced(&frame)];
+        let tubes = [SlicedTube::new(&first, &frame), SlicedTube::new(&second, &frame)];
         let size = a.bounding_radius().min(b.bounding_radius());
         let reach = a.bounding_radius() + b.bounding_radius();
         let touches = touches(&tubes[0], &tubes[1]);

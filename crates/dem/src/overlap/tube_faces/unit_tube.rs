@@ -1,14 +1,16 @@
-//! Capsules and cylinders at a pose, and their frame.
-use crate::{Capsule, Cylinder, Shape, SmoothConvex};
+//! Capsules and cylinders in units of their radius, and their frame.
+use crate::overlap::tube::{Ends, Tube};
+use crate::{Form, SmoothConvex};
 use interfaces::{Point, Pose, Vector};
 use nalgebra::Matrix3;
 
-/// A capsule or cylinder at a pose.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Tube {
+/// A capsule or cylinder at a pose; lengths are in radii unless they say otherwise.
+#[derive(Clone, Copy)]
+pub(crate) struct UnitTube<'a> {
+    shape: &'a dyn SmoothConvex,
     /// \[m\].
     pub(super) radius: f64,
-    /// Half the length of the straight part, in radii.
+    /// Half the length of the straight part.
     pub(super) half: f64,
     pub(super) round: bool,
     /// \[m³\].
@@ -16,27 +18,25 @@ pub(crate) struct Tube {
     pub(super) at: Pose,
 }
 
-impl Tube {
-    pub(crate) fn capsule(shape: &Capsule, at: &Pose) -> Self {
-        let radius = shape.radius();
-        Self {
-            radius,
-            half: 0.5 * shape.length() / radius,
-            round: true,
-            volume: shape.inertia(1.0).volume,
+impl<'a> UnitTube<'a> {
+    /// The tube that a capsule or cylinder is.
+    pub(crate) fn of(form: &Form<'a>, at: &Pose) -> Option<Self> {
+        let shape: &'a dyn SmoothConvex = match form {
+            Form::Capsule(capsule) => *capsule,
+            Form::Cylinder(cylinder) => *cylinder,
+            _ => return None,
+        };
+        let tube = Tube::of(form, at)?;
+        Some(Self {
+            shape,
+            radius: tube.radius,
+            half: tube.half / tube.radius,
+            round: tube.ends == Ends::Round,
+            volume: tube.volume(),
             at: *at,
-        }
+        })
     }
-    pub(crate) fn cylinder(shape: &Cylinder, at: &Pose) -> Self {
-        let radius = shape.radius();
-        Self {
-            radius,
-            half: 0.5 * shape.length() / radius,
-            round: false,
-            volume: shape.inertia(1.0).volume,
-            at: *at,
-        }
-    }
+    /// Half the extent along the axis.
     pub(super) fn top(&self) -> f64 {
         self.half + if self.round { 1.0 } else { 0.0 }
     }
@@ -47,13 +47,8 @@ impl Tube {
     }
     /// Length of the segment from `p` to `q` within the tube.
     pub(super) fn length_within(&self, p: Vector, q: Vector) -> f64 {
-        let way = q - p;
-        let (o, u) = (Point::from(p), way);
-        let chord = if self.round {
-            Capsule::new(1.0, 2.0 * self.half).ok().and_then(|c| c.chord(o, u))
-        } else {
-            Cylinder::new(1.0, 2.0 * self.half).ok().and_then(|c| c.chord(o, u))
-        };
+        let (from, way) = (Point::from(p * self.radius), q - p);
+        let chord = self.shape.chord(from, way * self.radius);
         chord.map_or(0.0, |[from, to]| (to.min(1.0) - from.max(0.0)).max(0.0) * way.norm())
     }
 }
@@ -68,7 +63,7 @@ pub(super) struct Map {
 }
 
 impl Map {
-    pub(super) fn new(a: &Tube, at_b: &Pose) -> Self {
+    pub(super) fn new(a: &UnitTube<'_>, at_b: &Pose) -> Self {
         let turn = (a.at.orientation.inverse() * at_b.orientation).to_rotation_matrix();
         Self {
             centre: at_b.to_body(a.at.position),

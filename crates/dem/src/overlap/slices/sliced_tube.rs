@@ -1,58 +1,9 @@
 //! Spheres, capsules and cylinders in slices along their axes.
 use super::frame::Frame;
 use super::slice::{Corner, Place, Slice};
-use interfaces::{Pose, Vector};
-use std::f64::consts::PI;
+use crate::overlap::tube::{Ends, Tube};
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Ends {
-    Round,
-    Flat,
-}
-
-/// All within a radius of a straight line or point, or of a line without what lies beyond its ends: in slices along the
-/// line, at the height h above it, all within √(r² − h²) of it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Tube {
-    pub(super) radius: f64,
-    /// Half the line; zero for spheres.
-    pub(super) half: f64,
-    pub(super) ends: Ends,
-    /// Of the line, in the world.
-    pub(super) axis: Vector,
-    pub(super) at: Pose,
-}
-
-impl Tube {
-    /// Radius of a sphere around all.
-    pub(super) fn bound(&self) -> f64 {
-        match self.ends {
-            Ends::Round => self.half + self.radius,
-            Ends::Flat => self.half.hypot(self.radius),
-        }
-    }
-    pub(super) fn volume(&self) -> f64 {
-        let tube = PI * self.radius * self.radius * (2.0 * self.half);
-        match self.ends {
-            Ends::Round => tube + 4.0 / 3.0 * PI * self.radius.powi(3),
-            Ends::Flat => tube,
-        }
-    }
-    pub(super) fn sliced(&self, frame: &Frame) -> SlicedTube {
-        let (centre, axis) = (frame.place(self.at.position), frame.direction(self.axis));
-        SlicedTube {
-            centre: centre.xy(),
-            axis: axis.xy(),
-            half: self.half,
-            radius: self.radius,
-            ends: self.ends,
-            low: centre.z - self.radius,
-            high: centre.z + self.radius,
-        }
-    }
-}
-
-/// A tube as a frame's slices see it.
+/// A tube in the coordinates of a frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SlicedTube {
     pub(super) centre: Place,
@@ -65,6 +16,18 @@ pub(super) struct SlicedTube {
 }
 
 impl SlicedTube {
+    pub(super) fn new(tube: &Tube, frame: &Frame) -> Self {
+        let (centre, axis) = (frame.place(tube.at.position), frame.direction(tube.axis));
+        Self {
+            centre: centre.xy(),
+            axis: axis.xy(),
+            half: tube.half,
+            radius: tube.radius,
+            ends: tube.ends,
+            low: centre.z - tube.radius,
+            high: centre.z + tube.radius,
+        }
+    }
     /// Whether its slices have arcs.
     pub(super) fn is_round(&self) -> bool {
         self.ends == Ends::Round

@@ -44,7 +44,8 @@ fn halves([low, high]: [f64; 2], error: f64, depth: u32, f: &impl Fn(f64) -> f64
         }
     }
     let (gauss, kronrod) = (gauss * half, kronrod * half);
-    if depth == 0 || (gauss - kronrod).abs() <= error {
+    let rounding = 1e-15 * kronrod.abs();
+    if depth == 0 || (gauss - kronrod).abs() <= error.max(rounding) {
         return kronrod;
     }
     halves([low, middle], 0.6 * error, depth - 1, f) + halves([middle, high], 0.6 * error, depth - 1, f)

@@ -3,6 +3,7 @@ use crate::kinds::{Body, ConvexPart, Geometry};
 use crate::quadrature::integrate;
 use interfaces::{Pose, Vector};
 use nalgebra::Matrix3;
+use std::f64::consts::PI;
 
 /// x ↦ linear·x + shift.
 #[derive(Clone, Copy)]
@@ -34,8 +35,8 @@ impl Affine {
     }
 }
 
-/// Volume that two bodies share \[m³\], to about 1e-9 of the smaller body where one has flat faces,
-/// else to 1e-7.
+/// Volume that two bodies share \[m³\]: to rounding for two of flat faces and for two spheres, to about 1e-10 of the
+/// smaller body where one has flat faces, else to 1e-7.
 pub(crate) fn volume(a: &Body, at_a: &Pose, b: &Body, at_b: &Pose) -> f64 {
     let small = a.volume().min(b.volume());
     match (&a.geometry, &b.geometry) {
@@ -53,6 +54,9 @@ pub(crate) fn volume(a: &Body, at_a: &Pose, b: &Body, at_b: &Pose) -> f64 {
             let (map, axis) = Axisymmetric::of(round, Affine::between(at_b, at_a));
             q.iter().map(|q| round_and_part(&axis, &map.part(q), small / axis.scale)).sum::<f64>()
                 * axis.scale
+        }
+        (Geometry::Ellipsoid(p), Geometry::Ellipsoid(q)) if p.max() == p.min() && q.max() == q.min() => {
+            spheres(p.x, q.x, (at_b.position - at_a.position).norm())
         }
         (Geometry::Ellipsoid(_), Geometry::Capsule(..) | Geometry::Cylinder(..)) => volume(b, at_b, a, at_a),
         (p, q) => {
@@ -92,6 +96,18 @@ impl Axisymmetric {
     }
 }
 
+/// Sections of two spheres across the line of centres are discs around it, of which the smaller is shared.
+fn spheres(p: f64, q: f64, distance: f64) -> f64 {
+    let (low, high) = ((distance - q).max(-p), (distance + q).min(p));
+    if low >= high {
+        return 0.0;
+    }
+    let area = |z: f64| PI * ((p - z) * (p + z)).min((q - z + distance) * (q + z - distance)).max(0.0);
+    let same = (distance + (p - q) * (p + q) / distance) * 0.5;
+    let middle = same.clamp(low, high);
+    integrate([low, middle], 0.0, &area) + integrate([middle, high], 0.0, &area)
+}
+
 fn round_and_part(axis: &Axisymmetric, part: &ConvexPart, small: f64) -> f64 {
     let heights = || part.vertices.iter().map(|v| v.z);
     let low = heights().fold(f64::INFINITY, f64::min).max(-axis.top());
@@ -107,7 +123,7 @@ fn round_and_part(axis: &Axisymmetric, part: &ConvexPart, small: f64) -> f64 {
         let polygon = part.section(z, r);
         disc_and_polygon(r, &polygon)
     };
-    breaks.windows(2).map(|w| integrate([w[0], w[1]], 1e-10 * small, &area)).sum()
+    breaks.windows(2).map(|w| integrate([w[0], w[1]], 1e-12 * small, &area)).sum()
 }
 
 fn round_and_round(axis: &Axisymmetric, other: &Geometry, map: &Affine, small: f64) -> f64 {

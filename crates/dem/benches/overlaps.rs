@@ -42,7 +42,7 @@ fn main() {
         let mut table = Table::default();
         for case in 0..poses {
             let (a, b, at_a, at_b) = poses::pose(i, j, case);
-            let measured = poses::measure(&mut solver, (&a, &at_a), (&b, &at_b));
+            let measured = poses::measure(&mut solver, STEP, (&a, &at_a), (&b, &at_b));
             let mut solve = || {
                 let start = ThreadTime::now();
                 let patches = solver.solve(&*a.shape, &at_a, &*b.shape, &at_b).expect("an overlap");
@@ -64,6 +64,8 @@ struct Table {
     times: Vec<(f64, u64)>,
 }
 
+/// Motion between V and V + S·dx, as a share of the cube root of the smaller volume.
+const STEP: f64 = 1e-4;
 /// Share of the smaller body below which errors are not compared with the volume itself.
 const SMALL: f64 = 1e-6;
 

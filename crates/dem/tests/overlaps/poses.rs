@@ -35,8 +35,10 @@ fn total(patches: &[Overlap]) -> (f64, Vector) {
     (patches.iter().map(|p| p.volume).sum(), patches.iter().map(|p| p.gradient).sum())
 }
 
+/// Measures the overlap of a pair. The first body moves by a share `step` of the cube root of the smaller volume.
 pub(crate) fn measure(
     solver: &mut OverlapSolver,
+    step: f64,
     (a, at_a): (&Body, &Pose),
     (b, at_b): (&Body, &Pose),
 ) -> Measured {
@@ -44,7 +46,7 @@ pub(crate) fn measure(
     let (volume, gradient) = total(solver.solve(p, at_a, q, at_b).expect("an overlap"));
     let smaller = a.volume().min(b.volume());
     let expected = reference::volume(a, at_a, b, at_b);
-    let step = Vector::new(0.6, -0.64, 0.48) * (1e-5 * smaller.cbrt());
+    let step = Vector::new(0.6, -0.64, 0.48) * (step * smaller.cbrt());
     let moved = Pose { position: at_a.position + step, ..*at_a };
     let (after, gradient_after) = total(solver.solve(p, &moved, q, at_b).expect("an overlap"));
     let mean = 0.5 * (gradient + gradient_after);

@@ -1,5 +1,6 @@
 //! Error, consistency and CPU time of overlaps, every kind of body with every other, at random
-//! poses: `cargo bench -p dem --bench overlaps -- [poses] [kind] [other kind]`.
+//! poses: `cargo bench -p dem --bench overlaps -- [poses] [kind] [other kind] [size=1e-4]`. Given `size`, the second
+//! body's size is this share of the first one's, and it is on its surface.
 #[path = "../src/draw.rs"]
 mod draw;
 #[path = "../tests/overlaps/kinds.rs"]
@@ -20,6 +21,8 @@ use std::hint::black_box;
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).filter(|w| !w.starts_with("--")).collect();
+    let (sizes, words): (Vec<_>, Vec<_>) = words.into_iter().partition(|w| w.starts_with("size="));
+    let ratio = sizes.first().map_or(1.0, |w| w[5..].parse().expect("a number after size="));
     let (numbers, words): (Vec<_>, Vec<_>) = words.iter().partition(|w| w.parse::<u64>().is_ok());
     let poses = numbers.first().and_then(|n| n.parse().ok()).unwrap_or(100);
     for word in &words {
@@ -41,7 +44,7 @@ fn main() {
         }
         let mut table = Table::default();
         for case in 0..poses {
-            let (a, b, at_a, at_b) = poses::pose(i, j, case);
+            let (a, b, at_a, at_b) = poses::pose(i, j, ratio, case);
             let measured = poses::measure(&mut solver, STEP, (&a, &at_a), (&b, &at_b));
             let mut solve = || {
                 let start = ThreadTime::now();

@@ -54,20 +54,25 @@ impl Body {
     }
 }
 
-/// A body of the kind with this number, of about unit size.
-pub(crate) fn draw(kind: usize, draw: &mut Draw) -> Body {
-    let size = draw.between(0.3, 1.5);
+/// A body of the kind with this number, of about the size `scale`.
+pub(crate) fn draw(kind: usize, scale: f64, draw: &mut Draw) -> Body {
+    let size = scale * draw.between(0.3, 1.5);
     match kind {
         0 => cuboid([0; 3].map(|_| size * draw.between(0.5, 2.0))),
         1 => cuboid([size, size * draw.between(0.5, 2.0), 1e-3 * size]),
         2 => cuboid([size, 1e-3 * size, 1e-3 * size]),
         3 => {
-            let mut off = |x: f64| [x, 0.03 * size * draw.next(), 0.03 * size * draw.next()];
-            hull(&[off(0.0), off(0.2 * size), off(0.6 * size), off(1.3 * size)])
+            let [u, v, w, x] = [0; 4].map(|_| 0.03 * size * draw.between(0.1, 1.0));
+            hull(&[[0.0; 3], [0.2 * size, u, 0.0], [0.6 * size, 0.0, v], [1.3 * size, -w, -x]])
         }
         4 => {
-            let mut corner = |x: f64, y: f64| [x * size, y * size, 2e-3 * size * draw.next()];
-            hull(&[corner(0.0, 0.0), corner(1.0, 0.1), corner(0.2, 1.1), corner(1.2, 0.9)])
+            let mut corner = |x: f64, y: f64, z: f64| [x * size, y * size, z * size * draw.between(0.1, 1.0)];
+            hull(&[
+                corner(0.0, 0.0, 1e-3),
+                corner(1.0, 0.1, -1e-3),
+                corner(0.2, 1.1, -1e-3),
+                corner(1.2, 0.9, 1e-3),
+            ])
         }
         5 => {
             let points: Vec<[f64; 3]> =

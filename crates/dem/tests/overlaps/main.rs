@@ -46,7 +46,7 @@ fn every_pair_keeps_its_documented_error() {
         // Edges make S change by as much as the body moves: V − S·dx by its square.
         let step = 0.3 * error.sqrt();
         for case in 0..POSES {
-            let (a, b, at_a, at_b) = poses::pose(i, j, case);
+            let (a, b, at_a, at_b) = poses::pose(i, j, 1.0, case);
             let m = poses::measure(&mut solver, step, (&a, &at_a), (&b, &at_b));
             assert!(m.volume <= m.smaller * (1.0 + error), "{m:?}");
             met += usize::from(m.volume > 0.0);
@@ -58,4 +58,24 @@ fn every_pair_keeps_its_documented_error() {
     }
     assert!(faults.is_empty(), "{} faults:\n{}", faults.len(), faults.join("\n"));
     assert!(met > 700, "{met} pairs met");
+}
+
+/// Bodies 1e-4 times as large on the surface of others: coordinates of these round by 1e-12 of the smaller one's size.
+#[test]
+fn small_bodies_keep_their_digits() {
+    let mut solver = OverlapSolver::new();
+    let compact = ["box", "hull", "ball of 80 triangles", "L mesh", "U mesh", "ring mesh"];
+    let kinds = || (0..KINDS.len()).filter(|k| compact.contains(&KINDS[*k]));
+    for (i, j) in kinds().flat_map(|i| kinds().map(move |j| (i, j))) {
+        for case in 0..10 {
+            let (a, b, at_a, at_b) = poses::pose(i, j, 1e-4, case);
+            let m = poses::measure(&mut solver, 1e-4, (&a, &at_a), (&b, &at_b));
+            assert!(
+                m.of_body < 2e-10 && m.gradient < 1e-10,
+                "{} and {}, case {case}: {m:?}",
+                KINDS[i],
+                KINDS[j]
+            );
+        }
+    }
 }

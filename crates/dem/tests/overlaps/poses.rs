@@ -5,18 +5,38 @@ use crate::reference;
 use dem::{Overlap, OverlapSolver};
 use interfaces::{Point, Pose, Vector};
 
-/// Case number `case` of the kinds `i` and `j`.
-pub(crate) fn pose(i: usize, j: usize, case: u64) -> (Body, Body, Pose, Pose) {
+/// Case number `case` of the kinds `i` and `j`; the second body's size is a share `ratio` of the first one's.
+pub(crate) fn pose(i: usize, j: usize, ratio: f64, case: u64) -> (Body, Body, Pose, Pose) {
     let mut random = Draw((i as u64 * 1000 + j as u64) << 40 | case << 8 | 11);
     (0..8).for_each(|_| {
         random.next();
     });
-    let (a, b) = (draw(i, &mut random), draw(j, &mut random));
-    let reach = a.shape.bounding_radius() + b.shape.bounding_radius();
+    let (a, b) = (draw(i, 1.0, &mut random), draw(j, ratio, &mut random));
     let at_a = Pose { position: Point::from(random.direction()), orientation: random.turn() };
-    let apart = random.direction() * (reach * 0.9 * random.next());
+    let apart = if ratio < 1.0 {
+        at_a.orientation * on_surface(&a, &mut random)
+            + random.direction() * (b.shape.bounding_radius() * random.next())
+    } else {
+        let reach = a.shape.bounding_radius() + b.shape.bounding_radius();
+        random.direction() * (reach * 0.9 * random.next())
+    };
     let at_b = Pose { position: at_a.position + apart, orientation: random.turn() };
     (a, b, at_a, at_b)
+}
+
+/// A point on the surface of a body, in its frame.
+fn on_surface(body: &Body, random: &mut Draw) -> Vector {
+    let distance = |x: Vector| body.shape.signed_distance(x.into(), f64::INFINITY);
+    let mut outside = random.direction() * (2.0 * body.shape.bounding_radius());
+    let mut inside = random.direction() * (body.shape.bounding_radius() * random.next());
+    while distance(inside) >= 0.0 {
+        inside = random.direction() * (body.shape.bounding_radius() * random.next().powi(3));
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (inside + outside);
+        if distance(middle) < 0.0 { inside = middle } else { outside = middle }
+    }
+    inside
 }
 
 /// An overlap beside its reference.
@@ -46,8 +66,10 @@ pub(crate) fn measure(
     let (volume, gradient) = total(solver.solve(p, at_a, q, at_b).expect("an overlap"));
     let smaller = a.volume().min(b.volume());
     let expected = reference::volume(a, at_a, b, at_b);
-    let step = Vector::new(0.6, -0.64, 0.48) * (step * smaller.cbrt());
-    let moved = Pose { position: at_a.position + step, ..*at_a };
+    let moved = at_a.position + Vector::new(0.6, -0.64, 0.48) * (step * smaller.cbrt());
+    // As coordinates round it.
+    let step = moved - at_a.position;
+    let moved = Pose { position: moved, ..*at_a };
     let (after, gradient_after) = total(solver.solve(p, &moved, q, at_b).expect("an overlap"));
     let mean = 0.5 * (gradient + gradient_after);
     Measured {

@@ -32,6 +32,16 @@ pub(crate) fn integrate([low, high]: [f64; 2], error: f64, f: &impl Fn(f64) -> f
     (0..PIECES).map(|i| halves([place(i), place(i + 1)], error / PIECES as f64, 40, f)).sum()
 }
 
+/// ∫ f to an absolute error between breaks, beside which f may be a function of the square root of the distance.
+pub(crate) fn integrate_between(breaks: &[f64], error: f64, f: &impl Fn(f64) -> f64) -> f64 {
+    let piece = |ends: &[f64]| {
+        let (middle, half) = (0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0]));
+        let smooth = |u: f64| 1.5 * half * (1.0 - u * u) * f(middle + 0.5 * half * u * (3.0 - u * u));
+        if half > 0.0 { halves([-1.0, 1.0], error, 40, &smooth) } else { 0.0 }
+    };
+    breaks.windows(2).map(piece).sum()
+}
+
 fn halves([low, high]: [f64; 2], error: f64, depth: u32, f: &impl Fn(f64) -> f64) -> f64 {
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
     let (mut gauss, mut kronrod) = (0.0, 0.0);

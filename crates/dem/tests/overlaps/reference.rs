@@ -1,6 +1,6 @@
 //! Overlap volumes by routes of their own: clipped convex parts, adaptive quadrature over sections.
 use crate::kinds::{Body, ConvexPart, Geometry};
-use crate::quadrature::integrate;
+use crate::quadrature::{integrate, integrate_between};
 use interfaces::{Pose, Vector};
 use nalgebra::Matrix3;
 use std::f64::consts::PI;
@@ -35,7 +35,7 @@ impl Affine {
     }
 }
 
-/// Volume that two bodies share \[m³\]: to rounding for two of flat faces and for two spheres, to about 1e-10 of the
+/// Volume that two bodies share \[m³\]: to rounding for two of flat faces and for two spheres, to about 1e-12 of the
 /// smaller body where one has flat faces, else to 1e-7.
 pub(crate) fn volume(a: &Body, at_a: &Pose, b: &Body, at_b: &Pose) -> f64 {
     let small = a.volume().min(b.volume());
@@ -90,6 +90,34 @@ impl Axisymmetric {
     fn top(&self) -> f64 {
         self.half + if self.round_ends { self.radius } else { 0.0 }
     }
+    /// Heights at which sections of planes touch the rim of a section, and at which edges cross the surface.
+    fn heights_of_touch(&self, part: &ConvexPart, heights: &mut Vec<f64>) {
+        let balls: &[f64] = if self.round_ends { &[-self.half, self.half] } else { &[] };
+        for (n, d) in &part.planes {
+            let slope = n.xy().norm();
+            for centre in balls {
+                let distance = d - n.z * centre;
+                let radius = ((self.radius - distance) * (self.radius + distance)).max(0.0).sqrt();
+                heights.extend([-1.0, 1.0].map(|sign| centre + distance * n.z + sign * radius * slope));
+            }
+            heights.extend([-1.0, 1.0].map(|sign| (d + sign * self.radius * slope) / n.z));
+        }
+        for [p, q] in part.edges() {
+            let u = q - p;
+            let mut cross = |a: f64, b: f64, c: f64| {
+                // a t² + 2 b t + c = 0.
+                let root = (b * b - a * c).sqrt();
+                heights.extend([(-b - root) / a, (-b + root) / a].map(|t| p.z + t * u.z));
+            };
+            let square = |v: Vector| v.norm_squared() - self.radius * self.radius;
+            for centre in balls {
+                let from = p - Vector::z() * *centre;
+                cross(u.norm_squared(), u.dot(&from), square(from));
+            }
+            let [across, from] = [u, p].map(|v| Vector::new(v.x, v.y, 0.0));
+            cross(across.norm_squared(), across.dot(&from), square(from));
+        }
+    }
     fn radius_at(&self, z: f64) -> f64 {
         let beyond = (z.abs() - self.half).max(0.0);
         ((self.radius - beyond) * (self.radius + beyond)).max(0.0).sqrt()
@@ -116,6 +144,7 @@ fn round_and_part(axis: &Axisymmetric, part: &ConvexPart, small: f64) -> f64 {
         return 0.0;
     }
     let mut breaks: Vec<f64> = heights().chain([low, high, axis.half, -axis.half]).collect();
+    axis.heights_of_touch(part, &mut breaks);
     breaks.retain(|h| (low..=high).contains(h));
     breaks.sort_by(f64::total_cmp);
     let area = |z: f64| {
@@ -123,7 +152,7 @@ fn round_and_part(axis: &Axisymmetric, part: &ConvexPart, small: f64) -> f64 {
         let polygon = part.section(z, r);
         disc_and_polygon(r, &polygon)
     };
-    breaks.windows(2).map(|w| integrate([w[0], w[1]], 1e-12 * small, &area)).sum()
+    integrate_between(&breaks, 1e-12 * small, &area)
 }
 
 fn round_and_round(axis: &Axisymmetric, other: &Geometry, map: &Affine, small: f64) -> f64 {
@@ -213,6 +242,24 @@ fn chord(body: &Geometry, origin: Vector, along: Vector) -> Option<[f64; 2]> {
 }
 
 impl ConvexPart {
+    /// Pairs of vertices that two planes have in common.
+    fn edges(&self) -> Vec<[Vector; 2]> {
+        let size = self.vertices.iter().map(|v| v.norm()).fold(0.0, f64::max);
+        let on = |v: &Vector| -> Vec<usize> {
+            let is_on = |(n, d): &(Vector, f64)| (n.dot(v) - d).abs() < 1e-9 * size;
+            self.planes.iter().enumerate().filter(|(_, plane)| is_on(plane)).map(|(i, _)| i).collect()
+        };
+        let planes: Vec<Vec<usize>> = self.vertices.iter().map(on).collect();
+        let mut edges = Vec::new();
+        for (i, p) in self.vertices.iter().enumerate() {
+            for (j, q) in self.vertices.iter().enumerate().take(i) {
+                if planes[i].iter().filter(|k| planes[j].contains(k)).count() > 1 {
+                    edges.push([*p, *q]);
+                }
+            }
+        }
+        edges
+    }
     /// The section at height z as a polygon, cut out of a square around the disc of radius r.
     fn section(&self, z: f64, r: f64) -> Vec<[f64; 2]> {
         let mut polygon = vec![[-r, -r], [r, -r], [r, r], [-r, r]];

@@ -136,20 +136,17 @@ impl<'a> Face<'a> {
         Some(Self { corners, normal: normal * scale, height, area: 0.5 * size })
     }
 
-    /// The face in its plane; `None` when its corners are all the same. `places` is memory for as many corners.
-    fn plane<'b>(&self, places: &'b mut [[f64; 2]]) -> Option<Plane<'b>> {
-        let first = self.corners[0];
-        // The direction of a short edge is rounding.
-        let edges = self.corners[1..].iter().map(|c| c - first);
-        let longer = |p: Vector, q: Vector| if q.norm_squared() > p.norm_squared() { q } else { p };
-        let edge = edges.reduce(longer).filter(|e| *e != Vector::zeros())?;
-        let along = edge - self.normal * self.normal.dot(&edge);
+    /// The face in its plane. `places` is memory for as many corners.
+    fn plane<'b>(&self, places: &'b mut [[f64; 2]]) -> Plane<'b> {
+        let n = &self.normal;
+        let along =
+            if n.x.abs() < n.y.abs() { Vector::new(0.0, -n.z, n.y) } else { Vector::new(n.z, 0.0, -n.x) };
         let along = along * along.norm_squared().sqrt().recip();
-        let across = self.normal.cross(&along);
+        let across = n.cross(&along);
         for (place, c) in places.iter_mut().zip(self.corners) {
             *place = [along.dot(c), across.dot(c)];
         }
-        Some(Plane { along, across, places })
+        Plane { along, across, places }
     }
 
     /// A triangle well inside the ball and far from the centre, by formulas that take differences of large numbers.
@@ -206,6 +203,7 @@ fn cross(p: [f64; 2], q: [f64; 2]) -> f64 {
 impl Face<'_> {
     /// What lies within the ball, if anything; `cut` is called with the number of every edge that does and how much of it. `places` is memory for as many
     /// corners.
+    #[inline]
     pub(in crate::overlap) fn part(
         &self,
         places: &mut [[f64; 2]],
@@ -214,7 +212,7 @@ impl Face<'_> {
         if let Some(part) = self.inside(&mut cut) {
             return Some(part);
         }
-        let plane = self.plane(places)?;
+        let plane = self.plane(places);
         let height = self.height.abs();
         let radius2 = (1.0 - height) * (1.0 + height);
         let mut sum = Integrals::default();
@@ -272,7 +270,7 @@ impl Face<'_> {
 
     /// Solid angle of the face seen from the centre, from the very numbers that [`part`](Self::part) uses.
     fn solid_angle(&self, places: &mut [[f64; 2]]) -> f64 {
-        let Some(plane) = self.plane(places) else { return 0.0 };
+        let plane = self.plane(places);
         let height = self.height.abs();
         let mut sum = 0.0;
         for i in 0..self.corners.len() {

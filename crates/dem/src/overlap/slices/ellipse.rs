@@ -5,6 +5,8 @@ use std::f64::consts::{PI, TAU};
 
 /// Steps of Newton's method or bisection, at most.
 const STEPS: usize = 60;
+/// Length of the last step of Newton's method \[rad\].
+const CLOSE: f64 = 1e-8;
 
 /// An ellipse with its axes along x and y, and a disc around the origin.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +48,7 @@ impl Pair {
         let (sin, cos) = angle.sin_cos();
         let [a, b] = [self.semi_axes.x, self.semi_axes.y];
         let (x, y) = (self.centre.x + a * cos, self.centre.y + b * sin);
-        let r = x.hypot(y);
+        let r = (x * x + y * y).sqrt();
         [(r - self.radius) * (r + self.radius), b * cos * y - a * sin * x]
     }
     /// Half the change of the level with the parameter, and its change.
@@ -90,8 +92,9 @@ impl Pair {
     pub(super) fn section(&self) -> Section {
         let (pair, signs) = self.reflected();
         let mut section = Section::default();
-        section.margin = f64::INFINITY;
-        match pair.common() {
+        let (common, margin) = pair.common();
+        section.margin = margin;
+        match common {
             Common::Nothing => {}
             Common::Disc => pair.add_disc(&mut section),
             Common::Ellipse => pair.add_ellipse(&mut section),
@@ -170,12 +173,13 @@ impl Pair {
         if self.holds(-q) { TAU + angle } else { angle.max(0.0) }
     }
 
-    /// The arcs of the ellipse within the disc, for a centre with positive coordinates.
+    /// The arcs of the ellipse within the disc, for a centre with positive coordinates, and how near to the circle an
+    /// extreme of the distance from the origin is.
     ///
     /// Along the ellipse the distance from the origin rises from its least, in the quadrant
     /// opposite to the centre, to its greatest, in that of the centre. In between it has two more
     /// extremes if the origin is within the evolute, in the quadrant beside the longer axis.
-    fn common(&self) -> Common {
+    fn common(&self) -> (Common, f64) {
         let [a, b] = [self.semi_axes.x, self.semi_axes.y];
         let [u, v] = [self.centre.x, self.centre.y];
         let extremes = self.inner_extremes(a, b, u, v);
@@ -187,14 +191,15 @@ impl Pair {
             least = self.level(near)[0];
         }
         if least >= 0.0 {
-            return if self.holds(Place::zeros()) { Common::Disc } else { Common::Nothing };
+            let common = if self.holds(Place::zeros()) { Common::Disc } else { Common::Nothing };
+            return (common, self.distance(least));
         }
         if most <= 0.0 || extremes.is_some() {
             far = self.farthest();
             most = self.level(far)[0];
         }
         if most <= 0.0 {
-            return Common::Ellipse;
+            return (Common::Ellipse, self.distance(most));
         }
         // Where a cosine between the two is zero.
         let share = ((most + least) / (most - least)).clamp(-1.0, 1.0).acos() / PI;
@@ -213,10 +218,11 @@ impl Pair {
         };
         let whole = |[start, end]: [f64; 2]| Common::Arcs([[start, end]; 2], 1);
         let Some([first, second]) = extremes else {
-            return whole([falls(far, near), crossing([near, far + TAU])]);
+            return (whole([falls(far, near), crossing([near, far + TAU])]), f64::INFINITY);
         };
         let levels = [first, second].map(|t| self.level(t)[0]);
-        if a > b {
+        let margin = self.distance(levels[0]).min(self.distance(levels[1]));
+        let common = if a > b {
             // Far, a least distance, a greatest one, near.
             let [least, most] = levels;
             let end = crossing([near, far + TAU]);
@@ -240,7 +246,12 @@ impl Pair {
                 let other = [falls(first, second), crossing([second, far + TAU])];
                 Common::Arcs([[start, crossing([near, first])], other], 2)
             }
-        }
+        };
+        (common, margin)
+    }
+    /// Distance of a point with a given level from the circle.
+    fn distance(&self, level: f64) -> f64 {
+        level.abs() / (self.radius + (level + self.radius * self.radius).max(0.0).sqrt())
     }
     /// Parameters of the two extremes of the distance besides the least and the greatest one,
     /// upwards. There, with C = |cos θ| and S = |sin θ|, a u/C + b v/S = |a² − b²|: a convex
@@ -283,11 +294,18 @@ fn root([mut low, mut high]: [f64; 2], start: f64, f: impl Fn(f64) -> [f64; 2]) 
             high = x
         }
         let next = x - value / slope;
-        let next = if next > low && next < high { next } else { 0.5 * (low + high) };
-        if (next - x).abs() <= 4e-16 * x.abs() {
-            return next;
+        if next > low && next < high {
+            // Newton's method squares the error.
+            if (next - x).abs() <= CLOSE {
+                return next;
+            }
+            x = next;
+        } else {
+            x = 0.5 * (low + high);
+            if high - low <= CLOSE * CLOSE {
+                return x;
+            }
         }
-        x = next;
     }
     x
 }
@@ -351,7 +369,7 @@ mod tests {
             };
             let growth = (at(1e-5).section().area - at(-1e-5).section().area) / 2e-5;
             assert_relative_eq!(section.growth, growth, epsilon = 1e-3 * scale);
-            if let Common::Arcs(_, n) = pair.reflected().0.common() {
+            if let Common::Arcs(_, n) = pair.reflected().0.common().0 {
                 arcs += 1;
                 two += usize::from(n == 2);
             }

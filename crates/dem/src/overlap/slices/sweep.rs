@@ -34,14 +34,12 @@ pub(super) fn sweep(
     tolerance: f64,
     mut section: impl FnMut(f64) -> Section,
 ) -> (Integrals, [bool; 2]) {
-    let (Some(first), Some(last)) = (places.first(), places.last()) else {
-        return (Integrals::default(), [false; 2]);
-    };
-    let ends = [first.0, last.0];
-    let near = [0, 1].map(|i| {
-        let h = ends[i] + (ends[1 - i] - ends[i]) * (NEAR * tolerance).max(1e-10);
-        Some((h, section(h).mark))
-    });
+    let [(start, _), .., (end, _)] = *places else { return (Integrals::default(), [false; 2]) };
+    let ends = [start, end];
+    // What there is at inner places, and next to the ends, where outlines are points or lines.
+    let inward = (ends[1] - ends[0]) * (NEAR * tolerance).max(1e-10);
+    let mut at = |h: f64| (h, section(h).mark);
+    let [mut below, last] = [ends[0] + inward, ends[1] - inward].map(&mut at);
     let mut sweep = Sweep {
         section,
         ends,
@@ -56,9 +54,10 @@ pub(super) fn sweep(
         scale_area: 0.0,
     };
     for (i, pair) in places.windows(2).enumerate() {
-        let [low, high] = [pair[0], pair[1]];
-        let near = [near[0].filter(|_| i == 0), near[1].filter(|_| i + 2 == places.len())];
-        sweep.push(Piece { near, ..Piece::between(low, high) });
+        let h = pair[1].0;
+        let above = if i + 2 == places.len() { last } else { (h, (sweep.section)(h).mark) };
+        sweep.push(Piece { near: [Some(below), Some(above)], ..Piece::between(pair[0], pair[1]) });
+        below = above;
     }
     while sweep.n > 0 {
         sweep.n -= 1;

@@ -2,6 +2,7 @@
 mod admission;
 mod cost;
 mod crossings;
+mod large;
 mod reading;
 mod signs;
 

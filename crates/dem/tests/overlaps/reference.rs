@@ -133,7 +133,8 @@ fn spheres(p: f64, q: f64, distance: f64) -> f64 {
     let area = |z: f64| PI * ((p - z) * (p + z)).min((q - z + distance) * (q + z - distance)).max(0.0);
     let same = (distance + (p - q) * (p + q) / distance) * 0.5;
     let middle = same.clamp(low, high);
-    integrate([low, middle], 0.0, &area) + integrate([middle, high], 0.0, &area)
+    let error = 1e-15 * p.min(q).powi(3);
+    integrate([low, middle], error, &area) + integrate([middle, high], error, &area)
 }
 
 fn round_and_part(axis: &Axisymmetric, part: &ConvexPart, small: f64) -> f64 {

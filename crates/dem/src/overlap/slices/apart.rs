@@ -6,7 +6,7 @@ use super::slice::{Place, Slice};
 ///
 /// Along every direction m, min over b of m·x − max over a of m·x is a convex function of the height, and so is the
 /// largest of these: where it is positive, its tangent bounds the heights at which slices can meet.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Gap {
     pub(super) value: f64,
     pub(super) change: f64,

@@ -1,4 +1,5 @@
 //! Intersection of a disc and an ellipse.
+use super::apart::Gap;
 use super::outline::{Section, segment};
 use super::slice::{Place, Tag, cross};
 use std::f64::consts::{PI, TAU};
@@ -61,16 +62,12 @@ impl Pair {
 
     /// Lower bound of the distance between the disc and the ellipse, exact where they are apart,
     /// and its change with the height.
-    pub(super) fn gap(&self) -> (f64, f64) {
+    pub(super) fn gap(&self) -> Gap {
         let (pair, _) = self.reflected();
         if pair.holds(Place::zeros()) {
-            return (-self.radius, 0.0);
+            return Gap { value: -self.radius, change: 0.0 };
         }
-        let nearest = pair.point(pair.nearest());
-        let distance = nearest.norm();
-        let way = nearest / distance.max(f64::MIN_POSITIVE);
-        let moves = way.dot(&(pair.shift + (nearest - pair.centre) * pair.growth));
-        (distance - self.radius, moves + self.slope)
+        pair.distance(pair.nearest())
     }
     fn holds(&self, x: Place) -> bool {
         (x - self.centre).component_div(&self.semi_axes).norm_squared() < 1.0
@@ -179,7 +176,7 @@ impl Pair {
     /// Along the ellipse the distance from the origin rises from its least, in the quadrant
     /// opposite to the centre, to its greatest, in that of the centre. In between it has two more
     /// extremes if the origin is within the evolute, in the quadrant beside the longer axis.
-    fn common(&self) -> (Common, f64) {
+    fn common(&self) -> (Common, Gap) {
         let [a, b] = [self.semi_axes.x, self.semi_axes.y];
         let [u, v] = [self.centre.x, self.centre.y];
         let extremes = self.inner_extremes(a, b, u, v);
@@ -192,14 +189,14 @@ impl Pair {
         }
         if least >= 0.0 {
             let common = if self.holds(Place::zeros()) { Common::Disc } else { Common::Nothing };
-            return (common, self.distance(least));
+            return (common, self.margin(near));
         }
         if most <= 0.0 || extremes.is_some() {
             far = self.farthest();
             most = self.level(far)[0];
         }
         if most <= 0.0 {
-            return (Common::Ellipse, self.distance(most));
+            return (Common::Ellipse, self.margin(far));
         }
         // Where a cosine between the two is zero.
         let share = ((most + least) / (most - least)).clamp(-1.0, 1.0).acos() / PI;
@@ -218,10 +215,11 @@ impl Pair {
         };
         let whole = |[start, end]: [f64; 2]| Common::Arcs([[start, end]; 2], 1);
         let Some([first, second]) = extremes else {
-            return (whole([falls(far, near), crossing([near, far + TAU])]), f64::INFINITY);
+            return (whole([falls(far, near), crossing([near, far + TAU])]), Gap::default());
         };
         let levels = [first, second].map(|t| self.level(t)[0]);
-        let margin = self.distance(levels[0]).min(self.distance(levels[1]));
+        let [one, other] = [first, second].map(|t| self.margin(t));
+        let margin = if one.value < other.value { one } else { other };
         let common = if a > b {
             // Far, a least distance, a greatest one, near.
             let [least, most] = levels;
@@ -249,9 +247,17 @@ impl Pair {
         };
         (common, margin)
     }
-    /// Distance of a point with a given level from the circle.
-    fn distance(&self, level: f64) -> f64 {
-        level.abs() / (self.radius + (level + self.radius * self.radius).max(0.0).sqrt())
+    /// Distance beyond the circle of a point of the ellipse where that from the origin is an extreme, and its change with
+    /// the height.
+    fn distance(&self, angle: f64) -> Gap {
+        let x = self.point(angle);
+        let r = x.norm();
+        let moves = x.dot(&(self.shift + (x - self.centre) * self.growth)) / r.max(f64::MIN_POSITIVE);
+        Gap { value: r - self.radius, change: moves + self.slope }
+    }
+    fn margin(&self, angle: f64) -> Gap {
+        let Gap { value, change } = self.distance(angle);
+        Gap { value: value.abs(), change: change * value.signum() }
     }
     /// Parameters of the two extremes of the distance besides the least and the greatest one,
     /// upwards. There, with C = |cos θ| and S = |sin θ|, a u/C + b v/S = |a² − b²|: a convex
@@ -387,7 +393,7 @@ mod tests {
             semi_axes: Place::new(2.0, 1.0),
             growth: 0.2,
         };
-        let (value, change) = pair.gap();
+        let Gap { value, change } = pair.gap();
         assert_relative_eq!(value, 1.0, epsilon = 1e-14);
         // The tip at x = −2 moves by 0.1 + 2·0.2, the disc's rim by −0.5.
         assert_relative_eq!(change, 0.5 - 0.5, epsilon = 1e-14);

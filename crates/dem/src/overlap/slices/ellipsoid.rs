@@ -1,5 +1,4 @@
 //! An ellipsoid and a tube, in slices across the tube's axis.
-use super::apart::Gap;
 use super::ellipse::Pair;
 use super::frame::Frame;
 use super::slice::Place;
@@ -40,10 +39,7 @@ pub(super) fn overlap(
     if range[0] >= range[1] {
         return None;
     }
-    let ends = heights::heights(range, 1e-4 * tolerance.sqrt(), |h| {
-        let (value, change) = pair.at(h).gap();
-        Gap { value, change }
-    })?;
+    let ends = heights::heights(range, 1e-4 * tolerance.sqrt(), |h| pair.at(h).gap())?;
     // The tube's curvature jumps where its straight part ends.
     let inner = [-pair.half, pair.half].map(|h| (h, false));
     let (mut places, mut n) = ([(ends[0], true); 4], 1);

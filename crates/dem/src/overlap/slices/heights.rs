@@ -7,7 +7,7 @@ const STEPS: usize = 80;
 const WITHIN: f64 = 1e-10;
 
 /// A height and the gap there.
-type Known = (f64, Gap);
+pub(super) type Known = (f64, Gap);
 
 /// The part of the `range` in which the `gap` is negative, `None` where there is none, its ends to a share of `close`.
 ///
@@ -61,7 +61,7 @@ fn crossing((x, f): Known, (y, g): Known) -> f64 {
 }
 
 /// Where the cubic through two values and slopes of different signs is least.
-fn lowest((x, f): Known, (y, g): Known) -> f64 {
+pub(super) fn lowest((x, f): Known, (y, g): Known) -> f64 {
     let width = y - x;
     let sum = f.change + g.change - 3.0 * (g.value - f.value) / width;
     let root = (sum * sum - f.change * g.change).max(0.0).sqrt();

@@ -1,4 +1,5 @@
 //! The outline of a convex region between straight lines and arcs.
+use super::apart::Gap;
 use super::slice::{Place, Side, Slice, Tag, cross};
 
 /// A piece of an outline; it ends where the next one starts.
@@ -46,8 +47,8 @@ pub(super) struct Section {
     pub(super) arm: Place,
     /// ∫ x × n ds.
     pub(super) turn: f64,
-    /// Distance of the nearest side of a polygon that is no piece of the outline.
-    pub(super) margin: f64,
+    /// Distance by which a piece that may appear or vanish does not, with its change if this is known, else NaN.
+    pub(super) margin: Gap,
     /// Tells apart which pieces were there.
     pub(super) mark: u64,
     /// Whether there were pieces of the first and the second body.

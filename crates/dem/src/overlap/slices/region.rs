@@ -1,4 +1,5 @@
 //! What two slices share.
+use super::apart::Gap;
 use super::outline::{Outline, Section};
 use super::slice::{Place, Side, Slice};
 
@@ -31,7 +32,7 @@ impl Region {
         }
         let sides = any.sides.iter().chain(&polygon.sides);
         let margins = sides.map(|side| self.outline.behind(side)).filter(|m| *m > 100.0 * slack);
-        section.margin = margins.fold(f64::INFINITY, f64::min);
+        section.margin = Gap { value: margins.fold(f64::INFINITY, f64::min), change: f64::NAN };
     }
     /// Two rounded cores: the second is a strip and what of a disc lies beyond each end of it; so is the first against these. Parts
     /// of which a line shows that they share nothing are left out.

@@ -1,5 +1,6 @@
 //! Integrals over the height of what slices share.
 use super::breaks::{Found, break_between};
+use super::heights;
 use super::outline::Section;
 use super::piece::Piece;
 use super::rules::{RULES, missed};
@@ -19,6 +20,8 @@ const NEAR: f64 = 0.3;
 /// From this tolerance on 15 points are taken at least.
 const FINE: f64 = 1e-6;
 
+/// Slices between two others that look for a piece there, at most.
+const LOOKS: usize = 16;
 /// Pieces after which breaks are no longer looked for.
 const NOISY: usize = 200;
 
@@ -242,9 +245,34 @@ impl<F: FnMut(f64) -> Section> Sweep<F> {
     }
     /// A height between slices of the same pieces at which there are others, and which.
     fn touch(&mut self, found: &[Found]) -> Option<(f64, u64)> {
-        let h = found.windows(3).find_map(lowest)?;
-        let mark = (self.section)(h).mark;
-        (mark != found[0].1.mark).then_some((h, mark))
+        if let Some(h) = found.windows(3).find_map(lowest) {
+            let mark = (self.section)(h).mark;
+            return (mark != found[0].1.mark).then_some((h, mark));
+        }
+        found.windows(2).find_map(|pair| self.touch_between(pair[0], pair[1]))
+    }
+    /// The same where the change of the margin is known: by cubics through two values and changes.
+    fn touch_between(&mut self, mut low: Found, mut high: Found) -> Option<(f64, u64)> {
+        for _ in 0..LOOKS {
+            let [f, g] = [low.1.margin, high.1.margin];
+            let falls_and_rises = f.change < 0.0 && g.change > 0.0;
+            // The lines through both ends are below a convex margin.
+            let least = (f.value * g.change - g.value * f.change + f.change * g.change * (high.0 - low.0))
+                / (g.change - f.change);
+            if !falls_and_rises || least > 0.0 {
+                return None;
+            }
+            let h = heights::lowest((low.0, f), (high.0, g));
+            if !(low.0 < h && h < high.0) {
+                return None;
+            }
+            let section = (self.section)(h);
+            if section.mark != low.1.mark {
+                return Some((h, section.mark));
+            }
+            if section.margin.change < 0.0 { low = (h, section) } else { high = (h, section) }
+        }
+        None
     }
     /// Has both parts of a piece wait, below and above a height.
     fn split(&mut self, piece: &Piece, at: f64, beside: [(f64, u64); 2]) {
@@ -285,6 +313,10 @@ pub(super) fn per_height(h: f64, s: &Section) -> Integrals {
 fn lowest(three: &[Found]) -> Option<f64> {
     let [x, y, z] = [0, 1, 2].map(|i| three[i].0);
     let [f, g, h] = [0, 1, 2].map(|i| three[i].1.margin);
+    if !three.iter().all(|found| found.1.margin.change.is_nan()) {
+        return None;
+    }
+    let [f, g, h] = [f, g, h].map(|margin| margin.value);
     let [low, high] = [(g - f) / (y - x), (h - g) / (z - y)];
     if f.is_finite() && g.is_finite() && h.is_finite() && low <= 0.0 && high >= 0.0 && high > low {
         let bend = (high - low) / (z - x);

@@ -2,15 +2,18 @@
 //!
 //! [`Podiann`]: the modes of a [`Pod`](crate::pod::Pod), with functions for their coefficients. [`Spodiann`]: modes that frames of reference carry along, with functions for their coefficients and for the frames' paths.
 mod assessment;
-mod carried;
 mod coefficients;
 mod error;
+mod extrapolation;
 mod modes;
+mod moving_modes;
 mod paths;
 mod podiann;
 mod spodiann;
 
 pub use assessment::Assessment;
 pub use error::ModelError;
+pub use extrapolation::Extrapolation;
+pub use moving_modes::CoefficientFit;
 pub use podiann::Podiann;
 pub use spodiann::{Spodiann, SpodiannParams};

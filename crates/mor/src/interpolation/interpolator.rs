@@ -29,6 +29,10 @@ pub trait Method: Send + Sync {
         };
         folds.sets().iter().map(one).collect()
     }
+    /// The method for samples whose inputs are `slow` ones and then cos θ_a, sin θ_a of so many phases. None if it takes no such inputs.
+    fn with_phases(&self, _slow: usize, _phases: usize) -> Option<Box<dyn Method>> {
+        None
+    }
 }
 
 /// A function ℝᵈ → ℝᵏ made of samples.

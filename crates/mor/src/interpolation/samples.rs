@@ -159,6 +159,11 @@ impl Samples {
             points,
         })
     }
+    /// All samples with their first `n` inputs alone, which must tell them apart.
+    pub(crate) fn first_inputs(&self, n: usize) -> Self {
+        let points = self.points.get(..n, ..).to_owned();
+        Self { domain: self.domain[..n].to_vec(), points, values: self.values.clone() }
+    }
     /// All but those.
     ///
     /// # Errors

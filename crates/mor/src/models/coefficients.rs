@@ -1,114 +1,205 @@
 //! Coefficients at any point, and how far they may be off.
-use super::ModelError;
+use super::{Extrapolation, ModelError};
 use crate::interpolation::{
     Degree, Folds, Interpolator, Method, Record, RecordError, Samples, SplineParams, VaryingParams, best_of,
     candidates, cross_validate, load,
 };
 use crate::{Mat, MatRef};
 
-/// A function, and a second one, whose distance from it tells where the samples are too few.
+/// A function of slow inputs, and of phases if it has them, and a second one, whose distance from it shows where the samples are too few.
 pub(super) struct Coefficients {
     first: Box<dyn Interpolator>,
     second: Box<dyn Interpolator>,
-    /// Root mean square error between samples (a norm over all outputs), as cross-validation tells.
+    /// Name of the first one's method.
+    method: String,
+    /// Number of slow inputs: time and parameters.
+    slow: usize,
+    extrapolation: Extrapolation,
+    /// Root mean square error between samples (a norm over all outputs), by cross-validation.
     error: f64,
     /// Root mean square distance of the two functions between samples.
     distance: f64,
 }
 
-/// Methods that suit the samples: splines in time alone, with phases where there are any; all [`candidates`] with parameters.
-fn methods(samples: &Samples, phases: bool) -> Vec<Box<dyn Method>> {
-    if phases {
-        let of = |degree| Box::new(VaryingParams { degree, pieces: None }) as Box<dyn Method>;
-        return [Degree::Quintic, Degree::Cubic, Degree::Linear].map(of).into();
-    }
-    let highest = (samples.inputs() == 1).then(|| Degree::highest(samples.distinct(0).len())).flatten();
-    match highest {
-        Some(highest) => {
-            let degrees = Degree::ALL.into_iter().filter(|degree| *degree <= highest).rev();
-            degrees.map(|degree| Box::new(SplineParams::new(degree)) as Box<dyn Method>).collect()
+/// Methods for samples and the number of their slow inputs, and the error of the best of them.
+pub(super) struct Choice<'a> {
+    samples: &'a Samples,
+    slow: usize,
+    /// The best, then the others.
+    methods: Vec<MethodRef<'a>>,
+    /// Relative error of samples left out; 0 if they are too few to leave any out.
+    pub(super) left_out: f64,
+}
+
+enum MethodRef<'a> {
+    Given(&'a dyn Method),
+    Own(Box<dyn Method>),
+}
+
+impl MethodRef<'_> {
+    fn get(&self) -> &dyn Method {
+        match self {
+            Self::Given(method) => *method,
+            Self::Own(method) => method.as_ref(),
         }
-        None => candidates(samples),
     }
 }
 
-impl Coefficients {
-    /// By the method given, or that which [`best_of`] finds.
-    pub(super) fn fit(
-        samples: &Samples,
-        given: Option<&dyn Method>,
-        phases: bool,
-    ) -> Result<Self, ModelError> {
-        let folds = match phases {
-            // Only the first input is free.
-            true => Folds::interleaved(samples, 5),
-            false => Folds::suited(samples, 1),
-        };
-        let mut methods = methods(samples, phases);
-        let (best, relative) = match (given, &folds) {
-            (Some(given), Ok(folds)) => (None, cross_validate(given, samples, folds)?.error),
-            (Some(_), Err(_)) => (None, 0.0),
-            (None, Ok(folds)) => {
-                let best = best_of(&methods, samples, folds)?;
-                let error = best.table.rows[best.chosen].outcome.as_ref().map_or(0.0, |row| row.error);
-                (Some(methods.remove(best.chosen)), error)
+/// Splines in time alone; all [`candidates`] with parameters; least-squares splines with harmonics of the phases if there are any.
+fn methods(samples: &Samples, slow: usize) -> Vec<Box<dyn Method>> {
+    let highest = |n: usize| Degree::highest(n).map_or(0, |d| d.get());
+    let degrees = |most: usize| Degree::ALL.into_iter().rev().filter(move |degree| degree.get() <= most);
+    if samples.inputs() > slow {
+        let most = highest(samples.distinct(0).len());
+        return degrees(most).map(|degree| Box::new(VaryingParams { degree, slow }) as Box<dyn Method>).collect();
+    }
+    match highest(samples.distinct(0).len()) {
+        most if samples.inputs() == 1 && most > 0 => {
+            degrees(most).map(|degree| Box::new(SplineParams::new(degree)) as Box<dyn Method>).collect()
+        }
+        _ => candidates(samples),
+    }
+}
+
+impl<'a> Choice<'a> {
+    /// The method given, or that which [`best_of`] finds; sets left out are those that suit the first `slow` inputs. None if the method given takes no phases.
+    pub(super) fn new(
+        samples: &'a Samples,
+        slow: usize,
+        given: Option<&'a dyn Method>,
+    ) -> Result<Option<Self>, ModelError> {
+        let phases = (samples.inputs() - slow) / 2;
+        let folds = Folds::suited(&samples.first_inputs(slow), 1);
+        let mut own = methods(samples, slow);
+        let (best, left_out) = match given {
+            Some(given) => {
+                let method = match phases {
+                    0 => MethodRef::Given(given),
+                    _ => match given.with_phases(slow, phases) {
+                        Some(method) => MethodRef::Own(method),
+                        None => return Ok(None),
+                    },
+                };
+                let left_out = match &folds {
+                    Ok(folds) => cross_validate(method.get(), samples, folds)?.error,
+                    Err(_) => 0.0,
+                };
+                (method, left_out)
             }
-            // Too few samples to leave any out.
-            (None, Err(_)) => (methods.pop(), 0.0),
+            None => {
+                let (chosen, left_out) = match &folds {
+                    Ok(folds) => {
+                        let best = best_of(&own, samples, folds)?;
+                        let error = best.table.rows[best.chosen].outcome.as_ref().map_or(0.0, |row| row.error);
+                        (best.chosen, error)
+                    }
+                    Err(_) => (own.len().saturating_sub(1), 0.0),
+                };
+                if own.is_empty() {
+                    return Err(ModelError::Shape { what: "methods that suit the samples", expected: 1, found: 0 });
+                }
+                (MethodRef::Own(own.remove(chosen)), left_out)
+            }
         };
-        let Some(first) = given.or(best.as_deref()) else {
-            return Err(ModelError::Shape { what: "methods that suit the samples", expected: 1, found: 0 });
-        };
+        let methods = std::iter::once(best).chain(own.into_iter().map(MethodRef::Own)).collect();
+        Ok(Some(Self { samples, slow, methods, left_out }))
+    }
+
+    /// The function, by all samples.
+    pub(super) fn fit(self) -> Result<Coefficients, ModelError> {
+        let Self { samples, slow, methods, left_out } = self;
+        let first = methods[0].get();
         // The first other one that works.
-        let other = methods.iter().find_map(|method| Some((method.fit(samples).ok()?, &**method)));
+        let other = methods[1..].iter().find_map(|method| Some((method.get().fit(samples).ok()?, method.get())));
         let (second, second_method) = match other {
             Some(other) => other,
             None => (first.fit(samples)?, first),
         };
         let squares: f64 = samples.values().squared_norm_l2();
-        let left_out = relative * (squares / samples.len() as f64).sqrt();
+        let left_out = left_out * (squares / samples.len() as f64).sqrt();
         let (error, distance) = match between(samples, [first, second_method]) {
-            Some([error, distance]) if samples.inputs() == 1 || phases => (error, distance),
+            Some([error, distance]) if slow == 1 => (error, distance),
             // Across the parameters a value left out doubles the distance: at order 2 or more the error is a quarter of that or less.
             Some([error, distance]) => (error.max(0.25 * left_out), distance),
             None => (0.25 * left_out, 0.0),
         };
-        Ok(Self { first: first.fit(samples)?, second, error, distance })
+        Ok(Coefficients {
+            first: first.fit(samples)?,
+            second,
+            method: first.name(),
+            slow,
+            extrapolation: Extrapolation::default(),
+            error,
+            distance,
+        })
+    }
+}
+
+impl Coefficients {
+    /// Without phases, by the method given, or that which [`best_of`] finds.
+    pub(super) fn fit(samples: &Samples, given: Option<&dyn Method>) -> Result<Self, ModelError> {
+        match Choice::new(samples, samples.inputs(), given)? {
+            Some(choice) => choice.fit(),
+            None => Err(ModelError::Shape { what: "methods that suit the samples", expected: 1, found: 0 }),
+        }
     }
 
     pub(super) fn outputs(&self) -> usize {
         self.first.outputs()
     }
-    /// Smallest and largest value of every input among the samples.
-    pub(super) fn domain(&self) -> &[[f64; 2]] {
-        self.first.domain()
+    /// Name of the method.
+    pub(super) fn method(&self) -> &str {
+        &self.method
     }
-    /// Root mean square error between samples.
-    pub(super) fn error(&self) -> f64 {
-        self.error
+    /// Smallest and largest value of every slow input among the samples.
+    pub(super) fn domain(&self) -> &[[f64; 2]] {
+        &self.first.domain()[..self.slow]
+    }
+    pub(super) fn inputs(&self) -> usize {
+        self.first.inputs()
+    }
+    pub(super) fn extrapolate(&mut self, how: Extrapolation) {
+        self.extrapolation = how;
     }
     pub(super) fn predict(&self, x: &[f64], out: &mut [f64]) -> Result<(), ModelError> {
-        Ok(self.first.predict(x, out)?)
+        Ok(self.extrapolation.predict(self.first.as_ref(), self.slow, x, out)?)
     }
     /// At points that are columns, as columns.
     pub(super) fn predict_all(&self, points: MatRef<'_, f64>) -> Result<Mat<f64>, ModelError> {
-        Ok(self.first.predict_all(points)?)
+        let mut values = Mat::zeros(self.outputs(), points.ncols());
+        for j in 0..points.ncols() {
+            let x: Vec<f64> = points.col(j).iter().copied().collect();
+            self.predict(&x, values.col_as_slice_mut(j))?;
+        }
+        Ok(values)
     }
-    /// What the error may be at x: the root mean square one, or larger by as much as the two functions are farther apart than they usually are.
+    /// Estimate of the error at x: the root mean square one, larger by the ratio of the two functions' distance to their usual one; beyond the samples also the distance of
+    /// the extrapolation from the function itself.
     pub(super) fn doubt(&self, x: &[f64]) -> Result<f64, ModelError> {
-        let (mut a, mut b) = (vec![0.0; self.outputs()], vec![0.0; self.outputs()]);
-        self.first.predict(x, &mut a)?;
-        self.second.predict(x, &mut b)?;
-        let distance = a.iter().zip(&b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
-        let factor = if self.distance > 0.0 { (distance / self.distance).max(1.0) } else { 1.0 };
-        // Far outside the functions are no measure of one another.
-        let beyond = if self.first.covers(x) { 0.0 } else { distance };
+        let at = |function: &dyn Interpolator, how: Extrapolation| {
+            let mut y = vec![0.0; self.outputs()];
+            how.predict(function, self.slow, x, &mut y).map(|()| y)
+        };
+        let distance = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+        let first = at(self.first.as_ref(), self.extrapolation)?;
+        let apart = distance(&first, &at(self.second.as_ref(), self.extrapolation)?);
+        let factor = if self.distance > 0.0 { (apart / self.distance).max(1.0) } else { 1.0 };
+        let inside = x.iter().zip(self.domain()).all(|(x, [low, high])| (low..=high).contains(&x));
+        let beyond = if inside {
+            0.0
+        } else {
+            let constant = distance(&first, &at(self.first.as_ref(), Extrapolation::Constant)?);
+            apart.max(constant).max(distance(&first, &at(self.first.as_ref(), Extrapolation::Function)?))
+        };
         Ok((self.error * factor).max(beyond))
     }
     pub(super) fn record(&self) -> Record {
         Record::new("coefficients")
             .with_record("first", &self.first.record())
             .with_record("second", &self.second.record())
+            .with_word("method", &self.method)
+            .with_word("extrapolation", self.extrapolation.name())
+            .with("slow", [self.slow as f64])
             .with("error", [self.error, self.distance])
     }
     pub(super) fn from_record(record: &Record) -> Result<Self, RecordError> {
@@ -120,7 +211,15 @@ impl Coefficients {
         let [error, distance] = record.numbers("error")?[..] else {
             return Err(record.wrong("error", "is not two numbers".into()));
         };
-        Ok(Self { first, second, error, distance })
+        let slow = record.count("slow")?;
+        if slow == 0 || slow > first.inputs() {
+            return Err(record.wrong("slow", format!("is {slow} of {} inputs", first.inputs())));
+        }
+        let word = record.word("extrapolation")?;
+        let extrapolation = Extrapolation::named(word)
+            .ok_or_else(|| record.wrong("extrapolation", format!("is `{word}`")))?;
+        let method = record.word("method")?.to_owned();
+        Ok(Self { first, second, method, slow, extrapolation, error, distance })
     }
 }
 

@@ -1,5 +1,5 @@
 //! Where frames of reference are, as a function of time and parameters.
-use super::ModelError;
+use super::{Extrapolation, ModelError};
 use super::coefficients::Coefficients;
 use crate::interpolation::{Method, Record, RecordError, Samples};
 use crate::shifted::{Motion, Shifts};
@@ -44,11 +44,21 @@ impl Paths {
         let function = if moving.is_empty() {
             None
         } else {
-            Some(Coefficients::fit(&Samples::new(points, values.as_ref())?, method, false)?)
+            Some(Coefficients::fit(&Samples::new(points, values.as_ref())?, method)?)
         };
         Ok(Self { centres: (0..frames).map(|k| shifts.motion(k, 0).centre).collect(), moving, function })
     }
 
+    /// Name of the method of the paths; none if no frame moves.
+    pub(super) fn method(&self) -> Option<&str> {
+        self.function.as_ref().map(Coefficients::method)
+    }
+    pub(super) fn domain(&self) -> Option<&[[f64; 2]]> {
+        self.function.as_ref().map(Coefficients::domain)
+    }
+    pub(super) fn extrapolate(&mut self, how: Extrapolation) {
+        self.function.iter_mut().for_each(|function| function.extrapolate(how));
+    }
     /// The motion of every frame at x.
     pub(super) fn motions(&self, x: &[f64]) -> Result<Vec<Motion>, ModelError> {
         let mut numbers = vec![0.0; PER_FRAME * self.centres.len()];

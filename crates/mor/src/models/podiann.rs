@@ -2,7 +2,7 @@
 use super::assessment::Sums;
 use super::coefficients::Coefficients;
 use super::modes::write_modes;
-use super::{Assessment, ModelError};
+use super::{Assessment, Extrapolation, ModelError};
 use crate::interpolation::{Method, Record, RecordError, Samples};
 use crate::pod::{Pod, combine};
 use crate::shifted::{Grid, ShiftedError};
@@ -39,7 +39,7 @@ impl Podiann {
         let values = pod.scaled_coefficients();
         let coefficients = match pod.rank() {
             0 => None,
-            _ => Some(Coefficients::fit(&Samples::new(points, values.as_ref())?, method, false)?),
+            _ => Some(Coefficients::fit(&Samples::new(points, values.as_ref())?, method)?),
         };
         let weight = |i: usize| pod.weights.as_ref().map_or(1.0, |w| w[i]);
         let mean = pod.mean.iter().flatten().enumerate().map(|(i, x)| weight(i) * x * x).sum::<f64>();
@@ -71,7 +71,18 @@ impl Podiann {
     pub fn modes(&self) -> MatRef<'_, f64> {
         self.pod.modes.as_ref()
     }
-    /// Is x within the samples' times and parameters?
+    /// Name of the method of the coefficients; none without modes.
+    #[must_use]
+    pub fn method(&self) -> Option<&str> {
+        self.coefficients.as_ref().map(Coefficients::method)
+    }
+    /// The same with another continuation of the coefficients beyond the samples ([`covers`](Self::covers)); it is linear unless given.
+    #[must_use]
+    pub fn extrapolated(mut self, how: Extrapolation) -> Self {
+        self.coefficients.iter_mut().for_each(|function| function.extrapolate(how));
+        self
+    }
+    /// Is x within the samples' times and parameters? Predictions elsewhere are extrapolations ([`Extrapolation`]).
     #[must_use]
     pub fn covers(&self, x: &[f64]) -> bool {
         let domain = self.coefficients.as_ref().map_or(&[][..], |c| c.domain());
@@ -189,7 +200,7 @@ impl Podiann {
             0 => None,
             _ => Some(Coefficients::from_record(&record.record("coefficients")?)?),
         };
-        if coefficients.as_ref().is_some_and(|c| c.outputs() != rank || c.domain().len() != inputs) {
+        if coefficients.as_ref().is_some_and(|c| c.outputs() != rank || c.inputs() != inputs) {
             return Err(record.wrong("sizes", "do not fit the coefficients".into()));
         }
         let pod = Pod {

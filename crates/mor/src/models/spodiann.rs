@@ -1,9 +1,10 @@
 //! Shifted POD with interpolated coefficients and paths.
 use super::assessment::Sums;
-use super::carried::Carried;
+use super::coefficients::Coefficients;
 use super::modes::write_modes;
+use super::moving_modes::{CoefficientFit, MovingModes};
 use super::paths::Paths;
-use super::{Assessment, ModelError};
+use super::{Assessment, Extrapolation, ModelError};
 use crate::interpolation::{Method, Record, RecordError};
 use crate::pod::combine;
 use crate::shifted::{
@@ -19,7 +20,7 @@ use std::path::Path;
 /// How a [`Spodiann`] interpolates; `None`: the way that predicts samples best which are held out.
 #[derive(Clone, Copy, Default)]
 pub struct SpodiannParams<'a> {
-    /// The coefficients, as functions of time and parameters, and of phases where those help.
+    /// The coefficients, as functions of time and parameters, and of phases if that lowers the error of samples left out.
     pub coefficients: Option<&'a dyn Method>,
     /// The frames' paths.
     pub paths: Option<&'a dyn Method>,
@@ -28,12 +29,16 @@ pub struct SpodiannParams<'a> {
 /// Q(x, t, μ) ≈ Σ_k T^{Δ_k(t, μ)} Σ_i c_i^k(t, μ) φ_i^k(x): modes in frames of reference that move, with interpolated coefficients c and motions Δ
 /// (sPODIANN; Isoz et al. 2023, equation (9) and figure 8).
 ///
-/// Inputs are time and then parameters. Where they are time alone and a frame crosses cells of the grid, its coefficients may also
-/// depend on the phase cos 2πs/h, sin 2πs/h of its displacement ([`Varying`](crate::interpolation::Varying)), if samples that are held out tell so.
+/// Inputs are time and then parameters. Where a frame moves along an axis by more than half a cell, the phase θ = 2πs/h of its displacement s may be an input of its
+/// coefficients, too, as cos θ, sin θ: a sharp edge on a grid of spacing h is aliased, and what its spectral shift leaves is periodic in θ. The method given takes it
+/// ([`Method::with_phases`]), or the default ([`Varying`](crate::interpolation::Varying)), if that lowers the error of samples left out;
+/// [`coefficient_fits`](Self::coefficient_fits) returns the method of every frame, its phases, and the error with and without them.
+///
+/// Beyond the samples' times and parameters ([`covers`](Self::covers)) coefficients and paths are extrapolated linearly ([`Extrapolation`]).
 pub struct Spodiann {
     interpolation: Interpolation,
     interpolator: Interpolator,
-    frames: Vec<Carried>,
+    frames: Vec<MovingModes>,
     /// If all frames only move along periodic axes, by [`Interpolation::Spectral`].
     superposition: Option<Superposition>,
     /// Of the decomposition; in the paths already.
@@ -71,19 +76,19 @@ impl Spodiann {
         }
         let paths = Paths::fit(points, shifts, params.paths)?;
         let mut squares = 0.0;
-        let mut carried = Vec::new();
+        let mut moving = Vec::new();
         for (k, frame) in frames.iter().enumerate() {
             ModelError::same("rows of a frame's modes", rows, frame.modes.nrows())?;
             ModelError::same("coefficients of a frame, one for each point", m, frame.coefficients.ncols())?;
             squares += frame.singular_values.iter().map(|s| s * s).sum::<f64>();
             let motions = |j: usize| shifts.motion(k, j);
-            carried.push(Carried::fit(points, frame, &grid, &motions, params.coefficients)?);
+            moving.push(MovingModes::fit(points, frame, &grid, &motions, params.coefficients)?);
         }
         Ok(Self {
             interpolation,
             interpolator: Interpolator::new(grid, interpolation),
-            superposition: superposition(&grid, interpolation, &paths, &carried),
-            frames: carried,
+            superposition: superposition(&grid, interpolation, &paths, &moving),
+            frames: moving,
             offsets: decomposition.offsets.clone(),
             paths,
             inputs: points.nrows(),
@@ -98,10 +103,28 @@ impl Spodiann {
     pub fn inputs(&self) -> usize {
         self.inputs
     }
-    /// Is x within the samples' times and parameters?
+    /// Method of the coefficients of every frame; None where it has no modes.
+    #[must_use]
+    pub fn coefficient_fits(&self) -> Vec<Option<CoefficientFit>> {
+        self.frames.iter().map(MovingModes::coefficient_fit).collect()
+    }
+    /// Name of the method of the frames' paths; None if no frame moves.
+    #[must_use]
+    pub fn path_method(&self) -> Option<&str> {
+        self.paths.method()
+    }
+    /// The same with another continuation of coefficients and paths beyond the samples ([`covers`](Self::covers)); it is linear unless given.
+    #[must_use]
+    pub fn extrapolated(mut self, how: Extrapolation) -> Self {
+        self.frames.iter_mut().for_each(|frame| frame.extrapolate(how));
+        self.paths.extrapolate(how);
+        self
+    }
+    /// Is x within the samples' times and parameters? Predictions elsewhere are extrapolations ([`Extrapolation`]).
     #[must_use]
     pub fn covers(&self, x: &[f64]) -> bool {
-        let domain = self.frames.iter().find_map(|f| f.coefficients.as_ref()).map_or(&[][..], |c| c.domain());
+        let of_modes = self.frames.iter().find_map(|f| f.coefficients.as_ref()).map(Coefficients::domain);
+        let domain = of_modes.or(self.paths.domain()).unwrap_or_default();
         x.len() == self.inputs && x.iter().zip(domain).all(|(x, [low, high])| (low..=high).contains(&x))
     }
     /// Unknowns of a field.
@@ -323,7 +346,7 @@ impl Spodiann {
             return Err(record.wrong("sizes", format!("have {rows} rows on {} cells", grid.n_cells())));
         }
         let offsets = record.numbers_of("offsets", 3 * frames)?;
-        let frame = |k: usize| Carried::from_record(&record.record(&format!("frame {k}"))?, rows);
+        let frame = |k: usize| MovingModes::from_record(&record.record(&format!("frame {k}"))?, rows, inputs);
         let frames = (0..frames).map(frame).collect::<Result<Vec<_>, _>>()?;
         let paths = Paths::from_record(&record.record("paths")?)?;
         Ok(Self {
@@ -358,11 +381,11 @@ fn superposition(
     grid: &Grid,
     interpolation: Interpolation,
     paths: &Paths,
-    frames: &[Carried],
+    frames: &[MovingModes],
 ) -> Option<Superposition> {
     let axes = paths.axes().filter(|_| interpolation == Interpolation::Spectral)?;
     let rows = frames.first()?.modes.nrows();
-    Superposition::new(grid, axes, rows, frames.iter().map(Carried::columns))
+    Superposition::new(grid, axes, rows, frames.iter().map(MovingModes::columns))
 }
 
 #[cfg(test)]

@@ -1,0 +1,163 @@
+//! Number of terms of a varying-coefficient function.
+use super::terms::Terms;
+use crate::Mat;
+use crate::interpolation::spline::Axis;
+use crate::interpolation::{Degree, Folds, InterpolationError, Samples};
+use monomorphic::{Qr, solve_positive};
+use std::collections::HashMap;
+
+/// How complex a function is; ordered from the simplest one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Complexity {
+    /// Steps of the number of pieces of the spline.
+    pieces: usize,
+    /// r₀ and r₁.
+    parameters: usize,
+    variation: usize,
+    /// q.
+    harmonics: usize,
+    /// −log₁₀ of ρ, relative to the largest column.
+    ridge: usize,
+}
+
+/// Ridges that are tried: from 10⁻¹ to the round-off of the normal equations' Cholesky factors.
+const RIDGES: std::ops::RangeInclusive<usize> = 1..=7;
+
+impl Complexity {
+    /// Pieces after so many steps of 3/2.
+    fn pieces(self) -> usize {
+        (0..self.pieces).fold(1, |n: usize, _| (n + 1).max(3 * n / 2))
+    }
+    /// With one of the numbers larger by `step`, or the ridge changed by it.
+    fn neighbours(self, step: usize) -> impl Iterator<Item = Self> {
+        let with = move |part: usize| {
+            let mut next = self;
+            match part {
+                0 => next.pieces += step,
+                1 => next.parameters += step,
+                2 => next.variation += step,
+                3 => next.harmonics += step,
+                4 => next.ridge += step,
+                _ => next.ridge = next.ridge.saturating_sub(step),
+            }
+            next
+        };
+        (0..6).map(with)
+    }
+}
+
+/// Samples to fit.
+pub(super) struct Fit<'a> {
+    pub(super) samples: &'a Samples,
+    pub(super) degree: Degree,
+    pub(super) slow: usize,
+    /// Ascending distinct values of the first input.
+    pub(super) times: Vec<f64>,
+}
+
+impl Fit<'_> {
+    pub(super) fn terms(&self, of: Complexity) -> Terms {
+        let (p, pieces, last) = (self.degree.get(), of.pieces(), self.times.len() - 1);
+        let mut knots = vec![self.times[0]; p + 1];
+        knots.extend((1..pieces).map(|i| {
+            let at = (i * last) as f64 / pieces as f64;
+            let before = at as usize;
+            self.times[before] + at.fract() * (self.times[(before + 1).min(last)] - self.times[before])
+        }));
+        knots.extend(vec![self.times[last]; p + 1]);
+        let domain = &self.samples.domain()[..self.slow];
+        let phases = (self.samples.inputs() - self.slow) / 2;
+        let degrees = [of.parameters, of.variation, of.harmonics];
+        Terms::new(Axis { degree: p, knots }, domain, phases, degrees)
+    }
+    /// Terms (columns) at the samples (rows), `below` rows of zeros below.
+    fn matrix(&self, terms: &Terms, below: usize) -> Mat<f64> {
+        let m = self.samples.len();
+        let rows: Vec<Vec<f64>> = (0..m).map(|j| terms.at(self.samples.point(j), None)).collect();
+        Mat::from_fn(m + below, terms.len(), |j, c| if j < m { rows[j][c] } else { 0.0 })
+    }
+    fn ridge(matrix: &Mat<f64>, of: Complexity) -> f64 {
+        let largest = (0..matrix.ncols()).map(|c| matrix.col(c).norm_l2()).fold(0.0, f64::max);
+        largest * 10.0_f64.powi(-(of.ridge as i32))
+    }
+
+    /// The coefficients, k × terms.
+    pub(super) fn coefficients(&self, terms: &Terms, of: Complexity) -> Mat<f64> {
+        let (m, n, k) = (self.samples.len(), terms.len(), self.samples.outputs());
+        let mut rows = self.matrix(terms, n);
+        let ridge = Self::ridge(&rows, of);
+        (0..n).for_each(|c| rows[(m + c, c)] = ridge);
+        let values = self.samples.values();
+        let mut right = Mat::from_fn(m + n, k, |j, row| if j < m { values[(row, j)] } else { 0.0 });
+        Qr::new(rows).solve(right.as_mut());
+        Mat::from_fn(k, n, |row, c| right[(c, row)])
+    }
+
+    /// Errors (k × size of the set) at the samples of every set by the coefficients of all others; None if those do not determine them.
+    pub(super) fn left_out(&self, of: Complexity, folds: &Folds) -> Option<Vec<Mat<f64>>> {
+        let terms = self.terms(of);
+        let (n, k, values) = (terms.len(), self.samples.outputs(), self.samples.values());
+        let matrix = self.matrix(&terms, 0);
+        let ridge = Self::ridge(&matrix, of).powi(2);
+        let gram = matrix.transpose() * &matrix;
+        let right = matrix.transpose() * values.transpose();
+        let one = |set: &Vec<usize>| {
+            let part = Mat::from_fn(set.len(), n, |j, c| matrix[(set[j], c)]);
+            let known = Mat::from_fn(set.len(), k, |j, row| values[(row, set[j])]);
+            let mut normal = &gram - part.transpose() * &part;
+            (0..n).for_each(|c| normal[(c, c)] += ridge);
+            let mut solution = &right - part.transpose() * &known;
+            solve_positive(normal.as_ref(), solution.as_mut()).then(|| {
+                let found = &part * &solution - known;
+                found.transpose().to_owned()
+            })
+        };
+        folds.sets().iter().map(one).collect()
+    }
+
+    /// The complexity with the smallest error of the samples left out that steps from the simplest one lead to.
+    pub(super) fn best(&self, folds: &Folds) -> Result<Complexity, InterpolationError> {
+        let (m, p) = (self.samples.len(), self.degree.get());
+        let phases = self.samples.inputs() > self.slow;
+        let mut known = HashMap::new();
+        let mut error = |of: Complexity| {
+            let sensible = RIDGES.contains(&of.ridge)
+                && (self.slow > 1 || of.parameters == 0)
+                && (phases || of.harmonics == 0)
+                && (of.harmonics > 0 || of.variation == 0)
+                && of.pieces() + p <= self.times.len();
+            if !sensible || self.terms(of).len() >= m {
+                return f64::INFINITY;
+            }
+            *known.entry(of).or_insert_with(|| {
+                let errors = self.left_out(of, folds);
+                let sum = errors.map_or(f64::INFINITY, |all| all.iter().map(|e| e.squared_norm_l2()).sum());
+                if sum.is_nan() { f64::INFINITY } else { sum }
+            })
+        };
+        let first = Complexity {
+            pieces: 0,
+            parameters: usize::from(self.slow > 1),
+            variation: 0,
+            harmonics: usize::from(phases),
+            ridge: 4,
+        };
+        let mut best = (first, error(first));
+        // Two at once where one alone is no gain: even and odd terms may do nothing by turns.
+        while let Some(next) = [1, 2].into_iter().find_map(|step| {
+            let all = best.0.neighbours(step).map(|of| (of, error(of)));
+            all.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|next| next.1 < GAIN * best.1)
+        }) {
+            best = next;
+        }
+        if best.1.is_finite() {
+            return Ok(best.0);
+        }
+        let needed = self.terms(first).len() + 1;
+        let what = format!("a spline of degree {p} with {} phases", (self.samples.inputs() - self.slow) / 2);
+        Err(InterpolationError::TooFew { what, of: "samples", needed, found: m })
+    }
+}
+
+/// A step must lower the squares of errors by a hundredth at least.
+const GAIN: f64 = 0.99;

@@ -105,6 +105,11 @@ fn measure(name: &str, ranks: &[usize], known: &Part, held: &Part) {
             }
         };
         let fit = watch.elapsed().as_secs_f64();
+        if std::env::var_os("VERBOSE").is_some() {
+            for (k, fit) in model.coefficient_fits().iter().flatten().enumerate() {
+                println!("    frame {k}: {}, phases {:?}, left out {:.2e}, other {:.2e}, σ {:.2?}", fit.method, fit.phases, fit.left_out, fit.left_out_other.unwrap_or(f64::NAN), modes.frames[k].singular_values);
+            }
+        }
         let found = model.assess(held.points.as_ref(), held.snapshots.as_ref(), &held.motions).expect("errors");
         let mut worst = (0.0, f64::NAN);
         for j in 0..held.points.ncols() {
@@ -112,6 +117,9 @@ fn measure(name: &str, ranks: &[usize], known: &Part, held: &Part) {
             let one = model
                 .assess(held.points.as_ref().subcols(j, 1), held.snapshots.as_ref().subcols(j, 1), &motions)
                 .expect("errors");
+            if std::env::var_os("VERBOSE").is_some() {
+                print!("{:.3}: {:.2} ", held.points[(0, j)], one.total / one.projection);
+            }
             if one.total / one.projection > worst.0 {
                 worst = (one.total / one.projection, held.points[(0, j)]);
             }

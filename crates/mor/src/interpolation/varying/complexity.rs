@@ -5,6 +5,7 @@ use crate::interpolation::spline::Axis;
 use crate::interpolation::{Degree, Folds, InterpolationError, Samples};
 use monomorphic::{Qr, solve_positive};
 use std::collections::HashMap;
+use std::f64::consts::TAU;
 
 /// How complex a function is; ordered from the simplest one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -96,26 +97,36 @@ impl Fit<'_> {
     /// Errors (k × size of the set) at the samples of every set by the coefficients of all others; None if those do not determine them.
     pub(super) fn left_out(&self, of: Complexity, folds: &Folds) -> Option<Vec<Mat<f64>>> {
         let terms = self.terms(of);
-        let (n, k, values) = (terms.len(), self.samples.outputs(), self.samples.values());
-        let matrix = self.matrix(&terms, 0);
-        let ridge = Self::ridge(&matrix, of).powi(2);
-        let gram = matrix.transpose() * &matrix;
-        let right = matrix.transpose() * values.transpose();
-        let one = |set: &Vec<usize>| {
-            let part = Mat::from_fn(set.len(), n, |j, c| matrix[(set[j], c)]);
-            let known = Mat::from_fn(set.len(), k, |j, row| values[(row, set[j])]);
-            let mut normal = &gram - part.transpose() * &part;
-            (0..n).for_each(|c| normal[(c, c)] += ridge);
-            let mut solution = &right - part.transpose() * &known;
-            solve_positive(normal.as_ref(), solution.as_mut()).then(|| {
-                let found = &part * &solution - known;
-                found.transpose().to_owned()
-            })
-        };
-        folds.sets().iter().map(one).collect()
+        let normal = Normal::new(self, &terms, of);
+        folds.sets().iter().map(|set| normal.left_out(self.samples, set)).collect()
     }
 
-    /// The complexity with the smallest error of the samples left out that steps from the simplest one lead to.
+    /// Expected square of the error at the samples' slow inputs and phases of any value: e² (1 + ⟨aᵀ(AᵀA + ρ²)⁻¹a⟩) with the root mean square error e of samples left out, the
+    /// terms A at the samples and a at phases that are spread evenly. Where a body moves by nearly whole cells between samples, these see few phases, and e does not tell of
+    /// the others.
+    fn risk(&self, of: Complexity, folds: &Folds) -> f64 {
+        let terms = self.terms(of);
+        let normal = Normal::new(self, &terms, of);
+        let left_out = |set: &Vec<usize>| Some(normal.left_out(self.samples, set)?.squared_norm_l2());
+        let Some(sum) = folds.sets().iter().map(left_out).sum::<Option<f64>>() else { return f64::INFINITY };
+        let count: usize = folds.sets().iter().map(Vec::len).sum();
+        let m = self.samples.len();
+        let rows: Vec<Vec<f64>> = (0..m).map(|j| terms.at(&self.elsewhere(j), None)).collect();
+        let spread = Mat::from_fn(m, terms.len(), |j, c| rows[j][c]);
+        match normal.variance(&spread) {
+            Some(variance) if sum.is_finite() => sum / count as f64 * (1.0 + variance),
+            _ => f64::INFINITY,
+        }
+    }
+    /// Slow inputs of sample j with phases of a sequence that fills the torus evenly (multiples of square roots of primes).
+    fn elsewhere(&self, j: usize) -> Vec<f64> {
+        let slow = self.samples.point(j)[..self.slow].iter().copied();
+        let phases = (self.samples.inputs() - self.slow) / 2;
+        let turns = [2.0_f64, 3.0, 5.0].into_iter().cycle().take(phases).map(|p| (j as f64 * p.sqrt()).fract());
+        slow.chain(turns.flat_map(|turn| [(TAU * turn).cos(), (TAU * turn).sin()])).collect()
+    }
+
+    /// The complexity with the smallest risk that steps from the simplest one lead to.
     pub(super) fn best(&self, folds: &Folds) -> Result<Complexity, InterpolationError> {
         let (m, p) = (self.samples.len(), self.degree.get());
         let phases = self.samples.inputs() > self.slow;
@@ -129,11 +140,7 @@ impl Fit<'_> {
             if !sensible || self.terms(of).len() >= m {
                 return f64::INFINITY;
             }
-            *known.entry(of).or_insert_with(|| {
-                let errors = self.left_out(of, folds);
-                let sum = errors.map_or(f64::INFINITY, |all| all.iter().map(|e| e.squared_norm_l2()).sum());
-                if sum.is_nan() { f64::INFINITY } else { sum }
-            })
+            *known.entry(of).or_insert_with(|| self.risk(of, folds))
         };
         let first = Complexity {
             pieces: 0,
@@ -161,3 +168,37 @@ impl Fit<'_> {
 
 /// A step must lower the squares of errors by a hundredth at least.
 const GAIN: f64 = 0.99;
+
+/// AᵀA + ρ², and the right-hand sides AᵀY.
+struct Normal {
+    matrix: Mat<f64>,
+    normal: Mat<f64>,
+    right: Mat<f64>,
+}
+
+impl Normal {
+    fn new(fit: &Fit<'_>, terms: &Terms, of: Complexity) -> Self {
+        let matrix = fit.matrix(terms, 0);
+        let mut normal = matrix.transpose() * &matrix;
+        let ridge = Fit::ridge(&matrix, of).powi(2);
+        (0..terms.len()).for_each(|c| normal[(c, c)] += ridge);
+        let right = matrix.transpose() * fit.samples.values().transpose();
+        Self { matrix, normal, right }
+    }
+    /// Errors at a set's samples by the coefficients of all others.
+    fn left_out(&self, samples: &Samples, set: &[usize]) -> Option<Mat<f64>> {
+        let part = Mat::from_fn(set.len(), self.normal.ncols(), |j, c| self.matrix[(set[j], c)]);
+        let known = Mat::from_fn(set.len(), samples.outputs(), |j, row| samples.values()[(row, set[j])]);
+        let normal = &self.normal - part.transpose() * &part;
+        let mut solution = &self.right - part.transpose() * &known;
+        let errors = |solution: Mat<f64>| (&part * &solution - known).transpose().to_owned();
+        solve_positive(normal.as_ref(), solution.as_mut()).then(|| errors(solution))
+    }
+    /// Mean of aᵀ(AᵀA + ρ²)⁻¹a over rows a.
+    fn variance(&self, rows: &Mat<f64>) -> Option<f64> {
+        let moments = rows.transpose() * rows;
+        let mut solution = moments;
+        let solved = solve_positive(self.normal.as_ref(), solution.as_mut());
+        solved.then(|| (0..solution.ncols()).map(|c| solution[(c, c)]).sum::<f64>() / rows.nrows() as f64)
+    }
+}

@@ -1,6 +1,6 @@
 //! What every method owes, and every function made by one.
 use super::{
-    Folds, InterpolationError, Network, Product, Rbf, Record, RecordError, Samples, Spline, Varying,
+    Folds, Harmonics, InterpolationError, Network, Product, Rbf, Record, RecordError, Samples, Spline, Varying,
 };
 use crate::{Mat, MatRef};
 
@@ -28,10 +28,6 @@ pub trait Method: Send + Sync {
             Ok(errors)
         };
         folds.sets().iter().map(one).collect()
-    }
-    /// The method for samples whose inputs are `slow` ones and then cos θ_a, sin θ_a of so many phases. None if it takes no such inputs.
-    fn with_phases(&self, _slow: usize, _phases: usize) -> Option<Box<dyn Method>> {
-        None
     }
 }
 
@@ -85,6 +81,7 @@ pub fn load(record: &Record) -> Result<Box<dyn Interpolator>, RecordError> {
         Spline::KIND => Ok(Box::new(Spline::from_record(record)?)),
         Rbf::KIND => Ok(Box::new(Rbf::from_record(record)?)),
         Varying::KIND => Ok(Box::new(Varying::from_record(record)?)),
+        Harmonics::KIND => Ok(Box::new(Harmonics::from_record(record)?)),
         Product::KIND => Ok(Box::new(Product::from_record(record)?)),
         Network::KIND => Ok(Box::new(Network::from_record(record)?)),
         kind => Err(RecordError::Kind { found: kind.into(), expected: "an interpolator".into() }),

@@ -205,14 +205,6 @@ impl Method for NetworkParams {
     fn fit(&self, samples: &Samples) -> Result<Box<dyn Interpolator>, InterpolationError> {
         Ok(Box::new(self.network(samples)?))
     }
-    /// Cosines and sines of phases are inputs as they are, without a period.
-    fn with_phases(&self, _slow: usize, phases: usize) -> Option<Box<dyn Method>> {
-        let mut params = self.clone();
-        if let Fourier::Multiples { periods, .. } = &mut params.fourier {
-            periods.extend(vec![f64::INFINITY; 2 * phases]);
-        }
-        Some(Box::new(params))
-    }
 }
 
 /// y(x) = W_L φ(… φ(W₁ f(x) + b₁) …) + b_L, with features f of the scaled inputs, and scaled outputs.

@@ -131,9 +131,6 @@ impl Method for RbfParams {
         let (system, _) = self.checked(samples)?;
         system.left_out(self.choose(&system)?, folds).ok_or_else(|| self.singular())
     }
-    fn with_phases(&self, _slow: usize, _phases: usize) -> Option<Box<dyn Method>> {
-        Some(Box::new(*self))
-    }
 }
 
 /// The ε with the smallest sum of squares of leave-one-out errors among those whose equations are not singular to round-off: the

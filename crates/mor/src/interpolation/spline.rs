@@ -4,7 +4,7 @@ mod collocation;
 
 use super::interpolator::check_input;
 use super::scaling::ranges;
-use super::{InterpolationError, Interpolator, Method, Record, RecordError, Samples, VaryingParams};
+use super::{InterpolationError, Interpolator, Method, Record, RecordError, Samples};
 use crate::Mat;
 pub(super) use axis::Axis;
 use collocation::Collocation;
@@ -90,11 +90,6 @@ impl Method for SplineParams {
     }
     fn fit(&self, samples: &Samples) -> Result<Box<dyn Interpolator>, InterpolationError> {
         Ok(Box::new(self.spline(samples)?))
-    }
-    /// Least-squares splines of this degree in the first input ([`VaryingParams`]): samples with phases are no grid.
-    fn with_phases(&self, slow: usize, _phases: usize) -> Option<Box<dyn Method>> {
-        let degree = *self.degrees.first()?;
-        Some(Box::new(VaryingParams { degree, slow }))
     }
 }
 

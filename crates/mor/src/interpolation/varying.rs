@@ -4,6 +4,7 @@ mod terms;
 
 use super::interpolator::check_input;
 use super::scaling::ranges;
+use super::waves::Waves;
 use super::{Degree, Folds, InterpolationError, Interpolator, Method, Record, RecordError, Samples};
 use crate::Mat;
 use complexity::{Complexity, Fit};
@@ -78,9 +79,6 @@ impl Method for VaryingParams {
             remedy: "give more samples, or take another method",
         })
     }
-    fn with_phases(&self, slow: usize, _phases: usize) -> Option<Box<dyn Method>> {
-        Some(Box::new(Self { slow, ..*self }))
-    }
 }
 
 impl Varying {
@@ -104,6 +102,16 @@ impl Varying {
         let values = record.numbers_of("coefficients", rows * columns)?;
         let coefficients = Mat::from_fn(rows, columns, |i, j| values[i + j * rows]);
         Ok(Self { terms, coefficients, domain })
+    }
+
+    /// T_f, f ≥ 1.
+    pub(super) fn waves(&self) -> &Waves {
+        self.terms.waves()
+    }
+    /// g_f(u), f ≥ 1, of every output.
+    pub(super) fn amplitudes(&self, u: &[f64]) -> Vec<Vec<f64>> {
+        let of = |row: usize| self.terms.amplitudes(u, |column| self.coefficients[(row, column)]);
+        (0..self.coefficients.nrows()).map(of).collect()
     }
 
     fn sum(&self, x: &[f64], along: Option<usize>, out: &mut [f64]) {

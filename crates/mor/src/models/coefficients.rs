@@ -1,7 +1,7 @@
 //! Coefficients at any point, and how far they may be off.
 use super::{Extrapolation, ModelError};
 use crate::interpolation::{
-    Degree, Folds, Interpolator, Method, Record, RecordError, Samples, SplineParams, VaryingParams, best_of,
+    Degree, Folds, HarmonicsParams, Interpolator, Method, Record, RecordError, Samples, SplineParams, VaryingParams, best_of,
     candidates, cross_validate, load,
 };
 use crate::{Mat, MatRef};
@@ -33,6 +33,7 @@ pub(super) struct Choice<'a> {
 
 enum MethodRef<'a> {
     Given(&'a dyn Method),
+    Phased(HarmonicsParams<'a>),
     Own(Box<dyn Method>),
 }
 
@@ -40,6 +41,7 @@ impl MethodRef<'_> {
     fn get(&self) -> &dyn Method {
         match self {
             Self::Given(method) => *method,
+            Self::Phased(method) => method,
             Self::Own(method) => method.as_ref(),
         }
     }
@@ -62,23 +64,15 @@ fn methods(samples: &Samples, slow: usize) -> Vec<Box<dyn Method>> {
 }
 
 impl<'a> Choice<'a> {
-    /// The method given, or that which [`best_of`] finds; sets left out are those that suit the first `slow` inputs. None if the method given takes no phases.
-    pub(super) fn new(
-        samples: &'a Samples,
-        slow: usize,
-        given: Option<&'a dyn Method>,
-    ) -> Result<Option<Self>, ModelError> {
-        let phases = (samples.inputs() - slow) / 2;
+    /// The method given, or that which [`best_of`] finds; sets left out are those that suit the first `slow` inputs, and the others are phases.
+    pub(super) fn new(samples: &'a Samples, slow: usize, given: Option<&'a dyn Method>) -> Result<Self, ModelError> {
         let folds = Folds::suited(&samples.first_inputs(slow), 1);
         let mut own = methods(samples, slow);
         let (best, left_out) = match given {
-            Some(given) => {
-                let method = match phases {
-                    0 => MethodRef::Given(given),
-                    _ => match given.with_phases(slow, phases) {
-                        Some(method) => MethodRef::Own(method),
-                        None => return Ok(None),
-                    },
+            Some(amplitudes) => {
+                let method = match samples.inputs() > slow {
+                    true => MethodRef::Phased(HarmonicsParams { amplitudes, slow }),
+                    false => MethodRef::Given(amplitudes),
                 };
                 let left_out = match &folds {
                     Ok(folds) => cross_validate(method.get(), samples, folds)?.error,
@@ -102,7 +96,7 @@ impl<'a> Choice<'a> {
             }
         };
         let methods = std::iter::once(best).chain(own.into_iter().map(MethodRef::Own)).collect();
-        Ok(Some(Self { samples, slow, methods, left_out }))
+        Ok(Self { samples, slow, methods, left_out })
     }
 
     /// The function, by all samples.
@@ -138,10 +132,7 @@ impl<'a> Choice<'a> {
 impl Coefficients {
     /// Without phases, by the method given, or that which [`best_of`] finds.
     pub(super) fn fit(samples: &Samples, given: Option<&dyn Method>) -> Result<Self, ModelError> {
-        match Choice::new(samples, samples.inputs(), given)? {
-            Some(choice) => choice.fit(),
-            None => Err(ModelError::Shape { what: "methods that suit the samples", expected: 1, found: 0 }),
-        }
+        Choice::new(samples, samples.inputs(), given)?.fit()
     }
 
     pub(super) fn outputs(&self) -> usize {

@@ -15,8 +15,7 @@ pub struct CoefficientFit {
     pub phases: Vec<usize>,
     /// Relative error (‖·‖ over all coefficients) of samples left out in fits of the others; 0 if they are too few.
     pub left_out: f64,
-    /// That of the alternative: without phases if they are inputs, with them if they are off; by least-squares splines if the method given takes none. None if the
-    /// frame crosses no cells.
+    /// That of the alternative: without phases if they are inputs, with them if they are off. None if the frame crosses no cells, or there is no such function.
     pub left_out_other: Option<f64>,
 }
 
@@ -59,22 +58,15 @@ impl MovingModes {
         let all: Vec<Vec<f64>> = (0..m).map(|j| with_phases(&phases, &x(j), &motion(j), grid)).collect();
         let inputs = Mat::from_fn(slow + 2 * phases.len(), m, |i, j| all[j][i]);
         let samples = Samples::new(inputs.as_ref(), values.as_ref())?;
-        let phased = if phases.is_empty() { Ok(None) } else { Choice::new(&samples, slow, given) };
+        let phased = if phases.is_empty() { None } else { Some(Choice::new(&samples, slow, given)) };
         let chosen = match (plain, phased) {
-            (Ok(Some(plain)), Ok(Some(phased))) => {
+            (Ok(plain), Some(Ok(phased))) => {
                 let [one, other] = if phased.left_out < plain.left_out { [phased, plain] } else { [plain, phased] };
                 fitted.left_out_other = Some(other.left_out);
                 one
             }
-            (Ok(Some(plain)), _) => {
-                if !phases.is_empty() && let Ok(Some(other)) = Choice::new(&samples, slow, None) {
-                    fitted.left_out_other = Some(other.left_out);
-                }
-                plain
-            }
-            (_, Ok(Some(phased))) => phased,
-            (Err(why), _) | (_, Err(why)) => return Err(why),
-            (Ok(None), Ok(None)) => return Ok(fitted),
+            (Err(_), Some(Ok(phased))) => phased,
+            (plain, _) => plain?,
         };
         fitted.left_out = chosen.left_out;
         let function = chosen.fit()?;

@@ -30,9 +30,9 @@ pub struct SpodiannParams<'a> {
 /// (sPODIANN; Isoz et al. 2023, equation (9) and figure 8).
 ///
 /// Inputs are time and then parameters. Where a frame moves along an axis by more than half a cell, the phase θ = 2πs/h of its displacement s may be an input of its
-/// coefficients, too, as cos θ, sin θ: a sharp edge on a grid of spacing h is aliased, and what its spectral shift leaves is periodic in θ. The method given takes it
-/// ([`Method::with_phases`]), or the default ([`Varying`](crate::interpolation::Varying)), if that lowers the error of samples left out;
-/// [`coefficient_fits`](Self::coefficient_fits) returns the method of every frame, its phases, and the error with and without them.
+/// coefficients, too, as cos θ, sin θ: a sharp edge on a grid of spacing h is aliased, and what its spectral shift leaves is periodic in θ. The method given then interpolates the amplitudes of
+/// the harmonics of θ ([`Harmonics`](crate::interpolation::Harmonics)); the default is least squares ([`Varying`](crate::interpolation::Varying)). Phases are inputs if that lowers the error of
+/// samples left out: [`coefficient_fits`](Self::coefficient_fits) returns the method of every frame, its phases, and the error with and without them.
 ///
 /// Beyond the samples' times and parameters ([`covers`](Self::covers)) coefficients and paths are extrapolated linearly ([`Extrapolation`]).
 pub struct Spodiann {

@@ -1,16 +1,13 @@
 //! Harmonics of phases whose amplitudes are functions by any method.
 use super::interpolator::{check_input, load};
 use super::waves::Waves;
-use super::{
-    Degree, InterpolationError, Interpolator, Method, Record, RecordError, Samples, VaryingParams,
-};
+use super::{Degree, InterpolationError, Interpolator, Method, Record, RecordError, Samples, VaryingParams};
 use crate::Mat;
 
 /// How to make a [`Harmonics`] function.
-#[derive(Clone, Copy)]
 pub struct HarmonicsParams<'a> {
     /// Method for the amplitudes.
-    pub amplitudes: &'a dyn Method,
+    pub amplitudes: Box<dyn Method + 'a>,
     /// Number of slow inputs, the first ones; the others are pairs (cos θ_a, sin θ_a).
     pub slow: usize,
 }

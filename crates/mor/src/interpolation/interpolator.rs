@@ -1,6 +1,7 @@
 //! What every method owes, and every function made by one.
 use super::{
-    Folds, Harmonics, InterpolationError, Network, Product, Rbf, Record, RecordError, Samples, Spline, Varying,
+    Folds, Harmonics, InterpolationError, Network, Product, Rbf, Record, RecordError, Samples, Spline,
+    Varying,
 };
 use crate::{Mat, MatRef};
 
@@ -28,6 +29,18 @@ pub trait Method: Send + Sync {
             Ok(errors)
         };
         folds.sets().iter().map(one).collect()
+    }
+}
+
+impl<M: Method + ?Sized> Method for &M {
+    fn name(&self) -> String {
+        (**self).name()
+    }
+    fn fit(&self, samples: &Samples) -> Result<Box<dyn Interpolator>, InterpolationError> {
+        (**self).fit(samples)
+    }
+    fn left_out(&self, samples: &Samples, folds: &Folds) -> Result<Vec<Mat<f64>>, InterpolationError> {
+        (**self).left_out(samples, folds)
     }
 }
 

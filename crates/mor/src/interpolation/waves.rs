@@ -36,7 +36,9 @@ impl Waves {
     }
     /// Every one at pairs z, or its derivative by entry `along` of z.
     pub(super) fn at(&self, z: &[f64], along: Option<usize>) -> Vec<f64> {
-        let of = |a: usize| powers([z[2 * a], z[2 * a + 1]], self.harmonics, along.and_then(|i| i.checked_sub(2 * a)));
+        let of = |a: usize| {
+            powers([z[2 * a], z[2 * a + 1]], self.harmonics, along.and_then(|i| i.checked_sub(2 * a)))
+        };
         let powers: Vec<Vec<[f64; 2]>> = (0..self.phases).map(of).collect();
         let factor = |(a, &(k, sine)): (usize, &(usize, bool))| powers[a][k][usize::from(sine)];
         self.waves.iter().map(|wave| wave.iter().enumerate().map(factor).product()).collect()
@@ -47,7 +49,9 @@ impl Waves {
 pub(super) fn multi_indices(variables: usize, degree: usize) -> Vec<Vec<usize>> {
     (0..variables).fold(vec![vec![]], |done: Vec<Vec<usize>>, _| {
         let rest = |index: &Vec<usize>| degree - index.iter().sum::<usize>();
-        done.iter().flat_map(|index| (0..=rest(index)).map(move |n| [index.as_slice(), &[n]].concat())).collect()
+        done.iter()
+            .flat_map(|index| (0..=rest(index)).map(move |n| [index.as_slice(), &[n]].concat()))
+            .collect()
     })
 }
 

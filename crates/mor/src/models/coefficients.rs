@@ -1,8 +1,8 @@
 //! Coefficients at any point, and how far they may be off.
 use super::{Extrapolation, ModelError};
 use crate::interpolation::{
-    Degree, Folds, HarmonicsParams, Interpolator, Method, Record, RecordError, Samples, SplineParams, VaryingParams, best_of,
-    candidates, cross_validate, load,
+    Degree, Folds, HarmonicsParams, Interpolator, Method, Record, RecordError, Samples, SplineParams,
+    VaryingParams, best_of, candidates, cross_validate, load,
 };
 use crate::{Mat, MatRef};
 
@@ -26,34 +26,23 @@ pub(super) struct Choice<'a> {
     samples: &'a Samples,
     slow: usize,
     /// The best, then the others.
-    methods: Vec<MethodRef<'a>>,
+    methods: Vec<Box<dyn Method + 'a>>,
     /// Relative error of samples left out; 0 if they are too few to leave any out.
     pub(super) left_out: f64,
 }
 
-enum MethodRef<'a> {
-    Given(&'a dyn Method),
-    Phased(HarmonicsParams<'a>),
-    Own(Box<dyn Method>),
-}
-
-impl MethodRef<'_> {
-    fn get(&self) -> &dyn Method {
-        match self {
-            Self::Given(method) => *method,
-            Self::Phased(method) => method,
-            Self::Own(method) => method.as_ref(),
-        }
-    }
-}
-
-/// Splines in time alone; all [`candidates`] with parameters; least-squares splines with harmonics of the phases if there are any.
+/// Splines in time alone; all [`candidates`] with parameters; least squares with harmonics of the phases if there are any, and those of time alone through the samples, too.
 fn methods(samples: &Samples, slow: usize) -> Vec<Box<dyn Method>> {
     let highest = |n: usize| Degree::highest(n).map_or(0, |d| d.get());
     let degrees = |most: usize| Degree::ALL.into_iter().rev().filter(move |degree| degree.get() <= most);
     if samples.inputs() > slow {
         let most = highest(samples.distinct(0).len());
-        return degrees(most).map(|degree| Box::new(VaryingParams { degree, slow }) as Box<dyn Method>).collect();
+        let least_squares =
+            degrees(most).map(|degree| Box::new(VaryingParams { degree, slow }) as Box<dyn Method>);
+        let spline = |degree| Box::new(SplineParams::new(degree));
+        let through = degrees(most).map(|degree| HarmonicsParams { amplitudes: spline(degree), slow });
+        let through = through.filter(|_| slow == 1).map(|params| Box::new(params) as Box<dyn Method>);
+        return least_squares.chain(through).collect();
     }
     match highest(samples.distinct(0).len()) {
         most if samples.inputs() == 1 && most > 0 => {
@@ -65,17 +54,21 @@ fn methods(samples: &Samples, slow: usize) -> Vec<Box<dyn Method>> {
 
 impl<'a> Choice<'a> {
     /// The method given, or that which [`best_of`] finds; sets left out are those that suit the first `slow` inputs, and the others are phases.
-    pub(super) fn new(samples: &'a Samples, slow: usize, given: Option<&'a dyn Method>) -> Result<Self, ModelError> {
+    pub(super) fn new(
+        samples: &'a Samples,
+        slow: usize,
+        given: Option<&'a dyn Method>,
+    ) -> Result<Self, ModelError> {
         let folds = Folds::suited(&samples.first_inputs(slow), 1);
         let mut own = methods(samples, slow);
-        let (best, left_out) = match given {
-            Some(amplitudes) => {
-                let method = match samples.inputs() > slow {
-                    true => MethodRef::Phased(HarmonicsParams { amplitudes, slow }),
-                    false => MethodRef::Given(amplitudes),
+        let (best, left_out): (Box<dyn Method + 'a>, f64) = match given {
+            Some(given) => {
+                let method: Box<dyn Method + 'a> = match samples.inputs() > slow {
+                    true => Box::new(HarmonicsParams { amplitudes: Box::new(given), slow }),
+                    false => Box::new(given),
                 };
                 let left_out = match &folds {
-                    Ok(folds) => cross_validate(method.get(), samples, folds)?.error,
+                    Ok(folds) => cross_validate(method.as_ref(), samples, folds)?.error,
                     Err(_) => 0.0,
                 };
                 (method, left_out)
@@ -84,27 +77,32 @@ impl<'a> Choice<'a> {
                 let (chosen, left_out) = match &folds {
                     Ok(folds) => {
                         let best = best_of(&own, samples, folds)?;
-                        let error = best.table.rows[best.chosen].outcome.as_ref().map_or(0.0, |row| row.error);
+                        let error =
+                            best.table.rows[best.chosen].outcome.as_ref().map_or(0.0, |row| row.error);
                         (best.chosen, error)
                     }
                     Err(_) => (own.len().saturating_sub(1), 0.0),
                 };
                 if own.is_empty() {
-                    return Err(ModelError::Shape { what: "methods that suit the samples", expected: 1, found: 0 });
+                    return Err(ModelError::Shape {
+                        what: "methods that suit the samples",
+                        expected: 1,
+                        found: 0,
+                    });
                 }
-                (MethodRef::Own(own.remove(chosen)), left_out)
+                (own.remove(chosen), left_out)
             }
         };
-        let methods = std::iter::once(best).chain(own.into_iter().map(MethodRef::Own)).collect();
-        Ok(Self { samples, slow, methods, left_out })
+        let others = own.into_iter().map(|method| method as Box<dyn Method + 'a>);
+        Ok(Self { samples, slow, methods: std::iter::once(best).chain(others).collect(), left_out })
     }
 
     /// The function, by all samples.
     pub(super) fn fit(self) -> Result<Coefficients, ModelError> {
         let Self { samples, slow, methods, left_out } = self;
-        let first = methods[0].get();
+        let first = methods[0].as_ref();
         // The first other one that works.
-        let other = methods[1..].iter().find_map(|method| Some((method.get().fit(samples).ok()?, method.get())));
+        let other = methods[1..].iter().find_map(|method| Some((method.fit(samples).ok()?, method.as_ref())));
         let (second, second_method) = match other {
             Some(other) => other,
             None => (first.fit(samples)?, first),
@@ -171,7 +169,8 @@ impl Coefficients {
             let mut y = vec![0.0; self.outputs()];
             how.predict(function, self.slow, x, &mut y).map(|()| y)
         };
-        let distance = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+        let distance =
+            |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
         let first = at(self.first.as_ref(), self.extrapolation)?;
         let apart = distance(&first, &at(self.second.as_ref(), self.extrapolation)?);
         let factor = if self.distance > 0.0 { (apart / self.distance).max(1.0) } else { 1.0 };

@@ -45,7 +45,8 @@ impl MovingModes {
         given: Option<&dyn Method>,
     ) -> Result<Self, ModelError> {
         let (modes, none) = (frame.modes.clone(), Vec::new());
-        let mut fitted = Self { modes, coefficients: None, phases: none, left_out: 0.0, left_out_other: None };
+        let mut fitted =
+            Self { modes, coefficients: None, phases: none, left_out: 0.0, left_out_other: None };
         if frame.rank() == 0 {
             return Ok(fitted);
         }
@@ -61,7 +62,8 @@ impl MovingModes {
         let phased = if phases.is_empty() { None } else { Some(Choice::new(&samples, slow, given)) };
         let chosen = match (plain, phased) {
             (Ok(plain), Some(Ok(phased))) => {
-                let [one, other] = if phased.left_out < plain.left_out { [phased, plain] } else { [plain, phased] };
+                let [one, other] =
+                    if phased.left_out < plain.left_out { [phased, plain] } else { [plain, phased] };
                 fitted.left_out_other = Some(other.left_out);
                 one
             }
@@ -137,7 +139,8 @@ impl MovingModes {
 /// Axes along which motions reach farther than half a cell from the first one.
 fn crossed(grid: &Grid, motions: impl Iterator<Item = Motion>) -> Vec<usize> {
     let displacements: Vec<_> = motions.map(|motion| motion.displacement).collect();
-    let far = |a: usize| displacements.iter().any(|s| (s[a] - displacements[0][a]).abs() > 0.5 * grid.spacing()[a]);
+    let far =
+        |a: usize| displacements.iter().any(|s| (s[a] - displacements[0][a]).abs() > 0.5 * grid.spacing()[a]);
     (0..3).filter(|&a| grid.cells()[a] > 1 && far(a)).collect()
 }
 

@@ -1,6 +1,6 @@
 //! Where frames of reference are, as a function of time and parameters.
-use super::{Extrapolation, ModelError};
 use super::coefficients::Coefficients;
+use super::{Extrapolation, ModelError};
 use crate::interpolation::{Method, Record, RecordError, Samples};
 use crate::shifted::{Motion, Shifts};
 use crate::{Mat, MatRef};

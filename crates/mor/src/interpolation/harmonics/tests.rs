@@ -30,9 +30,10 @@ fn every_method_takes_phases() {
     };
     let rbf = RbfParams::new(Kernel::Quintic);
     let spline = SplineParams::new(Degree::Cubic);
-    let methods: [(&dyn Method, f64); 4] = [(&spline, 1e-3), (&rbf, 1e-2), (&product, 1e-2), (&network, 1e-2)];
+    let methods: [(&dyn Method, f64); 4] =
+        [(&spline, 1e-3), (&rbf, 1e-2), (&product, 1e-2), (&network, 1e-2)];
     for (amplitudes, tolerance) in methods {
-        let params = HarmonicsParams { amplitudes, slow: 2 };
+        let params = HarmonicsParams { amplitudes: Box::new(amplitudes), slow: 2 };
         let found = params.fit(&samples()).unwrap();
         let mut y = [0.0; 2];
         let mut worst = 0.0_f64;

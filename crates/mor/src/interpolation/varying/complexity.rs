@@ -122,7 +122,8 @@ impl Fit<'_> {
     fn elsewhere(&self, j: usize) -> Vec<f64> {
         let slow = self.samples.point(j)[..self.slow].iter().copied();
         let phases = (self.samples.inputs() - self.slow) / 2;
-        let turns = [2.0_f64, 3.0, 5.0].into_iter().cycle().take(phases).map(|p| (j as f64 * p.sqrt()).fract());
+        let turns =
+            [2.0_f64, 3.0, 5.0].into_iter().cycle().take(phases).map(|p| (j as f64 * p.sqrt()).fract());
         slow.chain(turns.flat_map(|turn| [(TAU * turn).cos(), (TAU * turn).sin()])).collect()
     }
 

@@ -48,7 +48,11 @@ impl Terms {
             degrees.iter().enumerate().map(|(i, &n)| polynomials[i][n]).product()
         };
         let of = |f: usize| {
-            self.slow.iter().enumerate().map(|(i, degrees)| value(degrees) * coefficients(first + f * n + i)).sum()
+            self.slow
+                .iter()
+                .enumerate()
+                .map(|(i, degrees)| value(degrees) * coefficients(first + f * n + i))
+                .sum()
         };
         (0..self.waves.len()).map(of).collect()
     }
@@ -57,7 +61,8 @@ impl Terms {
     pub(super) fn at(&self, x: &[f64], along: Option<usize>) -> Vec<f64> {
         let (slow, [parameters, variation]) = (self.domain.len(), self.degrees);
         let span = self.axis.span(x[0]);
-        let basis = if along == Some(0) { self.axis.slopes(span, x[0]) } else { self.axis.values(span, x[0]) };
+        let basis =
+            if along == Some(0) { self.axis.slopes(span, x[0]) } else { self.axis.values(span, x[0]) };
         let mut splines = vec![0.0; self.axis.len()];
         splines[span - self.axis.degree..=span].copy_from_slice(&basis[..=self.axis.degree]);
         let polynomials: Vec<Vec<f64>> = (0..slow)

@@ -95,7 +95,10 @@ fn poor_samples() {
     assert!((y[0] - 0.027).abs() < 1e-6, "{}", y[0]);
     found.predict(&[0.3, 0.0, 1.0], &mut y).unwrap();
     assert!(y[0].abs() < 0.1, "{}", y[0]);
-    assert!(matches!(quintic(1).fit(&samples(8)), Err(InterpolationError::TooFew { needed: 9, found: 8, .. })));
+    assert!(matches!(
+        quintic(1).fit(&samples(8)),
+        Err(InterpolationError::TooFew { needed: 9, found: 8, .. })
+    ));
     assert!(matches!(quintic(2).fit(&samples(30)), Err(InterpolationError::Parameter { .. })));
 }
 

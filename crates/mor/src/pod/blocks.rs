@@ -169,6 +169,11 @@ impl<'a> Blocks<'a> {
         self.each(true, |_, block| energy += block.squared_norm_l2())?;
         Ok(energy)
     }
+    /// Refuses entries whose squares are too large or too small for double precision: those of singular values down to
+    /// 1e-16 σ₁ must be normal numbers.
+    pub(super) fn check_size(&self) -> Result<(), PodError> {
+        PodError::check_size(self.squares, self.largest)
+    }
     /// What a decomposition that does not converge is about.
     pub(super) fn not_converged(&self) -> PodError {
         let [rows, snapshots] = [self.data.rows(), self.data.snapshots()];

@@ -52,7 +52,16 @@ pub enum PodError {
         /// What it must be.
         must: &'static str,
     },
-    /// Values too large or too small to be squared.
+    /// Entries whose squares leave double precision.
+    #[error(
+        "the entries are as large as {largest:e}; squares of their sums leave double precision beyond {} and below {}; divide the snapshots by {largest:e}",
+        NORMS.end(), NORMS.start()
+    )]
+    Size {
+        /// Largest modulus of an entry.
+        largest: f64,
+    },
+    /// Iterations for singular values that did not converge.
     #[error(
         "the singular values of a matrix of {rows} × {snapshots} with entries up to {largest:e} did not converge; scale the data to a size near 1"
     )]
@@ -69,7 +78,15 @@ pub enum PodError {
     Source(#[from] SnapshotError),
 }
 
+/// Norms of snapshots whose squares, and 1e-32 of these, are normal numbers.
+const NORMS: std::ops::RangeInclusive<f64> = 1e-135..=1e150;
+
 impl PodError {
+    /// The norm must be one of those that can be squared, or zero.
+    pub(super) fn check_size(squares: f64, largest: f64) -> Result<(), Self> {
+        let norm = squares.sqrt();
+        if largest == 0.0 || NORMS.contains(&norm) { Ok(()) } else { Err(Self::Size { largest }) }
+    }
     /// `found` must be `expected`.
     pub(super) fn same(what: &'static str, expected: usize, found: usize) -> Result<(), Self> {
         if expected == found { Ok(()) } else { Err(Self::Shape { what, expected, found }) }

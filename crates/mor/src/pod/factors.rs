@@ -13,7 +13,8 @@ pub(super) struct Factors {
     pub(super) energy: f64,
 }
 
-/// Modes with less than this share of σ₁ are lost in the method of snapshots.
+/// Singular values below this share of σ₁ are rounding errors of the method of snapshots: those of σ², ε σ₁², are 2e-6
+/// of σ² there.
 const GRAM: f64 = 1e-5;
 
 /// `floor` is what round-off leaves in singular values.
@@ -110,6 +111,8 @@ fn by_gram(
     add_product(turned.as_mut(), modes.as_ref(), turn.as_ref());
     std::mem::swap(&mut modes, &mut turned);
     values[..r].copy_from_slice(&exact[..r]);
+    // Squares have lost smaller ones.
+    values.truncate(sound);
     let coefficients = v.subcols(0, r).transpose().to_owned();
     Ok((Factors { modes, values, coefficients, energy }, r == wanted))
 }

@@ -15,7 +15,8 @@ pub struct Pod {
     pub mean: Option<Vec<f64>>,
     /// Φ, orthonormal in the inner product.
     pub modes: Mat<f64>,
-    /// σ in descending order: those of the modes, and more if they are known.
+    /// σ in descending order: those of the modes, and more if they are known; by the method of snapshots those of at least
+    /// 1e-5 σ₁.
     pub singular_values: Vec<f64>,
     /// A, r × m, orthonormal rows.
     pub coefficients: Mat<f64>,
@@ -55,6 +56,7 @@ impl Pod {
         params.check(n)?;
         let gram = needs_gram(&data, params);
         let y = Blocks::new(data, params.subtract_mean, params.weights.as_deref(), gram)?;
+        y.check_size()?;
         let floor = ROUND_OFF * (n.min(m) as f64).sqrt() * f64::sqrt(y.squares);
         let Factors { modes, values, coefficients, energy } = factors(&y, params, floor)?;
         // Nothing but round-off is nothing.

@@ -180,6 +180,8 @@ impl StreamingPod {
         let block = std::mem::take(&mut self.block);
         let columns = block.len() / n;
         self.energy += block.iter().map(|x| x * x).sum::<f64>();
+        let largest = block.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        PodError::check_size(self.energy, largest)?;
         let new = MatRef::from_column_major_slice(&block, n, columns).to_owned();
         self.update(new, Some(columns))
     }

@@ -228,3 +228,51 @@ fn streams_that_are_not_usable() {
     let pod = nothing.finish().unwrap();
     assert!(pod.singular_values.iter().all(|s| *s < 1e-12) && pod.mean.unwrap()[3] == 2.0);
 }
+
+/// Snapshots of any size have the same modes, or are refused: squares of 1e±160 leave double precision.
+#[test]
+fn sizes_of_entries() {
+    let of = |scale: f64| Mat::from_fn(30, 8, |i, j| scale * ((i * j) as f64 * 0.1).sin());
+    let of_one = Pod::new(of(1.0).as_ref(), &PodParams::default()).unwrap();
+    let stream = |scale: f64| {
+        let mut stream = StreamingPod::new(8);
+        (0..8).try_for_each(|j| stream.add(of(scale).col_as_slice(j)))?;
+        stream.finish()
+    };
+    for scale in [1e-130, 1e-60, 1e60, 1e140] {
+        for method in [SvdMethod::Qr, SvdMethod::Snapshots] {
+            let params = PodParams { method, rank: Rank::Fixed(3), ..PodParams::default() };
+            let pod = Pod::new(of(scale).as_ref(), &params).unwrap();
+            assert_eq!(pod.rank(), 3, "{scale:e}");
+            for (s, t) in pod.singular_values.iter().zip(&of_one.singular_values).take(3) {
+                assert!((s / scale - t).abs() < 1e-9 * t, "{scale:e}: {s:e} {t:e}");
+            }
+        }
+        assert_eq!(stream(scale).unwrap().rank(), stream(1.0).unwrap().rank());
+    }
+    for scale in [1e-300, 1e-160, 1e160] {
+        for method in [SvdMethod::Auto, SvdMethod::Qr, SvdMethod::Snapshots] {
+            let found = Pod::new(of(scale).as_ref(), &PodParams { method, ..PodParams::default() });
+            assert!(matches!(found, Err(PodError::Size { .. })), "{scale:e}: {found:?}");
+        }
+        assert!(matches!(stream(scale), Err(PodError::Size { .. })), "{scale:e}");
+    }
+    assert_eq!(Pod::new(of(0.0).as_ref(), &PodParams::default()).unwrap().rank(), 0);
+}
+
+/// Singular values of data of rank 8 beyond the eighth are rounding errors of σ₁, or not given.
+#[test]
+fn singular_values_beyond_the_rank() {
+    let x = Mat::from_fn(400, 40, |i, j| {
+        (1..9).map(|k| ((k * i) as f64 * 0.02).sin() * ((k * j) as f64 * 0.1).cos() * 300.0 / k as f64).sum()
+    });
+    for rank in [Rank::Fixed(8), Rank::Tolerance(1e-10), Rank::Fixed(12), Rank::All] {
+        for method in [SvdMethod::Auto, SvdMethod::Snapshots, SvdMethod::Qr] {
+            let pod = Pod::new(x.as_ref(), &PodParams { rank, method, ..PodParams::default() }).unwrap();
+            let first = pod.singular_values[0];
+            assert_eq!(pod.rank(), 8, "{rank:?} {method:?}");
+            let beyond = pod.singular_values.get(8).copied().unwrap_or(0.0);
+            assert!(beyond < 1e-13 * first, "{rank:?} {method:?}: {beyond:e} of {first:e}");
+        }
+    }
+}

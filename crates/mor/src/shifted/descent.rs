@@ -89,7 +89,7 @@ impl JointDescent {
             }
         }
         let least_squares = LeastSquares { problem, level: self.level };
-        let mut course = Course::new(self.limits, observer);
+        let mut course = Course::new(self.limits, observer)?;
         let (frames, stopped) = least_squares.descend(frames, &mut course);
         Ok(Decomposition::of(frames, course.history, stopped))
     }

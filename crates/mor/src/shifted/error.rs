@@ -63,6 +63,22 @@ pub enum ShiftedError {
         /// Column of the data.
         snapshot: usize,
     },
+    /// A frame moves so far that its place within a cell is rounding.
+    #[error(
+        "frame {frame} moves by {distance:e} along axis {axis} at snapshot {snapshot}, {cells:e} cells: its place within a cell is rounding; take whole periods away"
+    )]
+    TooFar {
+        /// Number of the frame.
+        frame: usize,
+        /// Number of the snapshot.
+        snapshot: usize,
+        /// Number of the axis, from 0.
+        axis: usize,
+        /// Displacement \[m\].
+        distance: f64,
+        /// The same in cells.
+        cells: f64,
+    },
     /// The phase of a wave vector shifts around a period only.
     #[error(
         "frame {frame} moves by {distance} along axis {axis} at snapshot {snapshot}, which is not periodic: shift by Lagrange polynomials or splines"
@@ -137,6 +153,24 @@ pub enum ShiftedError {
         /// It has to be below.
         limit: f64,
     },
+    /// A tolerance that is not a number, or negative.
+    #[error("the {name} is {value}; it must be a number of at least 0")]
+    Tolerance {
+        /// Name of the parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// Snapshots of which powers leave double precision.
+    #[error(
+        "the entries are as large as {largest:e}, and the norm of the snapshots is {norm:e}: its fourth power leaves double precision; divide the snapshots by {largest:e}"
+    )]
+    Size {
+        /// Largest modulus of an entry.
+        largest: f64,
+        /// Frobenius norm.
+        norm: f64,
+    },
     /// A matrix that belongs to the snapshots has another shape.
     #[error("{what}: {found:?} rows and columns (or frames and snapshots), where {expected:?} are needed")]
     Shape {
@@ -147,4 +181,26 @@ pub enum ShiftedError {
         /// What it has.
         found: [usize; 2],
     },
+}
+
+/// Displacements in cells up to which double precision leaves 1e-6 of a cell.
+const FARTHEST: f64 = 1e-6 / f64::EPSILON;
+
+impl ShiftedError {
+    /// Checks that the place within a cell is known of a frame that moves by a `distance`.
+    pub(super) fn check_distance(
+        [frame, snapshot, axis]: [usize; 3],
+        distance: f64,
+        spacing: f64,
+    ) -> Result<(), Self> {
+        let cells = distance / spacing;
+        match cells.abs() <= FARTHEST {
+            true => Ok(()),
+            false => Err(Self::TooFar { frame, snapshot, axis, distance, cells }),
+        }
+    }
+    /// Checks that a tolerance is a number of at least 0.
+    pub(super) fn check_tolerance(name: &'static str, value: f64) -> Result<(), Self> {
+        if value >= 0.0 { Ok(()) } else { Err(Self::Tolerance { name, value }) }
+    }
 }

@@ -2,7 +2,7 @@
 use super::correlation::first_paths;
 use super::dense::{columns, inner};
 use super::fourier::Als;
-use super::residual::{Observer, check_finite};
+use super::residual::{Observer, check_entries};
 use super::waves::Waves;
 use super::{Decomposition, FrameOperators, Grid, Motion, Motions, Progress, ShiftedError};
 use interfaces::Vector;
@@ -73,7 +73,7 @@ impl ShiftEstimate {
         if m == 0 || !m.is_multiple_of(self.grid.n_cells()) {
             return Err(ShiftedError::Rows { rows: m, cells: self.grid.n_cells() });
         }
-        check_finite(snapshots)?;
+        check_entries(snapshots)?;
         let axes: Vec<_> = (0..3).filter(|&a| self.grid.cells()[a] > 1 && self.grid.periodic()[a]).collect();
         if axes.is_empty() {
             return Err(ShiftedError::NotPeriodic { frame: 0, snapshot: 0, axis: 0, distance: 0.0 });

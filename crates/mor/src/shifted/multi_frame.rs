@@ -63,7 +63,7 @@ impl MultiFrame {
         let problem = Problem::new(operators, snapshots)?;
         let ranks = problem.ranks(&self.ranks)?;
         let mut frames = problem.start(start)?;
-        let mut course = Course::new(self.limits, observer);
+        let mut course = Course::new(self.limits, observer)?;
         let stopped = iterate(&problem, &ranks, &mut frames, &mut course);
         Ok(Decomposition::of(frames, course.history, stopped))
     }

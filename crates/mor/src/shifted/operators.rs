@@ -205,6 +205,7 @@ fn check(
         // What moves along this axis.
         let turn = angles[(axis + 1) % 3].abs().max(angles[(axis + 2) % 3].abs());
         let distance = motion.displacement[axis];
+        ShiftedError::check_distance([frame, snapshot, axis], distance, h)?;
         if n == 1 && (distance != 0.0 || turn > 1e-12) {
             return Err(ShiftedError::OffGrid { frame, snapshot, axis });
         }

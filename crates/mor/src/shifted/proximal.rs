@@ -144,7 +144,7 @@ impl Proximal {
         let multipliers = matches!(self.method, Method::AugmentedLagrangian(_)).then(|| Mat::zeros(m, n));
         let noise = self.noise.then(|| Mat::zeros(m, n));
         let mut state = State { problem, frames, residual, multipliers, noise };
-        let mut course = Course::new(self.limits, observer);
+        let mut course = Course::new(self.limits, observer)?;
         let stopped = loop {
             state.advance(&scheme);
             let error = state.problem.relative(state.residual.norm_l2());

@@ -18,7 +18,7 @@ pub(super) struct Problem<'a> {
 
 impl<'a> Problem<'a> {
     /// # Errors
-    /// [`ShiftedError::Empty`], [`ShiftedError::Shape`], [`ShiftedError::NotFinite`].
+    /// [`ShiftedError::Empty`], [`ShiftedError::Shape`], [`ShiftedError::NotFinite`], [`ShiftedError::Size`].
     pub(super) fn new(
         operators: &'a dyn FrameOperators,
         snapshots: MatRef<'a, f64>,
@@ -33,8 +33,8 @@ impl<'a> Problem<'a> {
         if rows != operators.n_rows() {
             return Err(ShiftedError::Unknowns { rows, expected: operators.n_rows() });
         }
-        check_finite(snapshots)?;
-        Ok(Self { operators, snapshots, norm: snapshots.norm_l2(), ignored: &[] })
+        let norm = check_entries(snapshots)?;
+        Ok(Self { operators, snapshots, norm, ignored: &[] })
     }
 
     /// The same without these entries, row and column.
@@ -106,15 +106,21 @@ impl<'a> Problem<'a> {
     }
 }
 
+/// Norms of snapshots of which fourth powers, and 1e-64 of these, are normal numbers.
+const NORMS: std::ops::RangeInclusive<f64> = 1e-60..=1e75;
+
+/// ‖Q‖, whose fourth power and rounding errors of it are normal numbers unless it is 0.
+///
 /// # Errors
-/// [`ShiftedError::NotFinite`].
-pub(super) fn check_finite(snapshots: MatRef<'_, f64>) -> Result<(), ShiftedError> {
+/// [`ShiftedError::NotFinite`], [`ShiftedError::Size`].
+pub(super) fn check_entries(snapshots: MatRef<'_, f64>) -> Result<f64, ShiftedError> {
     for (snapshot, column) in snapshots.col_iter().enumerate() {
         if let Some((row, &value)) = column.iter().enumerate().find(|(_, x)| !x.is_finite()) {
             return Err(ShiftedError::NotFinite { snapshot, row, value });
         }
     }
-    Ok(())
+    let (norm, largest) = (snapshots.norm_l2(), snapshots.norm_max());
+    if largest == 0.0 || NORMS.contains(&norm) { Ok(norm) } else { Err(ShiftedError::Size { largest, norm }) }
 }
 
 /// When to stop.
@@ -139,8 +145,17 @@ pub(super) struct Course<'a> {
 }
 
 impl<'a> Course<'a> {
-    pub(super) fn new(limits: Limits, observer: Observer<'a>) -> Self {
-        Self { limits, observer, history: vec![], merits: vec![] }
+    /// # Errors
+    /// [`ShiftedError::Tolerance`].
+    pub(super) fn new(limits: Limits, observer: Observer<'a>) -> Result<Self, ShiftedError> {
+        ShiftedError::check_tolerance("tolerance", limits.tolerance)?;
+        if limits.stagnation.is_nan() {
+            return Err(ShiftedError::Tolerance {
+                name: "share of a step that is stagnation",
+                value: f64::NAN,
+            });
+        }
+        Ok(Self { limits, observer, history: vec![], merits: vec![] })
     }
 
     /// After a step that makes the error smaller.

@@ -122,6 +122,7 @@ impl ShiftedPod {
         start: Option<&[Frame]>,
         observer: Observer<'_>,
     ) -> Result<Decomposition, ShiftedError> {
+        self.check()?;
         let operators = GridFrames::new(self.grid, self.interpolation, shifts, snapshots.nrows())?;
         let problem = Problem::new(&operators, snapshots)?;
         let start = start.map(|s| problem.start(Some(s))).transpose()?;
@@ -151,6 +152,7 @@ impl ShiftedPod {
         start: Option<&[Frame]>,
         observer: Observer<'_>,
     ) -> Result<Decomposition, ShiftedError> {
+        self.check()?;
         let problem = Problem::new(operators, snapshots)?;
         let start = start.map(|s| problem.start(Some(s))).transpose()?;
         let mut watch = Watch { observer, history: vec![] };
@@ -162,6 +164,11 @@ impl ShiftedPod {
                 Ok(Decomposition::of(frames, watch.history, stopped))
             }
         }
+    }
+
+    fn check(&self) -> Result<(), ShiftedError> {
+        ShiftedError::check_tolerance("tolerance", self.tolerance)?;
+        ShiftedError::check_tolerance("relative error for which ranks are found", self.rank_tolerance)
     }
 
     /// No entry is wrong. If there are many snapshots, modes are looked for on some of them first.

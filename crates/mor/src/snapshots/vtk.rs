@@ -21,6 +21,8 @@ pub struct VtkFile {
     packed: bool,
     /// Where appended data begin, and whether they are raw.
     appended: Option<(u64, bool)>,
+    /// Numbers of points and cells, if the piece has them.
+    sizes: [Option<usize>; 2],
 }
 
 /// What the file says of an array.
@@ -48,6 +50,10 @@ enum Place {
 
 /// The marks between header and data.
 const APPENDED: &[u8] = b"<AppendedData";
+/// Bytes at the end of a file among which its last tag is.
+const TAIL: u64 = 256;
+/// Last tag of a whole file.
+const END: &str = "</VTKFile>";
 /// Bytes that are looked through for it at a time.
 const STEP: u64 = 1 << 16;
 
@@ -90,8 +96,16 @@ impl VtkFile {
             word: 4,
             packed: false,
             appended,
+            sizes: [None; 2],
         };
         of.parse(&header)?;
+        let length = file.metadata().map_err(io)?.len();
+        file.seek(SeekFrom::Start(length.saturating_sub(TAIL))).map_err(io)?;
+        bytes.clear();
+        file.take(TAIL).read_to_end(&mut bytes).map_err(io)?;
+        if !String::from_utf8_lossy(&bytes).trim_end().ends_with(END) {
+            return Err(wrong(format!("its end `{END}` is missing: the file was cut short; write it again")));
+        }
         Ok(of)
     }
 
@@ -115,7 +129,17 @@ impl VtkFile {
                         }
                     };
                 }
-                "Piece" => pieces += 1,
+                "Piece" => {
+                    pieces += 1;
+                    let extent: Vec<i64> = tag.numbers("Extent").unwrap_or_default();
+                    self.sizes = match extent[..] {
+                        [a, b, c, d, e, f] => [1, 0].map(|more| {
+                            let along = [b - a, d - c, f - e].map(|n| usize::try_from(n + more).ok());
+                            along.into_iter().try_fold(1_usize, |all, n| all.checked_mul(n?))
+                        }),
+                        _ => ["NumberOfPoints", "NumberOfCells"].map(|key| get(key).parse().ok()),
+                    };
+                }
                 "ImageData" => {
                     let origin = tag.numbers("Origin").unwrap_or_else(|| vec![0.0; 3]);
                     let spacing = tag.numbers("Spacing").unwrap_or_else(|| vec![1.0; 3]);
@@ -193,6 +217,17 @@ impl VtkFile {
             }
         };
         let c = array.components;
+        if let Some(expected) = self.sizes[usize::from(array.at_cells)].map(|n| n.saturating_mul(c))
+            && values.len() != expected
+        {
+            let what = format!("the array `{}`", array.name);
+            return Err(SnapshotError::Shape {
+                path: self.path.clone(),
+                what,
+                expected,
+                found: values.len(),
+            });
+        }
         if c == 1 {
             return Ok(values);
         }

@@ -66,6 +66,7 @@ impl Als {
         if self.ranks.len() != frames {
             return Err(ShiftedError::Ranks { ranks: self.ranks.len(), frames });
         }
+        ShiftedError::check_tolerance("tolerance", self.tolerance)?;
         let spectrum = Spectrum::new(grid, shifts, snapshots, noise, self.cut())?;
         let d = self.fit(&spectrum, start, LONG, progress)?;
         Ok(Decomposition { noise: noise.map(|e| e.to_owned()), ..d })

@@ -119,6 +119,7 @@ impl Phases {
                     if !cells.is_finite() {
                         return Err(ShiftedError::Motion { frame, snapshot });
                     }
+                    ShiftedError::check_distance([frame, snapshot, axis], distance, grid.spacing()[axis])?;
                     if distance != 0.0 && grid.cells()[axis] == 1 {
                         return Err(ShiftedError::OffGrid { frame, snapshot, axis });
                     }

@@ -190,3 +190,25 @@ proptest! {
         prop_assert!((there - q).norm_l2() < 1e-12 * n as f64);
     }
 }
+
+/// A displacement of which double precision does not know the place within a cell is an error, by all interpolations.
+#[test]
+fn displacements_beyond_double_precision() {
+    let grid = Grid::new([16], [0.5]).unwrap();
+    for interpolation in ALL {
+        let with = |distance: f64| {
+            let shifts = Motions::by(1, 2, |_, j| Motion {
+                displacement: Vector::x() * if j == 1 { distance } else { 0.0 },
+                rotation: Rotation::identity(),
+                centre: Point::origin(),
+            });
+            GridFrames::new(grid, interpolation, &shifts, 16).err()
+        };
+        assert_eq!(with(2e9), None);
+        for distance in [-3e9, 1e300, f64::MAX] {
+            let found = with(distance);
+            let expected = matches!(found, Some(ShiftedError::TooFar { frame: 0, snapshot: 1, axis: 0, .. }));
+            assert!(expected, "{interpolation:?}, {distance:e}: {found:?}");
+        }
+    }
+}

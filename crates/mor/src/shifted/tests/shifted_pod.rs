@@ -291,3 +291,29 @@ fn a_fit_that_is_stuck_is_tried_in_other_ways() {
     let stopped = stopped.unwrap();
     assert_eq!((stopped.stopped, stopped.history.len(), steps), (StopReason::Asked, more, more));
 }
+
+/// Tolerances that are no numbers, and snapshots whose squares leave double precision, are errors; of others only the
+/// size changes with the snapshots'.
+#[test]
+fn tolerances_and_sizes_that_are_not_usable() {
+    let (_, q) = crossing_waves(Interpolation::Spectral);
+    for bad in [f64::NAN, -1e-3] {
+        for pod in [pod().tolerance(bad), pod().rank_tolerance(bad)] {
+            let found = pod.solve(&waves_shifts(), q.as_ref(), None, &mut quiet).err();
+            assert!(matches!(found, Some(ShiftedError::Tolerance { .. })), "{bad}: {found:?}");
+        }
+    }
+    let scaled = |scale: f64| Mat::from_fn(q.nrows(), q.ncols(), |i, j| scale * q[(i, j)]);
+    for noise in [Noise::Dense, Noise::Sparse] {
+        for scale in [1e-300, 1e-160, 1e160] {
+            let found =
+                pod().noise(noise).solve(&waves_shifts(), scaled(scale).as_ref(), None, &mut quiet).err();
+            assert!(matches!(found, Some(ShiftedError::Size { .. })), "{scale:e}: {found:?}");
+        }
+        for scale in [1e-55, 1e70] {
+            let found =
+                pod().noise(noise).solve(&waves_shifts(), scaled(scale).as_ref(), None, &mut quiet).unwrap();
+            assert_eq!(found.ranks(), [1, 1], "{scale:e} {noise:?}");
+        }
+    }
+}

@@ -5,6 +5,7 @@ mod assessment;
 mod coefficients;
 mod error;
 mod extrapolation;
+mod leave_out;
 mod modes;
 mod moving_modes;
 mod paths;

@@ -137,7 +137,7 @@ fn too_few(what: &str, of: &'static str, needed: usize, found: usize) -> Interpo
 }
 
 /// At most so many, evenly chosen.
-fn thinned(all: std::ops::Range<usize>, most: usize) -> impl Iterator<Item = usize> {
+pub(crate) fn thinned(all: std::ops::Range<usize>, most: usize) -> impl Iterator<Item = usize> {
     let count = all.len();
     all.enumerate()
         .filter(move |(i, _)| count <= most || (i * most) / count != ((i + 1) * most) / count)

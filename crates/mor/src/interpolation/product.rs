@@ -17,7 +17,7 @@ pub struct ProductParams {
 }
 
 /// Samples at all pairs of some values of the first input with some points of the others.
-pub(super) struct Runs {
+pub(crate) struct Runs {
     /// Ascending.
     pub(super) first: Vec<f64>,
     /// Which sample is at each value of the first input, for every point of the others.
@@ -25,7 +25,7 @@ pub(super) struct Runs {
 }
 
 impl Runs {
-    pub(super) fn of(samples: &Samples) -> Result<Self, InterpolationError> {
+    pub(crate) fn of(samples: &Samples) -> Result<Self, InterpolationError> {
         let axes: Vec<Vec<f64>> = (0..samples.inputs()).map(|i| samples.distinct(i)).collect();
         let mut runs = BTreeMap::<Vec<usize>, Vec<usize>>::new();
         for sample in 0..samples.len() {

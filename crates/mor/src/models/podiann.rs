@@ -126,8 +126,8 @@ impl Podiann {
         Ok(self.pod.reconstruct_all(c.as_ref(), fields)?)
     }
 
-    /// An estimate of the relative error at x: the modes', and what the coefficients are off between samples, told by cross-validation at the samples' own spacing, more where functions of
-    /// different kinds are farther apart than they usually are; relative to the snapshots' root mean square.
+    /// Estimate of the relative error at x: ‖Q − ΠQ‖/‖Q‖ of the snapshots, and the error of the coefficients from functions
+    /// that leave out values of time and of the parameters, relative to the root mean square of the snapshots.
     ///
     /// # Errors
     /// As [`predict`](Self::predict).
@@ -343,5 +343,96 @@ mod tests {
             Podiann::new(points.subcols(0, 3), &pod, None),
             Err(ModelError::Shape { expected: 3, found: 4, .. })
         ));
+    }
+
+    /// f = sin(3x − tμ) + .3 μ² cos 5x cos 2t at 41 times and n values of μ: the root mean square of the indicator
+    /// is from 0.5 to 6 times that of the error at times and parameters between those, each alone and both together.
+    #[test]
+    fn the_indicator_is_the_error_with_parameters() {
+        let at = |t: f64, mu: f64| -> Vec<f64> {
+            let x = |i: i32| 2.0 * std::f64::consts::PI * f64::from(i) / 64.0;
+            (0..64)
+                .map(|i| (3.0 * x(i) - t * mu).sin() + 0.3 * mu * mu * (5.0 * x(i)).cos() * (2.0 * t).cos())
+                .collect()
+        };
+        for n in 3..=8_u32 {
+            let mu = |k: f64| 0.5 + 1.5 * k / f64::from(n - 1);
+            let time = |j: f64| 2.0 * j / 40.0;
+            let points = Mat::from_fn(2, 41 * n as usize, |i, j| {
+                if i == 0 { time((j % 41) as f64) } else { mu((j / 41) as f64) }
+            });
+            let fields: Vec<_> = (0..points.ncols()).map(|j| at(points[(0, j)], points[(1, j)])).collect();
+            let snapshots = Mat::from_fn(64, fields.len(), |i, j| fields[j][i]);
+            let params = PodParams { rank: Rank::Tolerance(1e-10), ..PodParams::default() };
+            let model =
+                Podiann::new(points.as_ref(), &Pod::new(snapshots.as_ref(), &params).unwrap(), None).unwrap();
+            let mut out = vec![0.0; 64];
+            let typical = snapshots.squared_norm_l2() / snapshots.ncols() as f64;
+            for (dt, dmu) in [(0.5, 0.0), (0.0, 0.5), (0.5, 0.5), (0.25, 0.2), (0.5, 0.01)] {
+                let (mut told, mut found) = (0.0, 0.0);
+                for j in 0..40 {
+                    for k in 0..n - 1 {
+                        let x = [time(f64::from(j) + dt), mu(f64::from(k) + dmu)];
+                        model.predict(&x, &mut out).unwrap();
+                        let square: f64 = out.iter().zip(&at(x[0], x[1])).map(|(a, b)| (a - b).powi(2)).sum();
+                        found += square / typical;
+                        told += model.error_indicator(&x).unwrap().powi(2);
+                    }
+                }
+                let ratio = (told / found).sqrt();
+                assert!(
+                    (0.5..6.0).contains(&ratio),
+                    "{n} values, {dt} and {dmu} between: {ratio} times the error"
+                );
+            }
+        }
+    }
+
+    /// Runs at scattered points of two parameters: within a factor of 5 at random times and parameters.
+    #[test]
+    fn the_indicator_is_the_error_between_scattered_runs() {
+        let at = |t: f64, mu: [f64; 2]| -> Vec<f64> {
+            let x = |i: i32| 2.0 * std::f64::consts::PI * f64::from(i) / 64.0;
+            let one = |i: i32| {
+                (3.0 * x(i) - t * (1.0 + 0.5 * mu[0])).sin()
+                    + 0.3 * mu[1] * mu[1] * (5.0 * x(i) + mu[0]).cos()
+            };
+            (0..64).map(one).collect()
+        };
+        // Points of Halton's sequence.
+        let halton = |mut k: u32, base: u32| {
+            let (mut share, mut x) = (1.0, 0.0);
+            while k > 0 {
+                share /= f64::from(base);
+                x += share * f64::from(k % base);
+                k /= base;
+            }
+            x
+        };
+        let mu = |k: u32| [halton(k, 2), halton(k, 3)];
+        for runs in [12, 24] {
+            let points = Mat::from_fn(3, 31 * runs as usize, |i, j| match i {
+                0 => (j % 31) as f64 / 15.0,
+                _ => mu(j as u32 / 31 + 1)[i - 1],
+            });
+            let fields: Vec<_> =
+                (0..points.ncols()).map(|j| at(points[(0, j)], [points[(1, j)], points[(2, j)]])).collect();
+            let snapshots = Mat::from_fn(64, fields.len(), |i, j| fields[j][i]);
+            let params = PodParams { rank: Rank::Tolerance(1e-10), ..PodParams::default() };
+            let model =
+                Podiann::new(points.as_ref(), &Pod::new(snapshots.as_ref(), &params).unwrap(), None).unwrap();
+            let typical = snapshots.squared_norm_l2() / snapshots.ncols() as f64;
+            let (mut told, mut found, mut out) = (0.0, 0.0, vec![0.0; 64]);
+            for k in 100..200 {
+                let [a, b] = mu(k);
+                let x = [2.0 * halton(k, 5), 0.25 + 0.5 * a, 0.25 + 0.5 * b];
+                model.predict(&x, &mut out).unwrap();
+                let square: f64 = out.iter().zip(&at(x[0], [x[1], x[2]])).map(|(a, b)| (a - b).powi(2)).sum();
+                found += square / typical;
+                told += model.error_indicator(&x).unwrap().powi(2);
+            }
+            let ratio = (told / found).sqrt();
+            assert!((0.2..5.0).contains(&ratio), "{runs} runs: {ratio} times the error");
+        }
     }
 }

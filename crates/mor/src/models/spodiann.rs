@@ -217,8 +217,9 @@ impl Spodiann {
         Ok(())
     }
 
-    /// An estimate of the relative error at x, without the paths': the decomposition's, and what the coefficients are off between samples, told by cross-validation at the samples' own
-    /// spacing, more where functions of different kinds are farther apart than they usually are; relative to the snapshots' root mean square.
+    /// Estimate of the relative error at x without that of the paths: ‖Q − Σ T^k Q_k‖/‖Q‖ of the decomposition, and the error
+    /// of the coefficients from functions that leave out values of time and of the parameters, relative to the root mean
+    /// square of the snapshots.
     ///
     /// # Errors
     /// As [`predict`](Self::predict).

@@ -2,8 +2,8 @@
 use crate::fall::Fallen;
 use example_support::Outcome;
 use example_support::cpu::Stopwatch;
-use mor::interpolation::{Method, NetworkParams};
-use mor::models::{Assessment, Podiann, Spodiann, SpodiannParams};
+use mor::interpolation::{Degree, Kernel, Method, NetworkParams, RbfParams, SplineParams};
+use mor::models::{Assessment, CoefficientFit, Podiann, Spodiann, SpodiannParams};
 use mor::pod::{Pod, PodParams};
 use mor::shifted::fourier::Als;
 use mor::shifted::{Grid, Interpolation, Motion, Motions};
@@ -47,7 +47,9 @@ pub(crate) enum Kind {
 pub(crate) struct Fitted {
     pub(crate) kind: Kind,
     pub(crate) modes: usize,
+    /// Method given, and the coefficients' method as fitted, of shifted modes for each frame.
     pub(crate) method: &'static str,
+    pub(crate) fitted: Vec<String>,
     /// At snapshots it was made of, and between.
     pub(crate) within: Assessment,
     pub(crate) between: Assessment,
@@ -116,7 +118,13 @@ impl Study {
         let h = fallen.spacing;
         let grid = Grid::new(fallen.cells, [h, h])?.starting_at([0.5 * h, 0.5 * h, 0.0].into());
         let network = NetworkParams { iterations: ITERATIONS, ..NetworkParams::new(&HIDDEN) };
-        let methods: [(&'static str, Option<&dyn Method>); 2] = [("network", Some(&network)), ("best", None)];
+        let (spline, rbf) = (SplineParams::new(Degree::Cubic), RbfParams::new(Kernel::Cubic));
+        let methods: [(&'static str, Option<&dyn Method>); 4] = [
+            ("network", Some(&network)),
+            ("splines", Some(&spline)),
+            ("radial functions", Some(&rbf)),
+            ("best", None),
+        ];
         let mut study = Self { quantity, models: Vec::new(), decay: Vec::new(), shown, shifted: Vec::new() };
         let stopped = || stop.load(Ordering::Relaxed);
 
@@ -142,6 +150,7 @@ impl Study {
                     kind: Kind::Pod,
                     modes: count,
                     method: name,
+                    fitted: model.method().map(str::to_owned).into_iter().collect(),
                     within: model.assess(within.points.as_ref(), within.snapshots.as_ref())?,
                     between: model.assess(between.points.as_ref(), between.snapshots.as_ref())?,
                     modes_cpu,
@@ -190,6 +199,7 @@ impl Study {
                     kind: Kind::Shifted(ranks),
                     modes: count,
                     method: name,
+                    fitted: model.coefficient_fits().iter().flatten().map(fitted).collect(),
                     within: model.assess(
                         within.points.as_ref(),
                         within.snapshots.as_ref(),
@@ -210,6 +220,13 @@ impl Study {
         }
         Ok(Some(study))
     }
+}
+
+/// Method of a frame's coefficients, and the axes whose phases are inputs.
+fn fitted(of: &CoefficientFit) -> String {
+    let axes: String = of.phases.iter().map(|&a| ["x", "y", "z"][a]).collect();
+    let phases = if axes.is_empty() { "off".into() } else { axes };
+    format!("{}, phases {phases}", of.method)
 }
 
 fn relative(values: &[f64]) -> Vec<f64> {

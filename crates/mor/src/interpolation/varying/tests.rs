@@ -124,3 +124,27 @@ fn noise_at_the_ends() {
         }
     }
 }
+
+/// A body that moves by nearly a whole cell from sample to sample towards the end: samples there see few phases, and those between them others.
+#[test]
+fn phases_of_no_sample() {
+    for speed in [0.95, 1.0, 1.02, 1.05] {
+        let noise = |j: usize| ((j * 7919) % 101) as f64 / 50.0 - 1.0;
+        let theta = |t: f64| TAU * 80.0 * speed * t * (1.0 - (-t / 0.15).exp());
+        let point = |t: f64| [t, theta(t).cos(), theta(t).sin()];
+        let clean = |t: f64| 1.0 + 0.3 * theta(t).cos() + 0.1 * t;
+        let t = |j: f64| j / 80.0;
+        let points = Mat::from_fn(3, 81, |i, j| point(t(j as f64))[i]);
+        let values = Mat::from_fn(1, 81, |_, j| clean(t(j as f64)) + 0.01 * noise(j));
+        let samples = Samples::new(points.as_ref(), values.as_ref()).unwrap();
+        for degree in Degree::ALL {
+            let found = VaryingParams { degree, slow: 1 }.varying(&samples).unwrap();
+            let (mut y, mut worst) = ([0.0], 0.0_f64);
+            for at in (0..80).map(|j| t(f64::from(j) + 0.5)) {
+                found.predict(&point(at), &mut y).unwrap();
+                worst = worst.max((y[0] - clean(at)).abs());
+            }
+            assert!(worst < 0.01, "{speed}, {degree:?}: {worst:e} with {} terms", found.terms());
+        }
+    }
+}

@@ -3,7 +3,7 @@ use crate::setup::{Coefficients, ModelSetup};
 use crate::view::View;
 use interfaces::Pose;
 use mor::interpolation::{Method, NetworkParams, Record, Samples, SplineParams};
-use mor::models::{Assessment, ModelError, Podiann, Spodiann, SpodiannParams};
+use mor::models::{Assessment, CoefficientFit, ModelError, Podiann, Spodiann, SpodiannParams};
 use mor::pod::{Pod, PodParams, Rank};
 use mor::shifted::{
     Grid, Interpolation, Motion, Motions, Progress, Ranks, ShiftedError, ShiftedPod, StopReason,
@@ -146,6 +146,7 @@ impl Fitted {
             "field": setup.field,
             "kind": if paths.is_empty() { "podiann" } else { "spodiann" },
             "ranks": fitted.ranks(),
+            "coefficients": fitted.coefficients(),
             "snapshots": made.len(),
             "training": assess(&made)?,
         });
@@ -172,6 +173,21 @@ impl Fitted {
         match self {
             Self::Still(model) => vec![model.rank()],
             Self::Moving(model) => model.ranks(),
+        }
+    }
+    /// Methods of the coefficients as fitted, of moving modes for every frame, with the axes whose phases are inputs.
+    fn coefficients(&self) -> Vec<Value> {
+        match self {
+            Self::Still(model) => {
+                model.method().map(|method| json!({ "method": method })).into_iter().collect()
+            }
+            Self::Moving(model) => {
+                let of = |fit: CoefficientFit| {
+                    let (error, other) = (fit.left_out, fit.left_out_other);
+                    json!({ "method": fit.method, "phases": fit.phases, "left_out": error, "left_out_other": other })
+                };
+                model.coefficient_fits().into_iter().map(|fit| fit.map_or(Value::Null, of)).collect()
+            }
         }
     }
     pub(super) fn record(&self) -> Record {

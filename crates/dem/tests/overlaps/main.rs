@@ -79,3 +79,16 @@ fn small_bodies_keep_their_digits() {
         }
     }
 }
+
+/// An ellipsoid that leaves a tube for less than the distance of two slices, beside the end of its straight part and
+/// between two slices of one piece.
+#[test]
+fn short_pieces_of_ellipsoids_are_found() {
+    let mut solver = OverlapSolver::new();
+    let number = |kind: &str| KINDS.iter().position(|k| *k == kind).expect("a kind");
+    for (tube, case) in [("capsule", 745), ("cylinder", 4856)] {
+        let (a, b, at_a, at_b) = poses::pose(number("ellipsoid"), number(tube), 1.0, case);
+        let m = poses::measure(&mut solver, 1e-4, (&a, &at_a), (&b, &at_b));
+        assert!(m.of_body < 1e-5, "{tube}: {m:?}");
+    }
+}

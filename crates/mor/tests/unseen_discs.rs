@@ -98,7 +98,7 @@ fn a_network_is_a_network() {
         assert_eq!(again.path_method(), model.path_method());
     }
     let record = models[0].record();
-    let name = "frame 0/coefficients/first/amplitudes/weights";
+    let name = "frame 0/coefficients/function/amplitudes/weights";
     let weights: Vec<f64> = record.numbers(name).unwrap().iter().map(|w| 1.1 * w).collect();
     let other = Spodiann::from_record(&record.with(name, weights)).unwrap();
     let [one, two] = [&models[0], &other].map(|model| field(model, 0.503));

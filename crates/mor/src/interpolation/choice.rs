@@ -107,7 +107,7 @@ pub struct Best {
 /// # Errors
 /// That of the first method if none works, or that of the last fit.
 pub fn best_of(
-    methods: &[Box<dyn Method>],
+    methods: &[Box<dyn Method + '_>],
     samples: &Samples,
     folds: &Folds,
 ) -> Result<Best, InterpolationError> {

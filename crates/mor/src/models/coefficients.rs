@@ -3,7 +3,7 @@ use super::leave_out::{LeaveOut, square_distance};
 use super::{Extrapolation, ModelError};
 use crate::interpolation::{
     Degree, Folds, HarmonicsParams, Interpolator, Method, Record, RecordError, Samples, SplineParams,
-    VaryingParams, best_of, candidates, cross_validate, load,
+    VaryingParams, best_of, candidates, load,
 };
 use crate::{Mat, MatRef};
 
@@ -31,23 +31,23 @@ pub(super) struct Choice<'a> {
 }
 
 /// Splines in time alone; all [`candidates`] with parameters; least squares with harmonics of the phases if there are any, and those of time alone through the samples, too.
-fn methods(samples: &Samples, slow: usize) -> Vec<Box<dyn Method>> {
+fn methods<'a>(samples: &Samples, slow: usize) -> Vec<Box<dyn Method + 'a>> {
     let highest = |n: usize| Degree::highest(n).map_or(0, |d| d.get());
     let degrees = |most: usize| Degree::ALL.into_iter().rev().filter(move |degree| degree.get() <= most);
     if samples.inputs() > slow {
         let most = highest(samples.distinct(0).len());
         let least_squares =
-            degrees(most).map(|degree| Box::new(VaryingParams { degree, slow }) as Box<dyn Method>);
+            degrees(most).map(|degree| Box::new(VaryingParams { degree, slow }) as Box<dyn Method + 'a>);
         let spline = |degree| Box::new(SplineParams::new(degree));
         let through = degrees(most).map(|degree| HarmonicsParams { amplitudes: spline(degree), slow });
-        let through = through.filter(|_| slow == 1).map(|params| Box::new(params) as Box<dyn Method>);
+        let through = through.filter(|_| slow == 1).map(|params| Box::new(params) as Box<dyn Method + 'a>);
         return least_squares.chain(through).collect();
     }
     match highest(samples.distinct(0).len()) {
         most if samples.inputs() == 1 && most > 0 => {
-            degrees(most).map(|degree| Box::new(SplineParams::new(degree)) as Box<dyn Method>).collect()
+            degrees(most).map(|degree| Box::new(SplineParams::new(degree)) as Box<dyn Method + 'a>).collect()
         }
-        _ => candidates(samples),
+        _ => candidates(samples).into_iter().map(|method| method as Box<dyn Method + 'a>).collect(),
     }
 }
 
@@ -59,40 +59,32 @@ impl<'a> Choice<'a> {
         given: Option<&'a dyn Method>,
     ) -> Result<Self, ModelError> {
         let folds = Folds::suited(&samples.first_inputs(slow), 1);
-        let mut own = methods(samples, slow);
-        let (method, left_out): (Box<dyn Method + 'a>, f64) = match given {
+        let mut tried: Vec<Box<dyn Method + 'a>> = match given {
+            None => methods(samples, slow),
+            Some(given) if samples.inputs() == slow => vec![Box::new(given)],
             Some(given) => {
-                let method: Box<dyn Method + 'a> = match samples.inputs() > slow {
-                    true => Box::new(HarmonicsParams { amplitudes: Box::new(given), slow }),
-                    false => Box::new(given),
-                };
-                let left_out = match &folds {
-                    Ok(folds) => cross_validate(method.as_ref(), samples, folds)?.error,
-                    Err(_) => 0.0,
-                };
-                (method, left_out)
-            }
-            None => {
-                let (chosen, left_out) = match &folds {
-                    Ok(folds) => {
-                        let best = best_of(&own, samples, folds)?;
-                        let error =
-                            best.table.rows[best.chosen].outcome.as_ref().map_or(0.0, |row| row.error);
-                        (best.chosen, error)
-                    }
-                    Err(_) => (own.len().saturating_sub(1), 0.0),
-                };
-                if own.is_empty() {
-                    return Err(ModelError::Shape {
-                        what: "methods that suit the samples",
-                        expected: 1,
-                        found: 0,
-                    });
+                let harmonics = HarmonicsParams { amplitudes: Box::new(given), slow };
+                let mut both: Vec<Box<dyn Method + 'a>> = vec![Box::new(harmonics)];
+                // Runs left out have phases that the others have not; times of one run may all have the same.
+                if slow > 1 {
+                    both.push(Box::new(given));
                 }
-                (own.remove(chosen), left_out)
+                both
             }
         };
-        Ok(Self { samples, slow, method, left_out })
+        let (chosen, left_out) = match &folds {
+            Ok(folds) => {
+                let best = best_of(&tried, samples, folds)?;
+                let error = best.table.rows[best.chosen].outcome.as_ref().map_or(0.0, |row| row.error);
+                (best.chosen, error)
+            }
+            // Too few samples to leave any out.
+            Err(_) => (if given.is_some() { 0 } else { tried.len().saturating_sub(1) }, 0.0),
+        };
+        if tried.is_empty() {
+            return Err(ModelError::Shape { what: "methods that suit the samples", expected: 1, found: 0 });
+        }
+        Ok(Self { samples, slow, method: tried.remove(chosen), left_out })
     }
 
     /// The function, by all samples.

@@ -31,7 +31,7 @@ pub struct SpodiannParams<'a> {
 ///
 /// Inputs are time and then parameters. Where a frame moves along an axis by more than half a cell, the phase θ = 2πs/h of its displacement s may be an input of its
 /// coefficients, too, as cos θ, sin θ: a sharp edge on a grid of spacing h is aliased, and what its spectral shift leaves is periodic in θ. The method given then interpolates the amplitudes of
-/// the harmonics of θ ([`Harmonics`](crate::interpolation::Harmonics)); the default is least squares ([`Varying`](crate::interpolation::Varying)). Phases are inputs if that lowers the error of
+/// the harmonics of θ ([`Harmonics`](crate::interpolation::Harmonics)); the default is least squares ([`Varying`](crate::interpolation::Varying)). With parameters it may take cos θ, sin θ as further inputs instead, by the error of runs left out. Phases are inputs if that lowers the error of
 /// samples left out: [`coefficient_fits`](Self::coefficient_fits) returns the method of every frame, its phases, and the error with and without them.
 ///
 /// Beyond the samples' times and parameters ([`covers`](Self::covers)) coefficients and paths are extrapolated linearly ([`Extrapolation`]).

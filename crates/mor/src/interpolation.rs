@@ -58,7 +58,7 @@ pub(crate) use product::Runs;
 pub use product::{Product, ProductParams};
 pub use rbf::{Kernel, Rbf, RbfParams, Shape};
 pub use record::{Record, RecordError};
-pub use samples::{Grid, Samples};
+pub use samples::{SampleGrid, Samples};
 pub use scaling::Scaling;
 pub use spline::{Degree, Spline, SplineParams};
 pub use varying::{Varying, VaryingParams};

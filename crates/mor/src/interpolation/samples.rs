@@ -17,7 +17,7 @@ pub struct Samples {
 
 /// The points of [`Samples`] as a grid of d axes.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Grid {
+pub struct SampleGrid {
     /// Ascending coordinates of every axis.
     pub axes: Vec<Vec<f64>>,
     /// Which sample is at each node; the first axis runs fastest.
@@ -179,7 +179,7 @@ impl Samples {
     ///
     /// # Errors
     /// [`InterpolationError::NotAGrid`].
-    pub fn grid(&self) -> Result<Grid, InterpolationError> {
+    pub fn grid(&self) -> Result<SampleGrid, InterpolationError> {
         let axes: Vec<Vec<f64>> = (0..self.inputs()).map(|i| self.distinct(i)).collect();
         let values: Vec<usize> = axes.iter().map(Vec::len).collect();
         let nodes = values.iter().fold(1usize, |a, &b| a.saturating_mul(b));
@@ -198,7 +198,7 @@ impl Samples {
             }
             samples[node] = sample;
         }
-        Ok(Grid { axes, samples })
+        Ok(SampleGrid { axes, samples })
     }
     /// Ascending values of input `i` that are not the same within 1e-12 of its extent.
     #[must_use]

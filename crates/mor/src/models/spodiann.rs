@@ -8,7 +8,7 @@ use super::{Assessment, Extrapolation, ModelError};
 use crate::interpolation::{Method, Record, RecordError};
 use crate::pod::combine;
 use crate::shifted::{
-    Decomposition, FrameOperators, Grid, GridFrames, Interpolation, Interpolator, Motion, Motions,
+    Decomposition, FieldShift, FrameOperators, Grid, GridFrames, Interpolation, Motion, Motions,
     ShiftedError, Shifts, Superposition, Workspace,
 };
 use crate::{Mat, MatRef};
@@ -37,7 +37,7 @@ pub struct SpodiannParams<'a> {
 /// Beyond the samples' times and parameters ([`covers`](Self::covers)) coefficients and paths are extrapolated linearly ([`Extrapolation`]).
 pub struct Spodiann {
     interpolation: Interpolation,
-    interpolator: Interpolator,
+    field_shift: FieldShift,
     frames: Vec<MovingModes>,
     /// If all frames only move along periodic axes, by [`Interpolation::Spectral`].
     superposition: Option<Superposition>,
@@ -86,7 +86,7 @@ impl Spodiann {
         }
         Ok(Self {
             interpolation,
-            interpolator: Interpolator::new(grid, interpolation),
+            field_shift: FieldShift::new(grid, interpolation),
             superposition: superposition(&grid, interpolation, &paths, &moving),
             frames: moving,
             offsets: decomposition.offsets.clone(),
@@ -140,7 +140,7 @@ impl Spodiann {
     /// Where its fields are.
     #[must_use]
     pub fn grid(&self) -> &Grid {
-        self.interpolator.grid()
+        self.field_shift.grid()
     }
     /// φ^k, rows × r_k.
     #[must_use]
@@ -188,7 +188,7 @@ impl Spodiann {
             for (frame, motion) in self.frames.iter().zip(&motions) {
                 let mut c = vec![0.0; frame.modes.ncols()];
                 if let Some(function) = &frame.coefficients {
-                    function.predict(&frame.inputs(&x, motion, self.interpolator.grid()), &mut c)?;
+                    function.predict(&frame.inputs(&x, motion, self.field_shift.grid()), &mut c)?;
                 }
                 carried.push((motion.displacement.into(), c));
             }
@@ -227,7 +227,7 @@ impl Spodiann {
         let mut squares = self.projection_error.powi(2);
         for (frame, motion) in self.frames.iter().zip(self.motions(x)?) {
             let Some(function) = &frame.coefficients else { continue };
-            let doubt = function.doubt(&frame.inputs(x, &motion, self.interpolator.grid()))?;
+            let doubt = function.doubt(&frame.inputs(x, &motion, self.field_shift.grid()))?;
             squares += (doubt / self.typical.max(f64::MIN_POSITIVE)).powi(2);
         }
         Ok(squares.sqrt())
@@ -285,10 +285,10 @@ impl Spodiann {
 
     fn carry(&self, motion: &Motion, field: &[f64]) -> Result<Vec<f64>, ModelError> {
         if motion.is_translation() {
-            return Ok(self.interpolator.shift(motion.displacement, field));
+            return Ok(self.field_shift.shift(motion.displacement, field));
         }
         let one = Motions::by(1, 1, |_, _| *motion);
-        let frame = GridFrames::new(*self.interpolator.grid(), self.interpolation, &one, self.rows)?;
+        let frame = GridFrames::new(*self.field_shift.grid(), self.interpolation, &one, self.rows)?;
         let mut column = Mat::from_fn(self.rows, 1, |row, _| field[row]);
         frame.to_lab(0, column.as_mut());
         Ok(column.col_as_slice(0).to_vec())
@@ -297,7 +297,7 @@ impl Spodiann {
     /// All of it, for a file.
     #[must_use]
     pub fn record(&self) -> Record {
-        let grid = self.interpolator.grid();
+        let grid = self.field_shift.grid();
         let numbers = |v: [usize; 3]| v.map(|n| n as f64);
         let mut record = Record::new(Self::KIND)
             .with("cells", numbers(grid.cells()))
@@ -353,7 +353,7 @@ impl Spodiann {
         Ok(Self {
             superposition: superposition(&grid, interpolation, &paths, &frames),
             interpolation,
-            interpolator: Interpolator::new(grid, interpolation),
+            field_shift: FieldShift::new(grid, interpolation),
             frames,
             offsets: offsets.as_chunks::<3>().0.iter().map(|c| Vector::from(*c)).collect(),
             paths,
@@ -373,7 +373,7 @@ impl Spodiann {
             (0..frame.modes.ncols())
                 .map(move |i| (format!("frame {k} mode {i}"), frame.modes.col_as_slice(i)))
         });
-        write_modes(path, self.interpolator.grid(), named)
+        write_modes(path, self.field_shift.grid(), named)
     }
 }
 

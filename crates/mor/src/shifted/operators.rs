@@ -2,7 +2,7 @@
 use super::axis::Side;
 use super::gather::Gatherer;
 use super::turn::{Turner, angles};
-use super::{FrameOperators, Grid, Interpolation, Interpolator, Motion, ShiftedError, Shifts};
+use super::{FieldShift, FrameOperators, Grid, Interpolation, Motion, ShiftedError, Shifts};
 use interfaces::{Point, Vector};
 use monomorphic::MatMut;
 use rayon::prelude::*;
@@ -22,7 +22,7 @@ pub struct GridFrames {
     n_rows: usize,
     n_frames: usize,
     n_snapshots: usize,
-    interpolator: Interpolator,
+    field_shift: FieldShift,
     gatherer: Gatherer,
     turner: Option<Turner>,
     ways: Ways,
@@ -103,9 +103,9 @@ impl GridFrames {
         if n_rows == 0 || !n_rows.is_multiple_of(grid.n_cells()) {
             return Err(ShiftedError::Rows { rows: n_rows, cells: grid.n_cells() });
         }
-        let interpolator = Interpolator::new(grid, interpolation);
+        let field_shift = FieldShift::new(grid, interpolation);
         let gatherer = Gatherer::new(grid, interpolation);
-        Ok(Self { grid, n_rows, n_frames, n_snapshots, interpolator, gatherer, turner, ways })
+        Ok(Self { grid, n_rows, n_frames, n_snapshots, field_shift, gatherer, turner, ways })
     }
 
     /// Column by column; they do not know of one another.
@@ -158,9 +158,9 @@ impl GridFrames {
 
     fn shift(&self, s: Vector, column: &mut [f64], task: Task) {
         let shifted = match task {
-            Task::Lab => self.interpolator.shift(s, column),
-            Task::Frame => self.interpolator.shift(-s, column),
-            Task::Transpose => self.interpolator.shift_transposed(s, column),
+            Task::Lab => self.field_shift.shift(s, column),
+            Task::Frame => self.field_shift.shift(-s, column),
+            Task::Transpose => self.field_shift.shift_transposed(s, column),
         };
         column.copy_from_slice(&shifted);
     }

@@ -233,7 +233,7 @@ fn add_turned(factor: Complex<f64>, [fr, fi]: &[Vec<f64>; 2], values: &[f64], su
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Interpolation, Interpolator};
+    use super::super::{FieldShift, Interpolation};
     use super::*;
     use interfaces::Vector;
 
@@ -265,7 +265,7 @@ mod tests {
                 asked.map(|(s, c)| ([0, 1, 2].map(|a| if moving.contains(&a) { s[a] } else { 0.0 }), c));
             let mut out = vec![0.0; rows];
             sum.field(&asked, &mut Workspace::default(), &mut out);
-            let one_by_one = Interpolator::new(grid, Interpolation::Spectral);
+            let one_by_one = FieldShift::new(grid, Interpolation::Spectral);
             let mut expected = vec![0.0; rows];
             for ((s, c), modes) in asked.iter().zip(&modes) {
                 for (c, mode) in c.iter().zip(modes) {

@@ -5,7 +5,7 @@ mod proximal;
 mod shifted_pod;
 
 use super::Interpolation::{self, *};
-use super::{Grid, Interpolator, ShiftedError};
+use super::{FieldShift, Grid, ShiftedError};
 use interfaces::Vector;
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
@@ -42,7 +42,7 @@ fn disc(cells: [usize; 2], d: f64) -> Vec<f64> {
 #[test]
 fn a_shift_by_whole_cells_renumbers_them() {
     for interpolation in ALL {
-        let op = Interpolator::new(Grid::new([5, 4, 3], [0.5, 1.0, 2.0]).unwrap(), interpolation);
+        let op = FieldShift::new(Grid::new([5, 4, 3], [0.5, 1.0, 2.0]).unwrap(), interpolation);
         let q = random(60, 1);
         let shifted = op.shift(Vector::new(1.0, -3.0, 2.0), &q);
         for i in 0..60 {
@@ -58,7 +58,7 @@ fn a_shift_of_waves_is_as_accurate_as_its_order() {
     // The bounds of the interpolation errors, for sin 2πx of one period.
     let error = |interpolation, n: usize| {
         let h = 1.0 / n as f64;
-        let op = Interpolator::new(Grid::new([n], [h]).unwrap(), interpolation);
+        let op = FieldShift::new(Grid::new([n], [h]).unwrap(), interpolation);
         let wave = |s: f64| (0..n).map(|i| (2.0 * PI * (i as f64 * h - s)).sin()).collect::<Vec<_>>();
         let out = op.shift(Vector::new(10.5 * h, 0.0, 0.0), &wave(0.0));
         out.iter().zip(wave(10.5 * h)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
@@ -91,7 +91,7 @@ fn there_and_back_leaves_as_much_of_a_sharp_disc_as_is_known() {
         (CubicSpline, 3.8e-3),
         (QuinticSpline, 2.1e-3),
     ] {
-        let op = Interpolator::new(grid, interpolation);
+        let op = FieldShift::new(grid, interpolation);
         let error = |l: u32| {
             let s = Vector::new(0.0, f64::from(l) * 3.05, 0.0);
             distance(&op.shift(-s, &op.shift(s, &q)), &q) / norm(&q)
@@ -101,7 +101,7 @@ fn there_and_back_leaves_as_much_of_a_sharp_disc_as_is_known() {
     }
     // What is left of the wave of two cells is its only error.
     let [even, odd] = [60, 61].map(|n| {
-        let op = Interpolator::new(Grid::new([40, n], [1.0; 2]).unwrap(), Spectral);
+        let op = FieldShift::new(Grid::new([40, n], [1.0; 2]).unwrap(), Spectral);
         let (q, s) = (disc([40, n], 15.0), Vector::new(0.0, 7.1, 0.0));
         distance(&op.shift(-s, &op.shift(s, &q)), &q) / norm(&q)
     });
@@ -112,7 +112,7 @@ fn there_and_back_leaves_as_much_of_a_sharp_disc_as_is_known() {
 fn bounded_axes_continue_with_the_value_at_the_end() {
     for interpolation in [Lagrange1, Lagrange3, Lagrange5, CubicSpline, QuinticSpline] {
         let grid = Grid::new([40], [1.0]).unwrap().bounded([0]);
-        let op = Interpolator::new(grid, interpolation);
+        let op = FieldShift::new(grid, interpolation);
         let q: Vec<f64> = (0..40).map(|i| 3.0 + ((f64::from(i) - 20.0) / 4.0).tanh()).collect();
         let right = op.shift(Vector::new(10.3, 0.0, 0.0), &q);
         assert!(right[..8].iter().all(|x| (x - 2.0).abs() < 2e-4), "{interpolation:?}: {right:?}");
@@ -139,7 +139,7 @@ proptest! {
         if interpolation != Spectral {
             grid = grid.bounded((0..3).filter(|&a| bounded[a]));
         }
-        let op = Interpolator::new(grid, interpolation);
+        let op = FieldShift::new(grid, interpolation);
         // Two components.
         let n = 2 * grid.n_cells();
         let (p, q, s) = (random(n, seed), random(n, seed ^ 1), Vector::from(s));
@@ -153,7 +153,7 @@ proptest! {
 
     #[test]
     fn whole_periods_are_nothing(n in 2_usize..20, s in -3.0..3.0_f64, times in -5_i32..5, which in 0_usize..6) {
-        let op = Interpolator::new(Grid::new([n], [1.0]).unwrap(), ALL[which]);
+        let op = FieldShift::new(Grid::new([n], [1.0]).unwrap(), ALL[which]);
         let q = random(n, 5);
         let far = op.shift(Vector::new(s + f64::from(times) * n as f64, 0.0, 0.0), &q);
         prop_assert!(distance(&far, &op.shift(Vector::new(s, 0.0, 0.0), &q)) < 1e-11);
@@ -163,7 +163,7 @@ proptest! {
     fn a_spectral_shift_has_an_inverse(n in 1_usize..20, s in -30.0..30.0_f64) {
         // Of an odd number of cells: there is no wave of two cells.
         let n = 2 * n + 1;
-        let op = Interpolator::new(Grid::new([2, n], [1.0, 1.0]).unwrap(), Spectral);
+        let op = FieldShift::new(Grid::new([2, n], [1.0, 1.0]).unwrap(), Spectral);
         let q = random(2 * n, 6);
         let s = Vector::new(0.0, s, 0.0);
         prop_assert!(distance(&op.shift(-s, &op.shift(s, &q)), &q) < 1e-12);

@@ -5,7 +5,7 @@ use super::spectrum::Spectrum;
 use super::{Als, centred};
 use crate::Mat;
 use crate::shifted::{
-    Decomposition, Grid, Interpolation, Interpolator, Motion, Motions, ShiftedError, Shifts, StopReason,
+    Decomposition, FieldShift, Grid, Interpolation, Motion, Motions, ShiftedError, Shifts, StopReason,
 };
 use interfaces::{Rotation, Vector};
 use proptest::prelude::*;
@@ -14,7 +14,7 @@ use rand_pcg::Pcg64;
 
 /// Σ_k T^k Q_k.
 fn sum(grid: &Grid, shifts: &dyn Shifts, fields: &[Mat<f64>]) -> Mat<f64> {
-    let operator = Interpolator::new(*grid, Interpolation::Spectral);
+    let operator = FieldShift::new(*grid, Interpolation::Spectral);
     let mut out = Mat::zeros(fields[0].nrows(), shifts.n_snapshots());
     for (k, field) in fields.iter().enumerate() {
         for j in 0..shifts.n_snapshots() {

@@ -6,12 +6,12 @@ use interfaces::Vector;
 /// Shifts fields on a grid. Nothing is stored but factors along the axes.
 ///
 /// A field is a slice of one value per cell, or of several components one after the other.
-pub struct Interpolator {
+pub struct FieldShift {
     grid: Grid,
     axes: [Axis; 3],
 }
 
-impl Interpolator {
+impl FieldShift {
     /// On this grid. On an axis that is not periodic [`Interpolation::Spectral`] takes the ends for neighbours.
     #[must_use]
     pub fn new(grid: Grid, interpolation: Interpolation) -> Self {

@@ -2,12 +2,15 @@
 use crate::fall::Fallen;
 use example_support::Outcome;
 use example_support::cpu::Stopwatch;
-use mor::interpolation::{Degree, Kernel, Method, NetworkParams, RbfParams, SplineParams};
-use mor::models::{Assessment, CoefficientFit, Podiann, Spodiann, SpodiannParams};
+use mor::interpolation::{
+    Degree, FitProgress, FitStage, Kernel, Method, NetworkParams, RbfParams, SplineParams,
+};
+use mor::models::{Assessment, CoefficientFit, ModelError, Podiann, Spodiann, SpodiannParams};
 use mor::pod::{Pod, PodParams};
 use mor::shifted::fourier::Als;
 use mor::shifted::{Grid, Interpolation, Motion, Motions};
 use mor::{Mat, MatRef};
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What is reduced.
@@ -127,6 +130,12 @@ impl Study {
         ];
         let mut study = Self { quantity, models: Vec::new(), decay: Vec::new(), shown, shifted: Vec::new() };
         let stopped = || stop.load(Ordering::Relaxed);
+        let mut observer = |progress: &FitProgress<'_>| {
+            if matches!(progress.innermost().stage, FitStage::Frame | FitStage::Method(_)) {
+                eprintln!("  {progress}");
+            }
+            if stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
 
         let watch = Stopwatch::start();
         let most = modes.iter().copied().max().unwrap_or(1);
@@ -140,7 +149,9 @@ impl Study {
                 }
                 eprintln!("{}: POD, {count} modes, {name}", quantity.name());
                 let watch = Stopwatch::start();
-                let model = Podiann::new(training.points.as_ref(), &pod.truncated(count), method)?;
+                let (points, modes) = (training.points.as_ref(), pod.truncated(count));
+                let model = Podiann::new_observed(points, &modes, method, &mut observer);
+                let Some(model) = unless_stopped(model)? else { return Ok(None) };
                 let training_cpu = watch.elapsed().cpu;
                 let mut field = vec![0.0; model.rows()];
                 let watch = Stopwatch::start();
@@ -189,7 +200,9 @@ impl Study {
                 let watch = Stopwatch::start();
                 let params = SpodiannParams { coefficients: method, paths: None };
                 let how = (grid, Interpolation::Spectral);
-                let model = Spodiann::new(training.points.as_ref(), &found, how, &training.motions, params)?;
+                let (points, motions) = (training.points.as_ref(), &training.motions);
+                let model = Spodiann::new_observed(points, &found, how, motions, params, &mut observer);
+                let Some(model) = unless_stopped(model)? else { return Ok(None) };
                 let training_cpu = watch.elapsed().cpu;
                 let mut field = vec![0.0; model.rows()];
                 let watch = Stopwatch::start();
@@ -219,6 +232,14 @@ impl Study {
             }
         }
         Ok(Some(study))
+    }
+}
+
+/// `None` if the observer stopped the fit.
+fn unless_stopped<T>(model: Result<T, ModelError>) -> Outcome<Option<T>> {
+    match model {
+        Err(error) if error.is_stopped() => Ok(None),
+        model => Ok(Some(model?)),
     }
 }
 

@@ -38,6 +38,7 @@ mod harmonics;
 mod interpolator;
 mod network;
 mod product;
+mod progress;
 mod rbf;
 mod record;
 mod samples;
@@ -46,8 +47,10 @@ mod spline;
 mod varying;
 mod waves;
 
-pub use choice::{Best, Row, Table, best, best_of, candidates, compare};
-pub use cross_validation::{CrossValidation, cross_validate};
+pub use choice::{
+    Best, Row, Table, best, best_observed, best_of, best_of_observed, candidates, compare, compare_observed,
+};
+pub use cross_validation::{CrossValidation, cross_validate, cross_validate_observed};
 pub use error::InterpolationError;
 pub use folds::Folds;
 pub(crate) use folds::thinned;
@@ -56,6 +59,8 @@ pub use interpolator::{Interpolator, Method, load};
 pub use network::{Activation, Adam, Epoch, Fourier, Network, NetworkParams, Report, Stop};
 pub(crate) use product::Runs;
 pub use product::{Product, ProductParams};
+pub(crate) use progress::unobserved;
+pub use progress::{FitObserver, FitProgress, FitStage};
 pub use rbf::{Kernel, Rbf, RbfParams, Shape};
 pub use record::{Record, RecordError};
 pub use samples::{SampleGrid, Samples};

@@ -1,8 +1,9 @@
 //! Methods side by side, and the best of them.
 use super::product::Runs;
 use super::{
-    CrossValidation, Degree, Folds, InterpolationError, Interpolator, Kernel, Method, NetworkParams,
-    ProductParams, RbfParams, Samples, SplineParams, cross_validate,
+    CrossValidation, Degree, FitObserver, FitProgress, FitStage, Folds, InterpolationError, Interpolator,
+    Kernel, Method, NetworkParams, ProductParams, RbfParams, Samples, SplineParams, cross_validate_observed,
+    unobserved,
 };
 use cpu_time::ThreadTime;
 use std::fmt;
@@ -81,12 +82,31 @@ impl fmt::Display for Table {
 /// Cross-validates every method with the same sets.
 #[must_use]
 pub fn compare(methods: &[Box<dyn Method>], samples: &Samples, folds: &Folds) -> Table {
-    let row = |method: &dyn Method| Row {
-        method: method.name(),
-        in_full: true,
-        outcome: cross_validate(method, samples, folds),
+    compare_observed(methods, samples, folds, &mut unobserved)
+}
+
+/// The same with an observer ([`FitStage::Method`]): once it stops, the outcome of the method under
+/// way and of all later ones is [`InterpolationError::Stopped`].
+#[must_use]
+pub fn compare_observed(
+    methods: &[Box<dyn Method>],
+    samples: &Samples,
+    folds: &Folds,
+    observer: FitObserver<'_>,
+) -> Table {
+    let mut is_stopped = false;
+    let row = |(i, method): (usize, &dyn Method)| {
+        let name = method.name();
+        let outcome = if is_stopped {
+            Err(InterpolationError::Stopped)
+        } else {
+            FitProgress::new(FitStage::Method(&name), i + 1, methods.len())
+                .run(&mut *observer, |o| cross_validate_observed(method, samples, folds, o))
+        };
+        is_stopped = matches!(outcome, Err(InterpolationError::Stopped));
+        Row { method: name, in_full: true, outcome }
     };
-    Table { rows: methods.iter().map(Box::as_ref).map(row).collect() }
+    Table { rows: methods.iter().map(Box::as_ref).enumerate().map(row).collect() }
 }
 
 /// The best of some methods.
@@ -111,17 +131,43 @@ pub fn best_of(
     samples: &Samples,
     folds: &Folds,
 ) -> Result<Best, InterpolationError> {
+    best_of_observed(methods, samples, folds, &mut unobserved)
+}
+
+/// The same with an observer: [`FitStage::Method`] for each, then [`FitStage::Fit`].
+///
+/// # Errors
+/// As [`best_of`]; [`InterpolationError::Stopped`] by the observer.
+pub fn best_of_observed(
+    methods: &[Box<dyn Method + '_>],
+    samples: &Samples,
+    folds: &Folds,
+    observer: FitObserver<'_>,
+) -> Result<Best, InterpolationError> {
     let some = folds.some(folds.sets().len().div_ceil(5));
     let mut least = f64::INFINITY;
-    let row = |method: &dyn Method| {
-        let trial = cross_validate(method, samples, &some);
+    let mut validate = |method: &dyn Method, observer: FitObserver<'_>| -> Result<Row, InterpolationError> {
+        let mut outcome = |folds| {
+            InterpolationError::unless_stopped(cross_validate_observed(
+                method,
+                samples,
+                folds,
+                &mut *observer,
+            ))
+        };
+        let trial = outcome(&some)?;
         let error = trial.as_ref().map_or(f64::INFINITY, |of| of.error);
         least = least.min(error);
         let in_full = error <= HOPELESS * least.max(ROUND_OFF);
-        let outcome = if in_full { cross_validate(method, samples, folds) } else { trial };
-        Row { method: method.name(), in_full, outcome }
+        let outcome = if in_full { outcome(folds)? } else { trial };
+        Ok(Row { method: method.name(), in_full, outcome })
     };
-    let mut table = Table { rows: methods.iter().map(Box::as_ref).map(row).collect() };
+    let mut table = Table { rows: Vec::new() };
+    for (i, method) in methods.iter().enumerate() {
+        let name = method.name();
+        let stage = FitProgress::new(FitStage::Method(&name), i + 1, methods.len());
+        table.rows.push(stage.run(&mut *observer, |observer| validate(method.as_ref(), observer))?);
+    }
     let Some(chosen) = table.best() else {
         let none = InterpolationError::TooFew {
             what: "a choice".into(),
@@ -133,7 +179,8 @@ pub fn best_of(
         return Err(first.unwrap_or(none));
     };
     let begin = ThreadTime::now();
-    let interpolator = methods[chosen].fit(samples)?;
+    let interpolator = FitProgress::new(FitStage::Fit(&table.rows[chosen].method), 1, 1)
+        .run(observer, |observer| methods[chosen].fit_observed(samples, observer))?;
     Ok(Best { interpolator, chosen, table, cpu_seconds: begin.elapsed().as_secs_f64() })
 }
 
@@ -142,7 +189,15 @@ pub fn best_of(
 /// # Errors
 /// As [`best_of`]; [`InterpolationError::TooFew`] samples to leave any out.
 pub fn best(samples: &Samples) -> Result<Best, InterpolationError> {
-    best_of(&candidates(samples), samples, &Folds::suited(samples, 1)?)
+    best_observed(samples, &mut unobserved)
+}
+
+/// The same with an observer.
+///
+/// # Errors
+/// As [`best`]; [`InterpolationError::Stopped`] by the observer.
+pub fn best_observed(samples: &Samples, observer: FitObserver<'_>) -> Result<Best, InterpolationError> {
+    best_of_observed(&candidates(samples), samples, &Folds::suited(samples, 1)?, observer)
 }
 
 /// Methods that suit the samples, the cheaper first.

@@ -1,5 +1,5 @@
 //! How well samples are predicted from the others.
-use super::{Folds, InterpolationError, Method, Samples};
+use super::{FitObserver, Folds, InterpolationError, Method, Samples, unobserved};
 use cpu_time::ThreadTime;
 
 /// Errors of predictions of samples that were left out.
@@ -26,11 +26,25 @@ pub fn cross_validate(
     samples: &Samples,
     folds: &Folds,
 ) -> Result<CrossValidation, InterpolationError> {
+    cross_validate_observed(method, samples, folds, &mut unobserved)
+}
+
+/// The same with an observer: [`FitStage::Fold`](super::FitStage::Fold), or the steps of a search
+/// if the method leaves samples out in closed form.
+///
+/// # Errors
+/// As [`cross_validate`]; [`InterpolationError::Stopped`] by the observer.
+pub fn cross_validate_observed(
+    method: &dyn Method,
+    samples: &Samples,
+    folds: &Folds,
+    observer: FitObserver<'_>,
+) -> Result<CrossValidation, InterpolationError> {
     let begin = ThreadTime::now();
     let k = samples.outputs();
     let (mut off, mut norm) = (vec![0.0; k], vec![0.0; k]);
     let (mut worst, mut predictions) = ((0.0, 0), 0);
-    for (set, errors) in folds.sets().iter().zip(method.left_out(samples, folds)?) {
+    for (set, errors) in folds.sets().iter().zip(method.left_out(samples, folds, observer)?) {
         for (j, &sample) in set.iter().enumerate() {
             let mut sum = 0.0;
             for row in 0..k {

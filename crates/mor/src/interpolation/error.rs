@@ -114,6 +114,9 @@ pub enum InterpolationError {
         /// How many were made.
         iterations: usize,
     },
+    /// The observer stopped the fit.
+    #[error("the observer stopped the fit before there was a result")]
+    Stopped,
     /// A prediction was asked for at a point that is none.
     #[error("a prediction was asked for where input {input} is {value}; give finite inputs")]
     Point {
@@ -131,6 +134,10 @@ impl InterpolationError {
     /// `found` must be `expected`.
     pub(super) fn same(what: &'static str, expected: usize, found: usize) -> Result<(), Self> {
         if expected == found { Ok(()) } else { Err(Self::Shape { what, expected, found }) }
+    }
+    /// An outcome, unless it is a stop by the observer.
+    pub(super) fn unless_stopped<T>(outcome: Result<T, Self>) -> Result<Result<T, Self>, Self> {
+        if matches!(outcome, Err(Self::Stopped)) { Err(Self::Stopped) } else { Ok(outcome) }
     }
     /// Checks the shapes of a prediction, and that its point is finite.
     pub(super) fn check_prediction(

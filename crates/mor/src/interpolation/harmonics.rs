@@ -1,7 +1,10 @@
 //! Harmonics of phases whose amplitudes are functions by any method.
 use super::interpolator::{check_input, load};
 use super::waves::Waves;
-use super::{Degree, InterpolationError, Interpolator, Method, Record, RecordError, Samples, VaryingParams};
+use super::{
+    Degree, FitObserver, InterpolationError, Interpolator, Method, Record, RecordError, Samples,
+    VaryingParams, unobserved,
+};
 use crate::Mat;
 
 /// How to make a [`Harmonics`] function.
@@ -29,9 +32,12 @@ impl HarmonicsParams<'_> {
     /// # Errors
     /// As [`VaryingParams::varying`], and those of the method.
     pub fn harmonics(&self, samples: &Samples) -> Result<Harmonics, InterpolationError> {
+        self.fitted(samples, &mut unobserved)
+    }
+    fn fitted(&self, samples: &Samples, observer: FitObserver<'_>) -> Result<Harmonics, InterpolationError> {
         let times = samples.distinct(0).len();
         let degree = Degree::highest(times).unwrap_or(Degree::Linear);
-        let varying = VaryingParams { degree, slow: self.slow }.varying(samples)?;
+        let varying = VaryingParams { degree, slow: self.slow }.fitted(samples, &mut *observer)?;
         let waves = varying.waves().clone();
         let (k, m, slow) = (samples.outputs(), samples.len(), self.slow);
         let mut values = Mat::zeros(k * (1 + waves.len()), m);
@@ -45,7 +51,8 @@ impl HarmonicsParams<'_> {
             }
         }
         let points = samples.points().get(..slow, ..).to_owned();
-        let amplitudes = self.amplitudes.fit(&Samples::new(points.as_ref(), values.as_ref())?)?;
+        let samples_of_amplitudes = Samples::new(points.as_ref(), values.as_ref())?;
+        let amplitudes = self.amplitudes.fit_observed(&samples_of_amplitudes, observer)?;
         Ok(Harmonics { amplitudes, waves, outputs: k, domain: samples.domain().to_vec() })
     }
 }
@@ -54,8 +61,12 @@ impl Method for HarmonicsParams<'_> {
     fn name(&self) -> String {
         format!("{} × harmonics of phases", self.amplitudes.name())
     }
-    fn fit(&self, samples: &Samples) -> Result<Box<dyn Interpolator>, InterpolationError> {
-        Ok(Box::new(self.harmonics(samples)?))
+    fn fit_observed(
+        &self,
+        samples: &Samples,
+        observer: FitObserver<'_>,
+    ) -> Result<Box<dyn Interpolator>, InterpolationError> {
+        Ok(Box::new(self.fitted(samples, observer)?))
     }
 }
 

@@ -1,7 +1,7 @@
 //! What every method owes, and every function made by one.
 use super::{
-    Folds, Harmonics, InterpolationError, Network, Product, Rbf, Record, RecordError, Samples, Spline,
-    Varying,
+    FitObserver, FitProgress, FitStage, Folds, Harmonics, InterpolationError, Network, Product, Rbf, Record,
+    RecordError, Samples, Spline, Varying, unobserved,
 };
 use crate::{Mat, MatRef};
 
@@ -13,22 +13,44 @@ pub trait Method: Send + Sync {
     ///
     /// # Errors
     /// [`InterpolationError`] when the samples are too few, too many or not arranged as the method needs them.
-    fn fit(&self, samples: &Samples) -> Result<Box<dyn Interpolator>, InterpolationError>;
-    /// Errors ŷ − y (k × size of the set) at the samples of every set, of functions through all the others: one fit for each set,
-    /// where there is no closed form.
+    fn fit(&self, samples: &Samples) -> Result<Box<dyn Interpolator>, InterpolationError> {
+        self.fit_observed(samples, &mut unobserved)
+    }
+    /// The same, with every step of an iteration or a search reported; a method in closed form
+    /// reports none.
     ///
     /// # Errors
-    /// As [`fit`](Self::fit), of a part of the samples; [`InterpolationError::Empty`] if a set has them all.
-    fn left_out(&self, samples: &Samples, folds: &Folds) -> Result<Vec<Mat<f64>>, InterpolationError> {
-        let one = |set: &Vec<usize>| {
-            let mut errors = self.fit(&samples.without(set)?)?.predict_all(samples.pick(set)[0].as_ref())?;
+    /// As [`fit`](Self::fit); [`InterpolationError::Stopped`] by the observer.
+    fn fit_observed(
+        &self,
+        samples: &Samples,
+        observer: FitObserver<'_>,
+    ) -> Result<Box<dyn Interpolator>, InterpolationError>;
+    /// Errors ŷ − y (k × size of the set) at the samples of every set, of functions through all the
+    /// others: one fit for each set ([`FitStage::Fold`]), where there is no closed form.
+    ///
+    /// # Errors
+    /// As [`fit_observed`](Self::fit_observed), of a part of the samples;
+    /// [`InterpolationError::Empty`] if a set has them all.
+    fn left_out(
+        &self,
+        samples: &Samples,
+        folds: &Folds,
+        observer: FitObserver<'_>,
+    ) -> Result<Vec<Mat<f64>>, InterpolationError> {
+        let count = folds.sets().len();
+        let one = |(k, set): (usize, &Vec<usize>)| {
+            let fold = FitProgress::new(FitStage::Fold, k + 1, count);
+            let others = samples.without(set)?;
+            let function = fold.run(&mut *observer, |observer| self.fit_observed(&others, observer))?;
+            let mut errors = function.predict_all(samples.pick(set)[0].as_ref())?;
             for (j, &sample) in set.iter().enumerate() {
                 let pairs = errors.col_as_slice_mut(j).iter_mut().zip(samples.value(sample));
                 pairs.for_each(|(error, value)| *error -= value);
             }
             Ok(errors)
         };
-        folds.sets().iter().map(one).collect()
+        folds.sets().iter().enumerate().map(one).collect()
     }
 }
 
@@ -36,11 +58,20 @@ impl<M: Method + ?Sized> Method for &M {
     fn name(&self) -> String {
         (**self).name()
     }
-    fn fit(&self, samples: &Samples) -> Result<Box<dyn Interpolator>, InterpolationError> {
-        (**self).fit(samples)
+    fn fit_observed(
+        &self,
+        samples: &Samples,
+        observer: FitObserver<'_>,
+    ) -> Result<Box<dyn Interpolator>, InterpolationError> {
+        (**self).fit_observed(samples, observer)
     }
-    fn left_out(&self, samples: &Samples, folds: &Folds) -> Result<Vec<Mat<f64>>, InterpolationError> {
-        (**self).left_out(samples, folds)
+    fn left_out(
+        &self,
+        samples: &Samples,
+        folds: &Folds,
+        observer: FitObserver<'_>,
+    ) -> Result<Vec<Mat<f64>>, InterpolationError> {
+        (**self).left_out(samples, folds, observer)
     }
 }
 

@@ -14,7 +14,9 @@ pub use adam::Adam;
 pub use training::{Epoch, Report, Stop};
 
 use super::interpolator::check_input;
-use super::{InterpolationError, Interpolator, Method, Record, RecordError, Samples, Scaling};
+use super::{
+    FitObserver, InterpolationError, Interpolator, Method, Record, RecordError, Samples, Scaling, unobserved,
+};
 use crate::Mat;
 use features::Features;
 use layers::Layers;
@@ -163,6 +165,20 @@ impl NetworkParams {
     /// [`InterpolationError::Parameter`], [`InterpolationError::TooFew`] of one sample, [`InterpolationError::Shape`] if there is not
     /// one period for each input, [`InterpolationError::Diverged`].
     pub fn network(&self, samples: &Samples) -> Result<Network, InterpolationError> {
+        self.network_observed(samples, &mut unobserved)
+    }
+    /// The same with an observer of every loss: [`FitStage::Start`](super::FitStage::Start), and in
+    /// it [`FitStage::Adam`](super::FitStage::Adam) and
+    /// [`FitStage::Lbfgs`](super::FitStage::Lbfgs). Once it stops, the network has the best weights
+    /// so far, and [`Report::stopped`] is true.
+    ///
+    /// # Errors
+    /// As [`network`](Self::network).
+    pub fn network_observed(
+        &self,
+        samples: &Samples,
+        observer: FitObserver<'_>,
+    ) -> Result<Network, InterpolationError> {
         self.check(samples)?;
         let features = Features::new(&self.fourier, samples)?;
         let scaling = Scaling::by_common_deviation(samples.values());
@@ -181,7 +197,7 @@ impl NetworkParams {
         };
         let data =
             Data { train: pick(&rest), held: pick(&held_out), held_out, steepness: features.steepness() };
-        let (weights, report) = training::train(self, &layers, &data);
+        let (weights, report) = training::train(self, &layers, &data, observer);
         if !report.score().is_finite() {
             return Err(InterpolationError::Diverged { iterations: report.history.len() });
         }
@@ -202,8 +218,17 @@ impl Method for NetworkParams {
         let free = if self.eliminate { "" } else { ", all weights free" };
         format!("{} network {}{waves}{decay}{free}", self.activation.name(), hidden.join(" × "))
     }
-    fn fit(&self, samples: &Samples) -> Result<Box<dyn Interpolator>, InterpolationError> {
-        Ok(Box::new(self.network(samples)?))
+    /// A training that was stopped is an error, as the [`Report`] that states it is out of reach.
+    fn fit_observed(
+        &self,
+        samples: &Samples,
+        observer: FitObserver<'_>,
+    ) -> Result<Box<dyn Interpolator>, InterpolationError> {
+        let network = self.network_observed(samples, observer)?;
+        if network.report.as_ref().is_some_and(|report| report.stopped) {
+            return Err(InterpolationError::Stopped);
+        }
+        Ok(Box::new(network))
     }
 }
 

@@ -1,7 +1,10 @@
 //! A spline in the first input, any method in the others.
 use super::interpolator::{check_input, load};
 use super::samples::nearest;
-use super::{InterpolationError, Interpolator, Method, Record, RecordError, Samples, Spline, SplineParams};
+use super::{
+    FitObserver, InterpolationError, Interpolator, Method, Record, RecordError, Samples, Spline,
+    SplineParams, unobserved,
+};
 use crate::Mat;
 use std::collections::BTreeMap;
 
@@ -85,6 +88,9 @@ impl ProductParams {
     /// [`InterpolationError::NotAGrid`] if they are not at all pairs of values of the first input and points of the others, and those
     /// of both methods.
     pub fn product(&self, samples: &Samples) -> Result<Product, InterpolationError> {
+        self.fitted(samples, &mut unobserved)
+    }
+    fn fitted(&self, samples: &Samples, observer: FitObserver<'_>) -> Result<Product, InterpolationError> {
         let Runs { first, samples: runs } = Runs::of(samples)?;
         let k = samples.outputs();
         let all = Mat::from_fn(k * first.len(), runs.len(), |i, run| samples.value(runs[run][i / k])[i % k]);
@@ -93,7 +99,8 @@ impl ProductParams {
         let spline = self.first.spline(&Samples::of_one_input(&first, values.as_ref())?)?;
         let of_runs: Vec<usize> = runs.iter().map(|run| run[0]).collect();
         let points = samples.pick(&of_runs)[0].get(1.., ..).to_owned();
-        let others = self.others.fit(&Samples::new(points.as_ref(), coefficients.as_ref())?)?;
+        let of_runs = Samples::new(points.as_ref(), coefficients.as_ref())?;
+        let others = self.others.fit_observed(&of_runs, observer)?;
         Product::of(spline, others, k).ok_or(InterpolationError::Shape {
             what: "outputs of the product",
             expected: k * shapes.ncols(),
@@ -106,8 +113,12 @@ impl Method for ProductParams {
     fn name(&self) -> String {
         format!("{} × {}", self.first.name(), self.others.name())
     }
-    fn fit(&self, samples: &Samples) -> Result<Box<dyn Interpolator>, InterpolationError> {
-        Ok(Box::new(self.product(samples)?))
+    fn fit_observed(
+        &self,
+        samples: &Samples,
+        observer: FitObserver<'_>,
+    ) -> Result<Box<dyn Interpolator>, InterpolationError> {
+        Ok(Box::new(self.fitted(samples, observer)?))
     }
 }
 

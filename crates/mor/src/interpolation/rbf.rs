@@ -6,7 +6,10 @@ mod tail;
 pub use kernel::Kernel;
 
 use super::interpolator::check_input;
-use super::{Folds, InterpolationError, Interpolator, Method, Record, RecordError, Samples, Scaling};
+use super::{
+    FitObserver, FitProgress, FitStage, Folds, InterpolationError, Interpolator, Method, Record, RecordError,
+    Samples, Scaling, unobserved,
+};
 use crate::Mat;
 use system::System;
 use tail::Tail;
@@ -83,14 +86,14 @@ impl RbfParams {
     /// As [`rbf`](Self::rbf).
     pub fn leave_one_out(&self, samples: &Samples) -> Result<Mat<f64>, InterpolationError> {
         let (system, _) = self.checked(samples)?;
-        Ok(system.leave_one_out(self.choose(&system)?).0)
+        Ok(system.leave_one_out(self.choose(&system, &mut unobserved)?).0)
     }
-    fn choose(&self, system: &System) -> Result<f64, InterpolationError> {
+    fn choose(&self, system: &System, observer: FitObserver<'_>) -> Result<f64, InterpolationError> {
         match self.shape {
             Shape::Fixed(shape) => Ok(shape),
             // Polynomials alone go through as many samples as there are monomials.
             Shape::LeaveOneOut if !self.kernel.has_shape() || system.is_polynomial() => Ok(1.0),
-            Shape::LeaveOneOut => best_shape(system).ok_or_else(|| self.singular()),
+            Shape::LeaveOneOut => best_shape(system, observer)?.ok_or_else(|| self.singular()),
         }
     }
     fn singular(&self) -> InterpolationError {
@@ -105,8 +108,11 @@ impl RbfParams {
     /// [`InterpolationError::TooFew`] and [`InterpolationError::Singular`] if the samples do not determine the tail,
     /// [`InterpolationError::TooMany`], [`InterpolationError::Parameter`].
     pub fn rbf(&self, samples: &Samples) -> Result<Rbf, InterpolationError> {
+        self.fitted(samples, &mut unobserved)
+    }
+    fn fitted(&self, samples: &Samples, observer: FitObserver<'_>) -> Result<Rbf, InterpolationError> {
         let (system, scaling) = self.checked(samples)?;
-        let shape = self.choose(&system)?;
+        let shape = self.choose(&system, observer)?;
         let (weights, residual) = system.solve(shape);
         if residual.is_nan() || residual > RESIDUAL {
             return Err(self.singular());
@@ -123,50 +129,66 @@ impl Method for RbfParams {
         let tail = self.tail.map_or(String::new(), |degree| format!(" + degree {degree}"));
         format!("{} RBF{tail}", self.kernel.name())
     }
-    fn fit(&self, samples: &Samples) -> Result<Box<dyn Interpolator>, InterpolationError> {
-        Ok(Box::new(self.rbf(samples)?))
+    fn fit_observed(
+        &self,
+        samples: &Samples,
+        observer: FitObserver<'_>,
+    ) -> Result<Box<dyn Interpolator>, InterpolationError> {
+        Ok(Box::new(self.fitted(samples, observer)?))
     }
     /// In closed form, with the shape that suits all samples.
-    fn left_out(&self, samples: &Samples, folds: &Folds) -> Result<Vec<Mat<f64>>, InterpolationError> {
+    fn left_out(
+        &self,
+        samples: &Samples,
+        folds: &Folds,
+        observer: FitObserver<'_>,
+    ) -> Result<Vec<Mat<f64>>, InterpolationError> {
         let (system, _) = self.checked(samples)?;
-        system.left_out(self.choose(&system)?, folds).ok_or_else(|| self.singular())
+        system.left_out(self.choose(&system, observer)?, folds).ok_or_else(|| self.singular())
     }
 }
 
 /// The ε with the smallest sum of squares of leave-one-out errors among those whose equations are not singular to round-off: the
 /// best of a geometric row, then a golden section around it.
-fn best_shape(system: &System) -> Option<f64> {
-    let error = |log_shape: f64| {
+fn best_shape(system: &System, observer: FitObserver<'_>) -> Result<Option<f64>, InterpolationError> {
+    let (steps, sections) = (16, 10);
+    let mut step = 0;
+    let mut error = |log_shape: f64| -> Result<f64, InterpolationError> {
         let (errors, condition) = system.leave_one_out(log_shape.exp());
         let sum = errors.squared_norm_l2();
-        if condition < CONDITION && sum.is_finite() { sum } else { f64::INFINITY }
+        let sum = if condition < CONDITION && sum.is_finite() { sum } else { f64::INFINITY };
+        step += 1;
+        FitProgress::new(FitStage::Shape, step, steps + 3 + sections)
+            .with_loss(sum)
+            .report(&mut *observer)?;
+        Ok(sum)
     };
     // From functions as wide as four times the samples' extent to those as narrow as half their distance.
     let [low, high] = [0.1_f64.ln(), (4.0 * system.density().max(0.5)).ln()];
-    let steps = 16;
     let place = |i: usize| low + (high - low) * i as f64 / steps as f64;
-    let row: Vec<f64> = (0..=steps).map(|i| error(place(i))).collect();
-    let best = (0..=steps).min_by(|&a, &b| row[a].total_cmp(&row[b]))?;
+    let row = (0..=steps).map(|i| error(place(i))).collect::<Result<Vec<f64>, _>>()?;
+    let best = (0..=steps).min_by(|&a, &b| row[a].total_cmp(&row[b])).unwrap_or(0);
     if row[best] == f64::INFINITY {
-        return None;
+        return Ok(None);
     }
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let [mut a, mut b] = [place(best.saturating_sub(1)), place((best + 1).min(steps))];
     let [mut c, mut d] = [b - golden * (b - a), a + golden * (b - a)];
-    let [mut at_c, mut at_d] = [error(c), error(d)];
-    for _ in 0..10 {
+    let [mut at_c, mut at_d] = [error(c)?, error(d)?];
+    for _ in 0..sections {
         if at_c < at_d {
             (b, d, at_d) = (d, c, at_c);
             c = b - golden * (b - a);
-            at_c = error(c);
+            at_c = error(c)?;
         } else {
             (a, c, at_c) = (c, d, at_d);
             d = a + golden * (b - a);
-            at_d = error(d);
+            at_d = error(d)?;
         }
     }
     let candidates = [(place(best), row[best]), (c, at_c), (d, at_d)];
-    candidates.into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).map(|(log_shape, _)| log_shape.exp())
+    let least = candidates.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
+    Ok(least.map(|(log_shape, _)| log_shape.exp()))
 }
 
 fn too_few(kernel: Kernel, degree: Option<usize>, needed: usize, found: usize) -> InterpolationError {

@@ -4,7 +4,7 @@ mod collocation;
 
 use super::interpolator::check_input;
 use super::scaling::ranges;
-use super::{InterpolationError, Interpolator, Method, Record, RecordError, Samples};
+use super::{FitObserver, InterpolationError, Interpolator, Method, Record, RecordError, Samples};
 use crate::Mat;
 pub(super) use axis::Axis;
 use collocation::Collocation;
@@ -88,7 +88,11 @@ impl Method for SplineParams {
         let degrees: Vec<String> = self.degrees.iter().map(|d| format!("{d:?}").to_lowercase()).collect();
         format!("{} spline", degrees.join(" × "))
     }
-    fn fit(&self, samples: &Samples) -> Result<Box<dyn Interpolator>, InterpolationError> {
+    fn fit_observed(
+        &self,
+        samples: &Samples,
+        _: FitObserver<'_>,
+    ) -> Result<Box<dyn Interpolator>, InterpolationError> {
         Ok(Box::new(self.spline(samples)?))
     }
 }

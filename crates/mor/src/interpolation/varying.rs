@@ -5,7 +5,10 @@ mod terms;
 use super::interpolator::check_input;
 use super::scaling::ranges;
 use super::waves::Waves;
-use super::{Degree, Folds, InterpolationError, Interpolator, Method, Record, RecordError, Samples};
+use super::{
+    Degree, FitObserver, Folds, InterpolationError, Interpolator, Method, Record, RecordError, Samples,
+    unobserved,
+};
 use crate::Mat;
 use complexity::{Complexity, Fit};
 use terms::Terms;
@@ -38,7 +41,11 @@ pub struct Varying {
 }
 
 impl VaryingParams {
-    fn fitted<'a>(&self, samples: &'a Samples) -> Result<(Fit<'a>, Complexity), InterpolationError> {
+    fn complexity<'a>(
+        &self,
+        samples: &'a Samples,
+        observer: FitObserver<'_>,
+    ) -> Result<(Fit<'a>, Complexity), InterpolationError> {
         let phases = samples.inputs().saturating_sub(self.slow);
         if self.slow == 0 || self.slow > samples.inputs() || phases % 2 == 1 {
             return Err(InterpolationError::Parameter {
@@ -49,7 +56,7 @@ impl VaryingParams {
         }
         let slow = samples.first_inputs(self.slow);
         let fit = Fit { samples, degree: self.degree, slow: self.slow, times: slow.distinct(0) };
-        let found = fit.best(&Folds::suited(&slow, 1)?)?;
+        let found = fit.best(&Folds::suited(&slow, 1)?, observer)?;
         Ok((fit, found))
     }
     /// The function near the samples.
@@ -57,7 +64,14 @@ impl VaryingParams {
     /// # Errors
     /// [`InterpolationError::TooFew`]; [`InterpolationError::Parameter`] if the inputs are not slow ones and pairs.
     pub fn varying(&self, samples: &Samples) -> Result<Varying, InterpolationError> {
-        let (fit, found) = self.fitted(samples)?;
+        self.fitted(samples, &mut unobserved)
+    }
+    pub(super) fn fitted(
+        &self,
+        samples: &Samples,
+        observer: FitObserver<'_>,
+    ) -> Result<Varying, InterpolationError> {
+        let (fit, found) = self.complexity(samples, observer)?;
         let terms = fit.terms(found);
         let coefficients = fit.coefficients(&terms, found);
         Ok(Varying { terms, coefficients, domain: ranges(samples.points()) })
@@ -68,12 +82,21 @@ impl Method for VaryingParams {
     fn name(&self) -> String {
         format!("{} spline + harmonics of phases", format!("{:?}", self.degree).to_lowercase())
     }
-    fn fit(&self, samples: &Samples) -> Result<Box<dyn Interpolator>, InterpolationError> {
-        Ok(Box::new(self.varying(samples)?))
+    fn fit_observed(
+        &self,
+        samples: &Samples,
+        observer: FitObserver<'_>,
+    ) -> Result<Box<dyn Interpolator>, InterpolationError> {
+        Ok(Box::new(self.fitted(samples, observer)?))
     }
     /// In closed form, with the numbers of terms that suit all samples.
-    fn left_out(&self, samples: &Samples, folds: &Folds) -> Result<Vec<Mat<f64>>, InterpolationError> {
-        let (fit, found) = self.fitted(samples)?;
+    fn left_out(
+        &self,
+        samples: &Samples,
+        folds: &Folds,
+        observer: FitObserver<'_>,
+    ) -> Result<Vec<Mat<f64>>, InterpolationError> {
+        let (fit, found) = self.complexity(samples, observer)?;
         fit.left_out(found, folds).ok_or_else(|| InterpolationError::Singular {
             what: self.name(),
             remedy: "give more samples, or take another method",

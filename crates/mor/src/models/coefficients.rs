@@ -2,8 +2,8 @@
 use super::leave_out::{LeaveOut, square_distance};
 use super::{Extrapolation, ModelError};
 use crate::interpolation::{
-    Degree, Folds, HarmonicsParams, Interpolator, Method, Record, RecordError, Samples, SplineParams,
-    VaryingParams, best_of, candidates, load,
+    Degree, FitObserver, FitProgress, FitStage, Folds, HarmonicsParams, Interpolator, Method, Record,
+    RecordError, Samples, SplineParams, VaryingParams, best_of_observed, candidates, load,
 };
 use crate::{Mat, MatRef};
 
@@ -52,11 +52,13 @@ fn methods<'a>(samples: &Samples, slow: usize) -> Vec<Box<dyn Method + 'a>> {
 }
 
 impl<'a> Choice<'a> {
-    /// The method given, or that which [`best_of`] finds; sets left out are those that suit the first `slow` inputs, and the others are phases.
+    /// The method given, or that with the least error of samples left out; sets left out are those
+    /// that suit the first `slow` inputs, and the others are phases.
     pub(super) fn new(
         samples: &'a Samples,
         slow: usize,
         given: Option<&'a dyn Method>,
+        observer: FitObserver<'_>,
     ) -> Result<Self, ModelError> {
         let folds = Folds::suited(&samples.first_inputs(slow), 1);
         let mut tried: Vec<Box<dyn Method + 'a>> = match given {
@@ -74,7 +76,7 @@ impl<'a> Choice<'a> {
         };
         let (chosen, left_out) = match &folds {
             Ok(folds) => {
-                let best = best_of(&tried, samples, folds)?;
+                let best = best_of_observed(&tried, samples, folds, observer)?;
                 let error = best.table.rows[best.chosen].outcome.as_ref().map_or(0.0, |row| row.error);
                 (best.chosen, error)
             }
@@ -88,14 +90,15 @@ impl<'a> Choice<'a> {
     }
 
     /// The function, by all samples.
-    pub(super) fn fit(self) -> Result<Coefficients, ModelError> {
+    pub(super) fn fit(self, observer: FitObserver<'_>) -> Result<Coefficients, ModelError> {
         let Self { samples, slow, method, left_out } = self;
-        let estimates = LeaveOut::all(samples, slow, method.as_ref());
+        let estimates = LeaveOut::all(samples, slow, method.as_ref(), &mut *observer)?;
         // A value left out doubles the distance: at order 2 or more the error is a quarter of that or less.
         let known = estimates.iter().flat_map(LeaveOut::inputs).count() == slow;
         let typical = (samples.values().squared_norm_l2() / samples.len() as f64).sqrt();
         let unseen = if known { 0.0 } else { 0.25 * left_out * typical };
-        let function = method.fit(samples)?;
+        let function = FitProgress::new(FitStage::Fit(&method.name()), 1, 1)
+            .run(observer, |observer| method.fit_observed(samples, observer))?;
         let misfit = (function.predict_all(samples.points())? - samples.values()).norm_l2();
         Ok(Coefficients {
             function,
@@ -109,9 +112,13 @@ impl<'a> Choice<'a> {
 }
 
 impl Coefficients {
-    /// Without phases, by the method given, or that which [`best_of`] finds.
-    pub(super) fn fit(samples: &Samples, given: Option<&dyn Method>) -> Result<Self, ModelError> {
-        Choice::new(samples, samples.inputs(), given)?.fit()
+    /// Without phases, by the method given, or that with the least error of samples left out.
+    pub(super) fn fit(
+        samples: &Samples,
+        given: Option<&dyn Method>,
+        observer: FitObserver<'_>,
+    ) -> Result<Self, ModelError> {
+        Choice::new(samples, samples.inputs(), given, &mut *observer)?.fit(observer)
     }
 
     pub(super) fn outputs(&self) -> usize {

@@ -31,6 +31,18 @@ pub enum ModelError {
 }
 
 impl ModelError {
+    /// Whether the observer stopped the fit.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        matches!(self, Self::Interpolation(InterpolationError::Stopped))
+    }
+    /// An outcome, unless it is a stop by the observer.
+    pub(super) fn unless_stopped<T>(outcome: Result<T, Self>) -> Result<Result<T, Self>, Self> {
+        match outcome {
+            Err(stopped) if stopped.is_stopped() => Err(stopped),
+            outcome => Ok(outcome),
+        }
+    }
     /// `found` must be `expected`.
     pub(super) fn same(what: &'static str, expected: usize, found: usize) -> Result<(), Self> {
         if expected == found { Ok(()) } else { Err(Self::Shape { what, expected, found }) }

@@ -1,7 +1,8 @@
 //! Error of an interpolated function from functions that leave out values of its inputs.
 use super::ModelError;
 use crate::interpolation::{
-    InterpolationError, Interpolator, Method, Record, RecordError, Runs, Samples, load, thinned,
+    FitObserver, FitProgress, FitStage, InterpolationError, Interpolator, Method, Record, RecordError, Runs,
+    Samples, load, thinned,
 };
 
 /// An estimate of the error of an interpolated function f along one input, or along the parameters of runs.
@@ -44,7 +45,15 @@ impl LeaveOut {
 
     /// Estimates along the first so many inputs: along each of a grid; else along the first one, and along the others
     /// together if they are parameters of runs at the same values of the first.
-    pub(super) fn all(samples: &Samples, inputs: usize, method: &dyn Method) -> Vec<Self> {
+    ///
+    /// # Errors
+    /// [`InterpolationError::Stopped`] by the observer.
+    pub(super) fn all(
+        samples: &Samples,
+        inputs: usize,
+        method: &dyn Method,
+        observer: FitObserver<'_>,
+    ) -> Result<Vec<Self>, InterpolationError> {
         let points = samples.first_inputs(inputs);
         let mut directions: Vec<Vec<usize>> = if inputs == 1 || points.grid().is_ok() {
             (0..inputs).map(|i| vec![i]).collect()
@@ -54,19 +63,49 @@ impl LeaveOut {
             vec![vec![0]]
         };
         directions.retain(|inputs| samples.domain()[inputs[0]][0] < samples.domain()[inputs[0]][1]);
-        directions.into_iter().filter_map(|inputs| Self::new(samples, inputs, method)).collect()
+        let count = directions.len();
+        let mut all = Vec::new();
+        for (i, inputs) in directions.into_iter().enumerate() {
+            let estimate =
+                FitProgress::new(FitStage::Estimate, i + 1, count).run(&mut *observer, |observer| {
+                    let mut is_stopped = false;
+                    let estimate = Self::new(samples, inputs, |progress, kept| {
+                        let samples = samples.subset(kept).filter(|_| !is_stopped)?;
+                        let function =
+                            progress.run(&mut *observer, |observer| method.fit_observed(&samples, observer));
+                        is_stopped = matches!(function, Err(InterpolationError::Stopped));
+                        function.ok()
+                    });
+                    if is_stopped { Err(InterpolationError::Stopped) } else { Ok(estimate) }
+                })?;
+            all.extend(estimate);
+        }
+        Ok(all)
     }
 
-    /// `None` if there are fewer than three values, or not enough for the method without some of them.
-    fn new(samples: &Samples, inputs: Vec<usize>, method: &dyn Method) -> Option<Self> {
+    /// `None` if there are fewer than three values, or not enough for functions of some samples
+    /// (`fit`) without some of them.
+    fn new(
+        samples: &Samples,
+        inputs: Vec<usize>,
+        mut fit: impl FnMut(FitProgress<'_>, &[usize]) -> Option<Box<dyn Interpolator>>,
+    ) -> Option<Self> {
         let groups = groups(samples, &inputs);
         let n = groups.len();
         if n < 3 {
             return None;
         }
-        let fit = |is_kept: &dyn Fn(usize) -> bool| {
+        let classes = if n < MANY { n } else { 2 };
+        // Functions at the ends extrapolate.
+        let ends = usize::from(inputs.len() == 1);
+        let inside = ends..n - ends;
+        let tested: Vec<usize> = if n < MANY { thinned(inside, PAIRS).collect() } else { inside.collect() };
+        let fits = classes + if n < MANY { tested.len() } else { 1 };
+        let mut step = 0;
+        let mut fit = |is_kept: &dyn Fn(usize) -> bool| {
             let kept = (0..n).filter(|k| is_kept(*k)).flat_map(|k| groups[k].samples.iter().copied());
-            method.fit(&samples.subset(&kept.collect::<Vec<_>>())?).ok()
+            step += 1;
+            fit(FitProgress::new(FitStage::Fold, step, fits), &kept.collect::<Vec<_>>())
         };
         // Sum of squares of the errors at the samples of a group.
         let error = |f: &dyn Interpolator, k: usize| -> Option<f64> {
@@ -79,15 +118,10 @@ impl LeaveOut {
             Some(square / groups[k].samples.len() as f64)
         };
         let mean = |squares: Vec<f64>| squares.iter().sum::<f64>() / squares.len() as f64;
-        let classes = if n < MANY { n } else { 2 };
         let without: Vec<_> = (0..classes).map(|c| fit(&|k| k % classes != c)).collect::<Option<Vec<_>>>()?;
-        // Functions at the ends extrapolate.
-        let ends = usize::from(inputs.len() == 1);
-        let inside = ends..n - ends;
-        let tested: Vec<usize> = if n < MANY { thinned(inside, PAIRS).collect() } else { inside.collect() };
         let alone = tested.iter().map(|k| error(&*without[k % classes], *k)).collect::<Option<Vec<_>>>()?;
         let together = if n < MANY {
-            let pair = |k: usize| {
+            let mut pair = |k: usize| {
                 let values = groups.iter().map(|g| &g.value[..]);
                 let neighbour = nearest(&groups[k].value, values, 2)[1];
                 match fit(&|l| l != k && l != neighbour) {

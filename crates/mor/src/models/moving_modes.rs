@@ -1,7 +1,7 @@
 //! Modes of one frame of reference and their coefficients.
 use super::coefficients::{Choice, Coefficients};
 use super::{Extrapolation, ModelError};
-use crate::interpolation::{Method, Record, RecordError, Samples};
+use crate::interpolation::{FitObserver, FitProgress, FitStage, Method, Record, RecordError, Samples};
 use crate::shifted::{Frame, Grid, Motion};
 use crate::{Mat, MatRef};
 use std::f64::consts::TAU;
@@ -43,6 +43,7 @@ impl MovingModes {
         grid: &Grid,
         motion: &dyn Fn(usize) -> Motion,
         given: Option<&dyn Method>,
+        observer: FitObserver<'_>,
     ) -> Result<Self, ModelError> {
         let (modes, none) = (frame.modes.clone(), Vec::new());
         let mut fitted =
@@ -53,13 +54,20 @@ impl MovingModes {
         let (slow, m) = points.shape();
         let values = frame.scaled_coefficients();
         let samples = Samples::new(points, values.as_ref())?;
-        let plain = Choice::new(&samples, slow, given);
         let phases = crossed(grid, (0..m).map(motion));
         let x = |j: usize| points.col(j).iter().copied().collect::<Vec<_>>();
         let all: Vec<Vec<f64>> = (0..m).map(|j| with_phases(&phases, &x(j), &motion(j), grid)).collect();
         let inputs = Mat::from_fn(slow + 2 * phases.len(), m, |i, j| all[j][i]);
-        let samples = Samples::new(inputs.as_ref(), values.as_ref())?;
-        let phased = if phases.is_empty() { None } else { Some(Choice::new(&samples, slow, given)) };
+        let with_phases = Samples::new(inputs.as_ref(), values.as_ref())?;
+        let count = if phases.is_empty() { 1 } else { 2 };
+        let mut choice = |samples, step| {
+            ModelError::unless_stopped(
+                FitProgress::new(FitStage::Inputs, step, count)
+                    .run(&mut *observer, |observer| Choice::new(samples, slow, given, observer)),
+            )
+        };
+        let plain = choice(&samples, 1)?;
+        let phased = if phases.is_empty() { None } else { Some(choice(&with_phases, 2)?) };
         let chosen = match (plain, phased) {
             (Ok(plain), Some(Ok(phased))) => {
                 let [one, other] =
@@ -71,7 +79,7 @@ impl MovingModes {
             (plain, _) => plain?,
         };
         fitted.left_out = chosen.left_out;
-        let function = chosen.fit()?;
+        let function = chosen.fit(observer)?;
         if function.inputs() > slow {
             fitted.phases = phases;
         }

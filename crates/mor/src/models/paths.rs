@@ -1,7 +1,7 @@
 //! Where frames of reference are, as a function of time and parameters.
 use super::coefficients::Coefficients;
 use super::{Extrapolation, ModelError};
-use crate::interpolation::{Method, Record, RecordError, Samples};
+use crate::interpolation::{FitObserver, FitProgress, FitStage, Method, Record, RecordError, Samples};
 use crate::shifted::{Motion, Shifts};
 use crate::{Mat, MatRef};
 use interfaces::{Point, Rotation, Vector};
@@ -23,6 +23,7 @@ impl Paths {
         points: MatRef<'_, f64>,
         shifts: &dyn Shifts,
         method: Option<&dyn Method>,
+        observer: FitObserver<'_>,
     ) -> Result<Self, ModelError> {
         let (frames, m) = (shifts.n_frames(), shifts.n_snapshots());
         ModelError::same("motions of every frame, one for each snapshot", points.ncols(), m)?;
@@ -44,7 +45,9 @@ impl Paths {
         let function = if moving.is_empty() {
             None
         } else {
-            Some(Coefficients::fit(&Samples::new(points, values.as_ref())?, method)?)
+            let samples = Samples::new(points, values.as_ref())?;
+            let stage = FitProgress::new(FitStage::Paths, 1, 1);
+            Some(stage.run(observer, |observer| Coefficients::fit(&samples, method, observer))?)
         };
         Ok(Self { centres: (0..frames).map(|k| shifts.motion(k, 0).centre).collect(), moving, function })
     }

@@ -3,7 +3,7 @@ use super::assessment::Sums;
 use super::coefficients::Coefficients;
 use super::modes::write_modes;
 use super::{Assessment, Extrapolation, ModelError};
-use crate::interpolation::{Method, Record, RecordError, Samples};
+use crate::interpolation::{FitObserver, Method, Record, RecordError, Samples, unobserved};
 use crate::pod::{Pod, combine};
 use crate::shifted::{Grid, ShiftedError};
 use crate::{Mat, MatRef};
@@ -34,12 +34,26 @@ impl Podiann {
     /// # Errors
     /// [`ModelError`]: sizes that do not fit, and those of the interpolation.
     pub fn new(points: MatRef<'_, f64>, pod: &Pod, method: Option<&dyn Method>) -> Result<Self, ModelError> {
+        Self::new_observed(points, pod, method, &mut unobserved)
+    }
+    /// The same with an observer: methods compared, error estimates, and the fit of all samples.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new);
+    /// [`InterpolationError::Stopped`](crate::interpolation::InterpolationError::Stopped) by the
+    /// observer.
+    pub fn new_observed(
+        points: MatRef<'_, f64>,
+        pod: &Pod,
+        method: Option<&dyn Method>,
+        observer: FitObserver<'_>,
+    ) -> Result<Self, ModelError> {
         let m = points.ncols();
         ModelError::same("columns of coefficients, one for each point", m, pod.coefficients.ncols())?;
         let values = pod.scaled_coefficients();
         let coefficients = match pod.rank() {
             0 => None,
-            _ => Some(Coefficients::fit(&Samples::new(points, values.as_ref())?, method)?),
+            _ => Some(Coefficients::fit(&Samples::new(points, values.as_ref())?, method, observer)?),
         };
         let weight = |i: usize| pod.weights.as_ref().map_or(1.0, |w| w[i]);
         let mean = pod.mean.iter().flatten().enumerate().map(|(i, x)| weight(i) * x * x).sum::<f64>();
@@ -147,6 +161,13 @@ impl Podiann {
         points: MatRef<'_, f64>,
         snapshots: MatRef<'_, f64>,
     ) -> Result<Assessment, ModelError> {
+        self.sums(points, snapshots).map(Sums::assessment)
+    }
+    pub(super) fn sums(
+        &self,
+        points: MatRef<'_, f64>,
+        snapshots: MatRef<'_, f64>,
+    ) -> Result<Sums, ModelError> {
         ModelError::same("snapshots, one for each point", points.ncols(), snapshots.ncols())?;
         let mut sums = Sums::default();
         let (mut nearest, mut predicted) = (vec![0.0; self.rows()], vec![0.0; self.rows()]);
@@ -157,7 +178,7 @@ impl Podiann {
             self.pod.reconstruct(&self.pod.project(&snapshot)?, &mut nearest)?;
             sums.add(&snapshot, &nearest, &predicted);
         }
-        Ok(sums.assessment())
+        Ok(sums)
     }
 
     /// All of it, for a file.

@@ -5,7 +5,7 @@ use super::modes::write_modes;
 use super::moving_modes::{CoefficientFit, MovingModes};
 use super::paths::Paths;
 use super::{Assessment, Extrapolation, ModelError};
-use crate::interpolation::{Method, Record, RecordError};
+use crate::interpolation::{FitObserver, FitProgress, FitStage, Method, Record, RecordError, unobserved};
 use crate::pod::combine;
 use crate::shifted::{
     Decomposition, FieldShift, FrameOperators, Grid, GridFrames, Interpolation, Motion, Motions,
@@ -66,6 +66,22 @@ impl Spodiann {
         shifts: &dyn Shifts,
         params: SpodiannParams<'_>,
     ) -> Result<Self, ModelError> {
+        Self::new_observed(points, decomposition, (grid, interpolation), shifts, params, &mut unobserved)
+    }
+    /// The same with an observer: [`FitStage::Paths`], then [`FitStage::Frame`] for each.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new);
+    /// [`InterpolationError::Stopped`](crate::interpolation::InterpolationError::Stopped) by the
+    /// observer.
+    pub fn new_observed(
+        points: MatRef<'_, f64>,
+        decomposition: &Decomposition,
+        (grid, interpolation): (Grid, Interpolation),
+        shifts: &dyn Shifts,
+        params: SpodiannParams<'_>,
+        observer: FitObserver<'_>,
+    ) -> Result<Self, ModelError> {
         let (frames, m) = (&decomposition.frames, points.ncols());
         ModelError::same("frames of the shifts", frames.len(), shifts.n_frames())?;
         ModelError::same("motions of every frame, one for each point", m, shifts.n_snapshots())?;
@@ -74,7 +90,7 @@ impl Spodiann {
         if rows == 0 || !rows.is_multiple_of(grid.n_cells()) {
             return Err(ShiftedError::Rows { rows, cells: grid.n_cells() }.into());
         }
-        let paths = Paths::fit(points, shifts, params.paths)?;
+        let paths = Paths::fit(points, shifts, params.paths, &mut *observer)?;
         let mut squares = 0.0;
         let mut moving = Vec::new();
         for (k, frame) in frames.iter().enumerate() {
@@ -82,7 +98,10 @@ impl Spodiann {
             ModelError::same("coefficients of a frame, one for each point", m, frame.coefficients.ncols())?;
             squares += frame.singular_values.iter().map(|s| s * s).sum::<f64>();
             let motions = |j: usize| shifts.motion(k, j);
-            moving.push(MovingModes::fit(points, frame, &grid, &motions, params.coefficients)?);
+            let fit = |observer: FitObserver<'_>| {
+                MovingModes::fit(points, frame, &grid, &motions, params.coefficients, observer)
+            };
+            moving.push(FitProgress::new(FitStage::Frame, k + 1, frames.len()).run(&mut *observer, fit)?);
         }
         Ok(Self {
             interpolation,
@@ -243,6 +262,14 @@ impl Spodiann {
         snapshots: MatRef<'_, f64>,
         shifts: &dyn Shifts,
     ) -> Result<Assessment, ModelError> {
+        self.sums(points, snapshots, shifts).map(Sums::assessment)
+    }
+    pub(super) fn sums(
+        &self,
+        points: MatRef<'_, f64>,
+        snapshots: MatRef<'_, f64>,
+        shifts: &dyn Shifts,
+    ) -> Result<Sums, ModelError> {
         ModelError::same("snapshots, one for each point", points.ncols(), snapshots.ncols())?;
         ModelError::same("rows of the snapshots", self.rows, snapshots.nrows())?;
         ModelError::same("frames of the shifts", self.frames.len(), shifts.n_frames())?;
@@ -257,7 +284,7 @@ impl Spodiann {
             let nearest = self.nearest(&snapshot, |k| shifts.motion(k, j))?;
             sums.add(&snapshot, &nearest, &predicted);
         }
-        Ok(sums.assessment())
+        Ok(sums)
     }
 
     /// The field nearest to a snapshot that the modes have in frames at these places.

@@ -32,8 +32,12 @@ impl Method for ByFitting<'_> {
     fn name(&self) -> String {
         self.0.name()
     }
-    fn fit(&self, s: &Samples) -> Result<Box<dyn crate::interpolation::Interpolator>, InterpolationError> {
-        self.0.fit(s)
+    fn fit_observed(
+        &self,
+        s: &Samples,
+        observer: FitObserver<'_>,
+    ) -> Result<Box<dyn crate::interpolation::Interpolator>, InterpolationError> {
+        self.0.fit_observed(s, observer)
     }
 }
 
@@ -46,8 +50,8 @@ fn radial_functions_need_no_fits() {
     let folds = Folds::random(&samples, 4, 2).unwrap();
     for kernel in Kernel::ALL {
         let method = RbfParams::new(kernel).with_shape(Shape::Fixed(0.9));
-        let closed = method.left_out(&samples, &folds).unwrap();
-        let fitted = ByFitting(&method).left_out(&samples, &folds).unwrap();
+        let closed = method.left_out(&samples, &folds, &mut unobserved).unwrap();
+        let fitted = ByFitting(&method).left_out(&samples, &folds, &mut unobserved).unwrap();
         for (closed, fitted) in closed.iter().zip(&fitted) {
             let off = (closed - fitted).norm_max();
             assert!(
@@ -87,7 +91,7 @@ proptest! {
         let f = |x: f64| c[..=degree.get()].iter().rev().fold(0.0, |sum, c| sum * x + c);
         let samples = line(m, f);
         let folds = Folds::leave_one_out(&samples);
-        let errors = SplineParams::new(degree).left_out(&samples, &folds).unwrap();
+        let errors = SplineParams::new(degree).left_out(&samples, &folds, &mut unobserved).unwrap();
         let largest = errors.iter().map(|of: &Mat<f64>| of.norm_max()).fold(0.0, f64::max);
         prop_assert!(largest < 1e-10, "{largest:e}");
     }

@@ -3,6 +3,7 @@ use super::layers::Layers;
 use super::lbfgs::{self, Limits};
 use super::misfit::Misfit;
 use super::{Activation, NetworkParams};
+use crate::interpolation::{FitObserver, FitProgress, FitStage};
 use crate::{Mat, MatRef};
 use cpu_time::ThreadTime;
 use rand::{RngExt, SeedableRng};
@@ -23,6 +24,8 @@ pub enum Stop {
     LineSearch,
     /// The loss is not a number.
     NotFinite,
+    /// The observer stopped it.
+    Observer,
 }
 
 /// State of one iteration.
@@ -49,6 +52,8 @@ pub struct Report {
     pub kept: usize,
     /// Which start this was, from 0.
     pub start: usize,
+    /// Whether the observer stopped the training, in this start or a later one.
+    pub stopped: bool,
     /// CPU seconds of all starts together.
     pub cpu_seconds: f64,
     /// Samples that were held out.
@@ -81,20 +86,30 @@ pub(super) struct Data {
 const RIDGES: [f64; 5] = [1e-12, 1e-14, 1e-16, 1e-18, 1e-20];
 
 /// The best of several starts.
-pub(super) fn train(params: &NetworkParams, layers: &Layers, data: &Data) -> (Vec<f64>, Report) {
+pub(super) fn train(
+    params: &NetworkParams,
+    layers: &Layers,
+    data: &Data,
+    observer: FitObserver<'_>,
+) -> (Vec<f64>, Report) {
     let begin = ThreadTime::now();
-    let mut best = one(params, layers, data, 0);
+    let mut best = one(params, layers, data, 0, &mut *observer);
     for start in 1..params.starts {
-        let other = one(params, layers, data, start);
+        if best.1.stopped {
+            break;
+        }
+        let other = one(params, layers, data, start, &mut *observer);
+        let stopped = other.1.stopped;
         if other.1.score() < best.1.score() {
             best = other;
         }
+        best.1.stopped = stopped;
     }
     best.1.cpu_seconds = begin.elapsed().as_secs_f64();
     best
 }
 
-/// Keeps the best weights seen.
+/// Keeps the best weights seen, and reports every loss.
 struct Watch<'a> {
     held: Option<Misfit<'a>>,
     patience: usize,
@@ -103,6 +118,10 @@ struct Watch<'a> {
     weights: Vec<f64>,
     /// Since when the best has not changed.
     since: usize,
+    /// Start, and descent with the number of its losses at most.
+    start: FitProgress<'static>,
+    descent: FitProgress<'static>,
+    observer: FitObserver<'a>,
 }
 
 impl Watch<'_> {
@@ -121,11 +140,23 @@ impl Watch<'_> {
             self.report.kept = self.report.history.len() - 1;
             self.since = 0;
         }
+        self.descent.step += 1;
+        let progress = FitProgress { inner: Some(&self.descent.with_loss(loss)), ..self.start };
+        if (self.observer)(&progress).is_break() {
+            self.report.stopped = true;
+            return Some(Stop::Observer);
+        }
         (validation.is_some() && self.since >= self.patience).then_some(Stop::Validation)
     }
 }
 
-fn one(params: &NetworkParams, layers: &Layers, data: &Data, start: usize) -> (Vec<f64>, Report) {
+fn one(
+    params: &NetworkParams,
+    layers: &Layers,
+    data: &Data,
+    start: usize,
+    observer: FitObserver<'_>,
+) -> (Vec<f64>, Report) {
     let [x, y] = data.train.each_ref().map(Mat::as_ref);
     let initial = initial(params, layers, x, &data.steepness, start);
     let mut misfit = Misfit::new(layers, [x, y], params.decay, params.eliminate);
@@ -137,6 +168,7 @@ fn one(params: &NetworkParams, layers: &Layers, data: &Data, start: usize) -> (V
         lbfgs_stop: Stop::Iterations,
         kept: 0,
         start,
+        stopped: false,
         cpu_seconds: 0.0,
         held_out: data.held_out.clone(),
     };
@@ -147,6 +179,9 @@ fn one(params: &NetworkParams, layers: &Layers, data: &Data, start: usize) -> (V
         best: f64::INFINITY,
         weights: initial.clone(),
         since: 0,
+        start: FitProgress::new(FitStage::Start, start + 1, params.starts),
+        descent: FitProgress::new(FitStage::Adam, 0, params.adam.steps),
+        observer,
     };
     let mut theta = initial[..misfit.len()].to_vec();
     let needed: Vec<f64> =
@@ -156,15 +191,20 @@ fn one(params: &NetworkParams, layers: &Layers, data: &Data, start: usize) -> (V
     watch.report.adam_stop =
         params.adam.minimise(&mut misfit, &mut theta, &mut |m, loss| watch.see(m.weights(), loss));
     watch.report.adam_steps = watch.report.history.len();
+    if watch.report.stopped {
+        watch.report.lbfgs_stop = Stop::Observer;
+        return (watch.weights, watch.report);
+    }
     theta.copy_from_slice(&watch.weights[..misfit.len()]);
     watch.since = 0;
     let iterations = params.iterations.div_ceil(ridges.len());
+    watch.descent = FitProgress::new(FitStage::Lbfgs, 0, ridges.len() * (iterations + 1));
     let limits = Limits { iterations, memory: 20, gradient: 1e-14, decrease: 1e-9 };
     for ridge in ridges {
         misfit.ridge = ridge;
         watch.report.lbfgs_stop =
             lbfgs::minimise(&mut misfit, &mut theta, &limits, &mut |m, loss| watch.see(m.weights(), loss));
-        if matches!(watch.report.lbfgs_stop, Stop::Validation | Stop::NotFinite) {
+        if matches!(watch.report.lbfgs_stop, Stop::Validation | Stop::NotFinite | Stop::Observer) {
             break;
         }
     }

@@ -2,7 +2,7 @@
 use super::terms::Terms;
 use crate::Mat;
 use crate::interpolation::spline::Axis;
-use crate::interpolation::{Degree, Folds, InterpolationError, Samples};
+use crate::interpolation::{Degree, FitObserver, FitProgress, FitStage, Folds, InterpolationError, Samples};
 use monomorphic::{Qr, solve_positive};
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -128,20 +128,30 @@ impl Fit<'_> {
     }
 
     /// The complexity with the smallest risk that steps from the simplest one lead to.
-    pub(super) fn best(&self, folds: &Folds) -> Result<Complexity, InterpolationError> {
+    pub(super) fn best(
+        &self,
+        folds: &Folds,
+        observer: FitObserver<'_>,
+    ) -> Result<Complexity, InterpolationError> {
         let (m, p) = (self.samples.len(), self.degree.get());
         let phases = self.samples.inputs() > self.slow;
         let mut known = HashMap::new();
-        let mut error = |of: Complexity| {
+        let mut error = |of: Complexity| -> Result<f64, InterpolationError> {
             let sensible = RIDGES.contains(&of.ridge)
                 && (self.slow > 1 || of.parameters == 0)
                 && (phases || of.harmonics == 0)
                 && (of.harmonics > 0 || of.variation == 0)
                 && of.pieces() + p <= self.times.len();
             if !sensible || self.terms(of).len() >= m {
-                return f64::INFINITY;
+                return Ok(f64::INFINITY);
             }
-            *known.entry(of).or_insert_with(|| self.risk(of, folds))
+            if let Some(&risk) = known.get(&of) {
+                return Ok(risk);
+            }
+            let risk = self.risk(of, folds);
+            known.insert(of, risk);
+            FitProgress::new(FitStage::Terms, known.len(), None).with_loss(risk).report(&mut *observer)?;
+            Ok(risk)
         };
         let first = Complexity {
             pieces: 0,
@@ -150,13 +160,16 @@ impl Fit<'_> {
             harmonics: usize::from(phases),
             ridge: 4,
         };
-        let mut best = (first, error(first));
+        let mut best = (first, error(first)?);
         // Two at once where one alone is no gain: even and odd terms may do nothing by turns.
-        while let Some(next) = [1, 2].into_iter().find_map(|step| {
-            let all = best.0.neighbours(step).map(|of| (of, error(of)));
-            all.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|next| next.1 < GAIN * best.1)
-        }) {
-            best = next;
+        let mut step = 1;
+        while step <= 2 {
+            let all = best.0.neighbours(step).map(|of| Ok((of, error(of)?)));
+            let all = all.collect::<Result<Vec<_>, InterpolationError>>()?;
+            match all.into_iter().min_by(|a, b| a.1.total_cmp(&b.1)) {
+                Some(next) if next.1 < GAIN * best.1 => (best, step) = (next, 1),
+                _ => step += 1,
+            }
         }
         if best.1.is_finite() {
             return Ok(best.0);

@@ -2,7 +2,7 @@
 use crate::setup::{Coefficients, ModelSetup};
 use crate::view::View;
 use interfaces::Pose;
-use mor::interpolation::{Method, NetworkParams, Record, Samples, SplineParams};
+use mor::interpolation::{FitProgress, Method, NetworkParams, Record, Samples, SplineParams};
 use mor::models::{Assessment, CoefficientFit, ModelError, Podiann, Spodiann, SpodiannParams};
 use mor::pod::{Pod, PodParams, Rank};
 use mor::shifted::{
@@ -107,10 +107,13 @@ impl Fitted {
                 Some(&spline)
             }
         };
+        let mut fit_observer =
+            |_: &FitProgress<'_>| if go_on() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
         let fitted = if paths.is_empty() {
             let params = PodParams { weights: volumes(view, all.nrows()), ..modes(setup) };
             let pod = Pod::new(training.snapshots.as_ref(), &params)?;
-            Self::Still(Box::new(Podiann::new(training.points.as_ref(), &pod, method)?))
+            Podiann::new_observed(training.points.as_ref(), &pod, method, &mut fit_observer)
+                .map(|model| Self::Still(Box::new(model)))
         } else {
             let grid = grid(view, setup.interpolation)?;
             let ranks = setup.ranks.clone().map_or(Ranks::Found, Ranks::Given);
@@ -125,13 +128,13 @@ impl Fitted {
             }
             let params = SpodiannParams { coefficients: method, paths: None };
             let how = (grid, setup.interpolation);
-            Self::Moving(Box::new(Spodiann::new(
-                training.points.as_ref(),
-                &found,
-                how,
-                &training.motions,
-                params,
-            )?))
+            let (points, motions) = (training.points.as_ref(), &training.motions);
+            Spodiann::new_observed(points, &found, how, motions, params, &mut fit_observer)
+                .map(|model| Self::Moving(Box::new(model)))
+        };
+        let fitted = match fitted {
+            Err(error) if error.is_stopped() => return Ok(None),
+            fitted => fitted?,
         };
         let assess = |which: &[usize]| -> Result<Value, Failure> {
             let Assessment { projection, interpolation, total } =

@@ -11,6 +11,7 @@ mod moving_modes;
 mod paths;
 mod podiann;
 mod spodiann;
+mod validation;
 
 pub use assessment::Assessment;
 pub use error::ModelError;
@@ -18,3 +19,7 @@ pub use extrapolation::Extrapolation;
 pub use moving_modes::CoefficientFit;
 pub use podiann::Podiann;
 pub use spodiann::{Spodiann, SpodiannParams};
+pub use validation::{
+    Decompose, ModelValidation, validate_podiann, validate_podiann_observed, validate_spodiann,
+    validate_spodiann_observed,
+};

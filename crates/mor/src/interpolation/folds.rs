@@ -11,6 +11,24 @@ pub struct Folds {
 }
 
 impl Folds {
+    /// Sets given, of `samples` samples: whole runs, say.
+    ///
+    /// # Errors
+    /// [`InterpolationError::TooFew`] if a set is empty or has all samples,
+    /// [`InterpolationError::Parameter`] if it has one that is not there.
+    pub fn new(samples: usize, sets: Vec<Vec<usize>>) -> Result<Self, InterpolationError> {
+        let folds = Self { sets };
+        folds.check(samples)?;
+        Ok(folds)
+    }
+    /// All samples, shared out at random among k sets that differ by one at most, also those at the
+    /// ends: k-fold cross-validation; leave-one-out if k is the number of samples.
+    ///
+    /// # Errors
+    /// As [`random`](Self::random).
+    pub fn k_fold(samples: &Samples, k: usize, seed: u64) -> Result<Self, InterpolationError> {
+        Self::dealt(&shuffled((0..samples.len()).collect(), seed), k)
+    }
     /// Every sample alone, also those at the ends: predictions there are extrapolations.
     #[must_use]
     pub fn leave_one_out(samples: &Samples) -> Self {
@@ -27,12 +45,7 @@ impl Folds {
     /// [`InterpolationError::Parameter`] if there are fewer than two sets, [`InterpolationError::TooFew`] if there are fewer such
     /// samples.
     pub fn random(samples: &Samples, sets: usize, seed: u64) -> Result<Self, InterpolationError> {
-        let mut order = inside(samples);
-        let mut random = Pcg64::seed_from_u64(seed);
-        for i in (1..order.len()).rev() {
-            order.swap(i, random.random_range(0..=i));
-        }
-        Self::dealt(&order, sets)
+        Self::dealt(&shuffled(inside(samples), seed), sets)
     }
     /// The samples between the ends, shared out in the order of the first input: with one input each is predicted from neighbours on
     /// both sides.
@@ -115,7 +128,7 @@ impl Folds {
             return Err(InterpolationError::Parameter { what, value, must });
         }
         if order.len() < count {
-            return Err(too_few("cross-validation", "samples between the ends", count, order.len()));
+            return Err(too_few("cross-validation", "samples to leave out", count, order.len()));
         }
         let set = |first: usize| order.iter().skip(first).step_by(count).copied().collect();
         Ok(Self { sets: (0..count).map(set).collect() })
@@ -125,11 +138,40 @@ impl Folds {
     pub fn some(&self, most: usize) -> Self {
         Self { sets: thinned(0..self.sets.len(), most).map(|i| self.sets[i].clone()).collect() }
     }
+    /// Checks that every set has some, but not all, of so many samples.
+    pub(crate) fn check(&self, samples: usize) -> Result<(), InterpolationError> {
+        let what = "leaving out a set";
+        if self.sets.is_empty() {
+            return Err(too_few("cross-validation", "sets", 1, 0));
+        }
+        for set in &self.sets {
+            if set.is_empty() {
+                return Err(too_few(what, "samples in each set", 1, 0));
+            }
+            if let Some(&sample) = set.iter().find(|&&sample| sample >= samples) {
+                let (what, must) = ("index of a sample left out", "below the number of samples");
+                return Err(InterpolationError::Parameter { what, value: sample as f64, must });
+            }
+            if (0..samples).all(|sample| set.contains(&sample)) {
+                return Err(too_few(what, "samples that are not left out", 1, 0));
+            }
+        }
+        Ok(())
+    }
     /// Samples of each set.
     #[must_use]
     pub fn sets(&self) -> &[Vec<usize>] {
         &self.sets
     }
+}
+
+/// Shuffles them.
+fn shuffled(mut order: Vec<usize>, seed: u64) -> Vec<usize> {
+    let mut random = Pcg64::seed_from_u64(seed);
+    for i in (1..order.len()).rev() {
+        order.swap(i, random.random_range(0..=i));
+    }
+    order
 }
 
 fn too_few(what: &str, of: &'static str, needed: usize, found: usize) -> InterpolationError {

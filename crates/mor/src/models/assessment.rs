@@ -20,6 +20,15 @@ pub(super) struct Sums {
     off: f64,
 }
 
+impl std::ops::AddAssign for Sums {
+    fn add_assign(&mut self, other: Self) {
+        self.whole += other.whole;
+        self.left += other.left;
+        self.apart += other.apart;
+        self.off += other.off;
+    }
+}
+
 impl Sums {
     /// A snapshot, the nearest field the modes have, and the prediction.
     pub(super) fn add(&mut self, snapshot: &[f64], nearest: &[f64], predicted: &[f64]) {

@@ -14,6 +14,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 mod base64;
+mod cell_order;
 mod error;
 mod npy;
 mod npy_writer;

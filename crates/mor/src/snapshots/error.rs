@@ -57,6 +57,18 @@ pub enum SnapshotError {
         /// How many there are.
         found: usize,
     },
+    /// The axes of an array are not in the order of a grid's cells.
+    #[error("{}: cells {cells:?}, x fastest, are needed; {found}: {remedy}", path.display())]
+    CellOrder {
+        /// Of the file.
+        path: PathBuf,
+        /// Cells along x, y, z.
+        cells: Vec<usize>,
+        /// Shape of the array, and lengths of the axes that make the rows from the fastest.
+        found: String,
+        /// Remedy.
+        remedy: String,
+    },
     /// There is no array of that name.
     #[error("{}: there is no array `{name}`; there are {there:?}", path.display())]
     NoArray {

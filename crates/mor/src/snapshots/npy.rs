@@ -19,14 +19,51 @@ pub enum SnapshotAxis {
 
 /// An array of a `.npy` file: float32 or float64 of either byte order, C or Fortran order, formats 1 to 3 (NEP 1). Only its header is read when it is opened.
 ///
+/// Rows are those of a [`Grid`](crate::shifted::Grid) of n_x, n_y, n_z cells if x is the fastest
+/// axis in memory, then y, z, and the components of a vector the slowest:
+/// [`on_cells`](Self::on_cells) checks it. `a` of each shape in NumPy, what to save, and the axis
+/// of the snapshots (`np.save` keeps the order in memory of contiguous arrays, Fortran's, too):
+///
+/// | shape of `a` | command | `SnapshotAxis` |
+/// |---|---|---|
+/// | (time, z, y, x) | `np.save(f, np.ascontiguousarray(a))` | `First` |
+/// | (time, y, x, component) | `np.save(f, np.ascontiguousarray(a.transpose(0, 3, 1, 2)))` | `First` |
+/// | (y, x, time) | `np.save(f, np.ascontiguousarray(a))` | `Last` |
+/// | (x, y, z, time), Fortran order | `np.save(f, np.asfortranarray(a))` | `Last` |
+/// | (time, y, x), Fortran order | `np.save(f, np.ascontiguousarray(a))` | `First` |
+/// | (time, cells), x fastest | `np.save(f, a)` | `First` |
+///
+/// ```
+/// use mor::snapshots::{NpyArray, SnapshotAxis, SnapshotSource};
+/// let path = std::env::temp_dir().join(format!("mor-order-{}.npy", std::process::id()));
+/// // np.save(path, a): a of shape (time, y, x) = (2, 3, 4) with a[t, y, x] = 100 t + 10 y + x.
+/// let header = b"{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3, 4), }\n";
+/// let mut file = b"\x93NUMPY\x01\x00".to_vec();
+/// file.extend((header.len() as u16).to_le_bytes());
+/// file.extend(header);
+/// for i in 0..24 {
+///     file.extend(f64::from(100 * (i / 12) + 10 * (i / 4 % 3) + i % 4).to_le_bytes());
+/// }
+/// std::fs::write(&path, file)?;
+/// let all = NpyArray::open(&path, SnapshotAxis::First)?.on_cells([4, 3])?.to_mat()?;
+/// let cell = |x: usize, y: usize| x + 4 * y;
+/// assert_eq!(all.shape(), (12, 2));
+/// assert_eq!(all[(cell(3, 1), 1)], 113.0);
+/// // The same array on 3 × 4 cells: the error has the command.
+/// let error = NpyArray::open(&path, SnapshotAxis::First)?.on_cells([3, 4]).err().unwrap();
+/// assert!(error.to_string().contains("np.ascontiguousarray(a.transpose(0, 2, 1))"));
+/// # std::fs::remove_file(path)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// Snapshots that lie one after the other (C order with [`SnapshotAxis::First`], Fortran order with [`SnapshotAxis::Last`]) are read fastest in blocks of columns,
 /// others in blocks of rows.
 pub struct NpyArray {
-    path: PathBuf,
+    pub(super) path: PathBuf,
     data: Data,
-    shape: Vec<usize>,
-    fortran: bool,
-    axis: SnapshotAxis,
+    pub(super) shape: Vec<usize>,
+    pub(super) fortran: bool,
+    pub(super) axis: SnapshotAxis,
     kind: Number,
 }
 

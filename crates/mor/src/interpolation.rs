@@ -30,6 +30,24 @@
 //! assert!((y[0] - 0.42_f64.sin() * 1.15).abs() < 1e-6);
 //! # Ok::<(), mor::interpolation::InterpolationError>(())
 //! ```
+//!
+//! Every fit here and of [`models`](crate::models) has a variant with a [`FitObserver`], which gets
+//! the stages under way and the loss ([`FitProgress`]) and may stop it.
+//!
+//! ```
+//! use mor::Mat;
+//! use mor::interpolation::{NetworkParams, Samples};
+//! use std::ops::ControlFlow;
+//! let times: Vec<f64> = (0..30).map(f64::from).collect();
+//! let values = Mat::from_fn(1, 30, |_, i| (0.3 * times[i]).sin());
+//! let samples = Samples::of_one_input(&times, values.as_ref())?;
+//! let network = NetworkParams::new(&[8]).network_observed(&samples, &mut |progress| {
+//!     let loss = progress.innermost().loss.unwrap_or(f64::INFINITY);
+//!     if loss < 1e-4 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+//! })?;
+//! assert!(network.report().is_some_and(|report| report.stopped && report.score() < 1e-4));
+//! # Ok::<(), mor::interpolation::InterpolationError>(())
+//! ```
 mod choice;
 mod cross_validation;
 mod error;

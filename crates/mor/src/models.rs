@@ -1,6 +1,8 @@
 //! Models that predict a whole field at any time and parameter from a few numbers: modes, and functions that interpolate their coefficients (figure 8 of Isoz et al. 2023).
 //!
 //! [`Podiann`]: the modes of a [`Pod`](crate::pod::Pod), with functions for their coefficients. [`Spodiann`]: modes that frames of reference carry along, with functions for their coefficients and for the frames' paths.
+//!
+//! [`validate_podiann`] and [`validate_spodiann`] cross-validate whole models, modes included.
 mod assessment;
 mod coefficients;
 mod error;

@@ -226,6 +226,8 @@ fn models_with_modes_that_stay() {
         let alone = Podiann::new(samples.points(), &pod, method).unwrap();
         assert_eq!(found.unwrap().record().to_bytes(), alone.record().to_bytes());
         assert_eq!(stages(&chains), expected);
+        let fits = chains.iter().filter(|chain| chain.len() == 1 && kind(&chain[0].0).0 == "fit by");
+        assert_eq!(fits.count(), 1, "all samples are fitted once");
     }
 }
 

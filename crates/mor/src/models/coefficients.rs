@@ -21,11 +21,12 @@ pub(super) struct Coefficients {
     error: f64,
 }
 
-/// A method for samples and the number of their slow inputs.
+/// A method for samples and the number of their slow inputs, and its function of all samples.
 pub(super) struct Choice<'a> {
     samples: &'a Samples,
     slow: usize,
     method: Box<dyn Method + 'a>,
+    function: Box<dyn Interpolator>,
     /// Relative error of samples left out; 0 if they are too few to leave any out.
     pub(super) left_out: f64,
 }
@@ -74,31 +75,34 @@ impl<'a> Choice<'a> {
                 both
             }
         };
-        let (chosen, left_out) = match &folds {
+        let (chosen, left_out, function) = match &folds {
             Ok(folds) => {
                 let best = best_of_observed(&tried, samples, folds, observer)?;
                 let error = best.table.rows[best.chosen].outcome.as_ref().map_or(0.0, |row| row.error);
-                (best.chosen, error)
+                (best.chosen, error, best.interpolator)
             }
             // Too few samples to leave any out.
-            Err(_) => (if given.is_some() { 0 } else { tried.len().saturating_sub(1) }, 0.0),
+            Err(_) => {
+                let chosen = if given.is_some() { 0 } else { tried.len().saturating_sub(1) };
+                let what = "methods that suit the samples";
+                let method = tried.get(chosen).ok_or(ModelError::Shape { what, expected: 1, found: 0 })?;
+                let stage = FitStage::Fit(&method.name());
+                let function = FitProgress::new(stage, 1, 1)
+                    .run(observer, |observer| method.fit_observed(samples, observer))?;
+                (chosen, 0.0, function)
+            }
         };
-        if tried.is_empty() {
-            return Err(ModelError::Shape { what: "methods that suit the samples", expected: 1, found: 0 });
-        }
-        Ok(Self { samples, slow, method: tried.remove(chosen), left_out })
+        Ok(Self { samples, slow, method: tried.remove(chosen), function, left_out })
     }
 
-    /// The function, by all samples.
+    /// The function with estimates of its error.
     pub(super) fn fit(self, observer: FitObserver<'_>) -> Result<Coefficients, ModelError> {
-        let Self { samples, slow, method, left_out } = self;
-        let estimates = LeaveOut::all(samples, slow, method.as_ref(), &mut *observer)?;
+        let Self { samples, slow, method, function, left_out } = self;
+        let estimates = LeaveOut::all(samples, slow, method.as_ref(), observer)?;
         // A value left out doubles the distance: at order 2 or more the error is a quarter of that or less.
         let known = estimates.iter().flat_map(LeaveOut::inputs).count() == slow;
         let typical = (samples.values().squared_norm_l2() / samples.len() as f64).sqrt();
         let unseen = if known { 0.0 } else { 0.25 * left_out * typical };
-        let function = FitProgress::new(FitStage::Fit(&method.name()), 1, 1)
-            .run(observer, |observer| method.fit_observed(samples, observer))?;
         let misfit = (function.predict_all(samples.points())? - samples.values()).norm_l2();
         Ok(Coefficients {
             function,

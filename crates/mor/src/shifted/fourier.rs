@@ -3,7 +3,9 @@
 //! There T^s multiplies the coefficient of wave vector κ by e^(−iκ·s): each wave vector is a problem of its own.
 mod als;
 mod amplitudes;
+mod batch;
 mod centring;
+mod cholesky;
 mod compression;
 mod descent;
 mod escapes;

@@ -16,6 +16,15 @@ pub(super) fn add(to: &mut Mat<f64>, factor: f64, x: &Mat<f64>) {
 }
 
 impl Amplitudes {
+    /// Each frame with its first column and how many it has.
+    pub(super) fn ranges(&self) -> impl Iterator<Item = (usize, [usize; 2])> {
+        let mut first = 0;
+        self.ranks.iter().enumerate().map(move |(k, &rank)| {
+            first += rank;
+            (k, [first - rank, rank])
+        })
+    }
+
     /// The frame of each column.
     pub(super) fn frames(&self) -> Vec<usize> {
         self.ranks.iter().enumerate().flat_map(|(k, &r)| vec![k; r]).collect()

@@ -1,5 +1,6 @@
 //! Where frames that move between cells are best at rest.
 use super::amplitudes::Amplitudes;
+use super::batch::{Batch, batches};
 use super::normal::Normal;
 use super::problem::{Piece, Problem};
 use super::spectrum::Spectrum;
@@ -54,22 +55,30 @@ pub(in crate::shifted) fn offsets(grid: &Grid, shifts: &dyn Shifts, spectrum: &S
         });
         let amplitudes = Amplitudes { ranks: vec![2; n_frames], values };
         let problem = Problem { phases: &spectrum.phases, pieces: Vec::new() };
-        let mut normal = Normal::new(&problem, &amplitudes);
+        let (mut normal, mut batch) = (Normal::new(&amplitudes), Batch::new(n));
         let mut sums = vec![[0.0; 3]; n_frames];
-        let mut energy = 0.0;
-        for group in spectrum.groups.iter().filter(|g| 2 * g.wave[axis] == cells) {
-            let mut wave = group.wave;
-            wave[axis] = 0;
-            let piece = Piece { wave, data: Cow::Borrowed(&group.data), weight: 1.0 };
-            normal.begin(&problem, &piece, &amplitudes);
-            normal.solve(&problem, &piece);
-            energy += group.energy;
-            for (number, phi) in normal.phi.chunks_exact(4).enumerate() {
-                // |u|², |v|² and Re ū v of u cos + v sin.
-                let [cosines, sines, both] = &mut sums[number % n_frames];
-                *cosines += phi[0].powi(2) + phi[1].powi(2);
-                *sines += phi[2].powi(2) + phi[3].powi(2);
-                *both += phi[0] * phi[2] + phi[1] * phi[3];
+        let shortest = || spectrum.groups.iter().filter(|g| 2 * g.wave[axis] == cells);
+        let pieces: Vec<_> = shortest()
+            .map(|group| {
+                let mut wave = group.wave;
+                wave[axis] = 0;
+                Piece { wave, data: Cow::Borrowed(&group.data), weight: 1.0 }
+            })
+            .collect();
+        let energy: f64 = shortest().map(|g| g.energy).sum();
+        for pieces in batches(n, &pieces) {
+            batch.load(&problem, pieces);
+            normal.solve(&mut batch);
+            for phi in normal.phi.chunks_exact(4 * n_frames) {
+                let (re, im) = phi.split_at(2 * n_frames);
+                for ([cosines, sines, both], (re, im)) in
+                    sums.iter_mut().zip(re.chunks_exact(2).zip(im.chunks_exact(2)))
+                {
+                    // |u|², |v|² and Re ū v of u cos + v sin.
+                    *cosines += re[0].powi(2) + im[0].powi(2);
+                    *sines += re[1].powi(2) + im[1].powi(2);
+                    *both += re[0] * re[1] + im[0] * im[1];
+                }
             }
         }
         // Fields that are no edges have much more there.

@@ -1,6 +1,8 @@
 //! The squared error of given amplitudes with the best modes.
 use super::amplitudes::{Amplitudes, add};
-use super::normal::{DAMPING, Normal, factorise, substitute};
+use super::batch::{Batch, batches};
+use super::cholesky::{factorise, substitute};
+use super::normal::{DAMPING, Normal, modes};
 use super::problem::{Piece, Problem};
 use crate::Mat;
 use rand::{RngExt, SeedableRng};
@@ -18,11 +20,13 @@ pub(super) struct Evaluation {
     pub(super) residual: f64,
     /// ∂f/∂A.
     pub(super) gradient: Mat<f64>,
-    /// For every snapshot the products of the fields of all modes, column r, s ≤ r being number r (r + 1)/2 + s: half the second
-    /// derivatives at given modes.
+    /// For every snapshot the products of the fields of two modes in the order of [`modes`]: half the
+    /// second derivatives at given modes.
     gram: Mat<f64>,
-    /// Φ of one wave vector after the other: real and imaginary parts by turns, a column for each of the data.
+    /// Φ of one wave vector after the other: for each column of the data real parts, then imaginary parts.
     pub(super) modes: Vec<f64>,
+    /// The modes of each column of `gram`.
+    pairs: Vec<[usize; 2]>,
 }
 
 fn squares(x: &[f64]) -> f64 {
@@ -37,13 +41,15 @@ fn sum<T: Send>(problem: &Problem<'_>, part: impl Fn(&[Piece<'_>]) -> T + Sync, 
 }
 
 impl Evaluation {
-    fn zero(n: usize, rank: usize) -> Self {
+    fn zero(a: &Amplitudes) -> Self {
+        let (n, rank) = a.values.shape();
         Self {
             value: 0.0,
             residual: 0.0,
             gradient: Mat::zeros(n, rank),
-            gram: Mat::zeros(n, rank * (rank + 1) / 2),
+            gram: Mat::zeros(n, modes(a).len()),
             modes: Vec::new(),
+            pairs: modes(a),
         }
     }
 
@@ -51,23 +57,24 @@ impl Evaluation {
     pub(super) fn new(problem: &Problem<'_>, a: &Amplitudes) -> Self {
         let (n, rank) = a.values.shape();
         let of = |pieces: &[Piece<'_>]| {
-            let (mut sum, mut normal) = (Self::zero(n, rank), Normal::new(problem, a));
-            let mut product = vec![0.0; 2 * n];
-            for piece in pieces {
-                normal.begin(problem, piece, a);
-                normal.solve(problem, piece);
-                let squared = piece.weight * squares(&normal.residual);
-                sum.residual += squared;
-                sum.value += squared + piece.weight * DAMPING * squares(&normal.phi);
-                let residual = std::mem::take(&mut normal.residual);
-                normal.add_gradient(&residual, piece.weight, &mut sum.gradient);
-                normal.residual = residual;
+            let (mut sum, mut normal, mut batch) = (Self::zero(a), Normal::new(a), Batch::new(n));
+            for pieces in batches(n, pieces) {
+                batch.load(problem, pieces);
+                normal.solve(&mut batch);
+                let residuals = normal.residual.chunks_exact(2 * n);
+                for (c, (residual, &p)) in residuals.zip(&batch.pieces).enumerate() {
+                    let squared = batch.weights[p] * squares(residual);
+                    let damped = batch.weights[p] * DAMPING;
+                    sum.residual += squared;
+                    sum.value += squared + damped * squares(&normal.phi[2 * rank * c..][..2 * rank]);
+                }
+                batch.add_gradient(a, &normal.phi, &normal.residual, &mut sum.gradient);
                 sum.modes.extend_from_slice(&normal.phi);
-                sum.add_gram(&normal, &a.frames(), piece.weight, &mut product);
+                normal.add_gram(&batch, &mut sum.gram);
             }
             sum
         };
-        let mut all = Self::zero(n, rank);
+        let mut all = Self::zero(a);
         sum(problem, of, |part: Self| {
             all.value += part.value;
             all.residual += part.residual;
@@ -83,16 +90,12 @@ impl Evaluation {
         let (n, rank) = a.values.shape();
         let direction = Amplitudes { ranks: a.ranks.clone(), values: direction.clone() };
         let of = |pieces: &[Piece<'_>]| {
-            let (mut normal, mut other) = (Normal::new(problem, a), Normal::new(problem, &direction));
-            let mut sum = Mat::zeros(n, rank);
-            for piece in pieces {
-                normal.begin(problem, piece, a);
-                normal.solve(problem, piece);
-                other.begin(problem, piece, &direction);
-                normal.differentiate(&other);
-                let residual = std::mem::take(&mut normal.residual);
-                normal.add_gradient(&residual, piece.weight, &mut sum);
-                normal.residual = residual;
+            let (mut sum, mut normal, mut batch) = (Mat::zeros(n, rank), Normal::new(a), Batch::new(n));
+            for pieces in batches(n, pieces) {
+                batch.load(problem, pieces);
+                normal.solve(&mut batch);
+                normal.differentiate(&mut batch, &direction);
+                batch.add_gradient(a, &normal.phi, &normal.residual, &mut sum);
             }
             sum
         };
@@ -101,46 +104,14 @@ impl Evaluation {
         all
     }
 
-    /// Re Σ p̄_r p_s φ̄_r φ_s
-    fn add_gram(&mut self, normal: &Normal, frames: &[usize], weight: f64, product: &mut [f64]) {
-        let rank = frames.len();
-        let n = product.len() / 2;
-        let mut of = None;
-        for r in 0..rank {
-            for s in 0..=r {
-                let (k, l) = (frames[r], frames[s]);
-                if of != Some((k, l)) {
-                    let ((pr, pi), (qr, qi)) = (normal.phase(k), normal.phase(l));
-                    let (re, im) = product.split_at_mut(n);
-                    for j in 0..n {
-                        re[j] = pr[j] * qr[j] + pi[j] * qi[j];
-                        im[j] = pr[j] * qi[j] - pi[j] * qr[j];
-                    }
-                    of = Some((k, l));
-                }
-                let (mut x, mut y) = (0.0, 0.0);
-                for phi in normal.phi.chunks_exact(2 * rank) {
-                    let (a, b) = (&phi[2 * r..][..2], &phi[2 * s..][..2]);
-                    x += weight * (a[0] * b[0] + a[1] * b[1]);
-                    y += weight * (a[1] * b[0] - a[0] * b[1]);
-                }
-                let (re, im) = product.split_at(n);
-                let to = self.gram.col_as_slice_mut(r * (r + 1) / 2 + s);
-                for j in 0..n {
-                    to[j] += re[j] * x + im[j] * y;
-                }
-            }
-        }
-    }
-
     /// −½ (G + ε tr G)⁻¹ g for every snapshot: with ε = 0 and the gradient the step to the best amplitudes at given modes.
     pub(super) fn precondition(&self, gradient: &Mat<f64>, damping: f64) -> Mat<f64> {
         let (n, rank) = gradient.shape();
         let mut out = Mat::zeros(n, rank);
         let (mut matrix, mut x) = (vec![0.0; rank * rank], vec![0.0; rank]);
         for j in 0..n {
-            for s in 0..rank {
-                (s..rank).for_each(|r| matrix[r + s * rank] = self.gram[(j, r * (r + 1) / 2 + s)]);
+            for (c, [r, s]) in self.pairs.iter().enumerate() {
+                matrix[r + s * rank] = self.gram[(j, c)];
             }
             let trace: f64 = (0..rank).map(|r| matrix[r + r * rank]).sum();
             factorise(rank, &mut matrix, damping * trace);
@@ -162,14 +133,13 @@ pub(super) fn dominant(problem: &Problem<'_>, a: &Amplitudes, more: &[usize]) ->
     trial.orthonormalise();
     for _ in 0..POWERS {
         let of = |pieces: &[Piece<'_>]| {
-            let (mut old, mut new) = (Normal::new(problem, a), Normal::new(problem, &trial));
-            let mut sum = Mat::zeros(n, total);
-            for piece in pieces {
-                old.begin(problem, piece, a);
-                old.solve(problem, piece);
-                new.begin(problem, piece, &trial);
-                new.project(&old.residual);
-                new.add_gradient(&old.residual, piece.weight, &mut sum);
+            let (mut old, mut batch) = (Normal::new(a), Batch::new(n));
+            let (mut sum, mut phi) = (Mat::zeros(n, total), Vec::new());
+            for pieces in batches(n, pieces) {
+                batch.load(problem, pieces);
+                old.solve(&mut batch);
+                batch.project(&trial, &old.residual, &mut phi);
+                batch.add_gradient(&trial, &phi, &old.residual, &mut sum);
             }
             sum
         };

@@ -213,7 +213,8 @@ impl Spectrum {
         self.n_snapshots
     }
 
-    /// Fields from their coefficients: for each column of each group's data those of all fields, real and imaginary parts by turns.
+    /// Fields from their coefficients: for each column of each group's data the real parts of all fields,
+    /// then the imaginary parts.
     pub(super) fn fields(&self, n_fields: usize, mut coefficients: &[f64]) -> Mat<f64> {
         let mut out = Mat::zeros(self.layout.n_rows, n_fields);
         let mut of_groups = Vec::with_capacity(self.groups.len());
@@ -234,11 +235,14 @@ impl Spectrum {
                 let [mut x, mut y] = [(); 2].map(|()| Mat::<f64>::zeros(2 * n_fields, vr.ncols()));
                 add_product(x.as_mut(), phi, vr);
                 add_product(y.as_mut(), phi, vi);
-                let pairs = (0..x.ncols()).flat_map(|c| {
-                    let (x, y) = (x.col_as_slice(c).chunks_exact(2), y.col_as_slice(c).chunks_exact(2));
-                    x.zip(y).flat_map(|(x, y)| [x[0] - y[1], x[1] + y[0]])
-                });
-                pairs.collect()
+                // (x + i y) of a complex x and i times a complex y.
+                for c in 0..x.ncols() {
+                    let ((re, im), (yr, yi)) =
+                        (x.col_as_slice_mut(c).split_at_mut(n_fields), y.col_as_slice(c).split_at(n_fields));
+                    re.iter_mut().zip(yi).for_each(|(x, y)| *x -= y);
+                    im.iter_mut().zip(yr).for_each(|(x, y)| *x += y);
+                }
+                (0..x.ncols()).flat_map(|c| x.col_as_slice(c).to_vec()).collect()
             })
             .collect();
         for field in (0..n_fields).step_by(2) {
@@ -249,8 +253,9 @@ impl Spectrum {
                 let weight = if alone { 1.0 } else { 0.5_f64.sqrt() };
                 let back = self.layout.row(opposite) as isize - self.layout.row(group.wave) as isize;
                 for (of, &row) in full.chunks_exact(2 * n_fields).zip(&group.places) {
-                    let mut of = of[2 * field..].chunks_exact(2).map(|z| Complex::new(z[0], z[1]) * weight);
-                    let [a, b] = [(); 2].map(|()| of.next().unwrap_or_default());
+                    let (re, im) = of.split_at(n_fields);
+                    let part = |f: usize| if f < n_fields { Complex::new(re[f], im[f]) * weight } else { Complex::ZERO };
+                    let [a, b] = [part(field), part(field + 1)];
                     let i = Complex::<f64>::I;
                     if alone {
                         // Real and imaginary parts of waves that are their own opposites belong to real fields alone.

@@ -1,0 +1,176 @@
+//! Several wave vectors at a time.
+use super::amplitudes::Amplitudes;
+use super::problem::{Piece, Problem};
+use monomorphic::{Mat, MatMut, MatRef, add_product};
+
+/// Columns of a batch, at most, if it has more than one piece: they fit a second-level cache.
+const COLUMNS: usize = 32;
+
+/// The pieces in their order, so many columns at a time as fit one batch.
+pub(super) fn batches<'p, 'a>(n: usize, pieces: &'p [Piece<'a>]) -> impl Iterator<Item = &'p [Piece<'a>]> {
+    let mut rest = pieces;
+    std::iter::from_fn(move || {
+        let mut columns = 0;
+        let fits = rest.iter().take_while(|p| {
+            columns += p.data.len() / (2 * n);
+            columns <= COLUMNS
+        });
+        let (batch, others) = rest.split_at(fits.count().max(1).min(rest.len()));
+        rest = others;
+        (!batch.is_empty()).then_some(batch)
+    })
+}
+
+/// A as a matrix of so many rows.
+pub(super) fn view(a: &[f64], rows: usize) -> MatRef<'_, f64> {
+    MatRef::from_column_major_slice(a, rows, a.len() / rows)
+}
+
+pub(super) fn view_mut(a: &mut [f64], rows: usize) -> MatMut<'_, f64> {
+    let columns = a.len() / rows;
+    MatMut::from_column_major_slice_mut(a, rows, columns)
+}
+
+/// `to` becomes a zero matrix of this size.
+pub(super) fn zero(to: &mut Vec<f64>, size: usize) {
+    to.clear();
+    to.resize(size, 0.0);
+}
+
+/// Data and phases of some wave vectors; B = (p_k ∘ A_k)_k is never formed.
+///
+/// A complex column of length n is two columns, of real and of imaginary parts: C columns are an
+/// n × 2C matrix. Φ is rank × 2C in the same way.
+pub(super) struct Batch {
+    n: usize,
+    /// p_k(t_j): piece by piece, frame by frame, real parts and then imaginary parts.
+    phases: Vec<f64>,
+    /// D of all pieces.
+    pub(super) data: Vec<f64>,
+    /// The piece of each complex column.
+    pub(super) pieces: Vec<usize>,
+    /// The weight of each piece.
+    pub(super) weights: Vec<f64>,
+    /// Whether all phases have length one.
+    pub(super) unit: bool,
+    work: Vec<f64>,
+    scaled: Vec<f64>,
+}
+
+impl Batch {
+    pub(super) fn new(n: usize) -> Self {
+        Self {
+            n,
+            phases: Vec::new(),
+            data: Vec::new(),
+            pieces: Vec::new(),
+            weights: Vec::new(),
+            unit: true,
+            work: Vec::new(),
+            scaled: Vec::new(),
+        }
+    }
+
+    /// Takes these pieces.
+    pub(super) fn load(&mut self, problem: &Problem<'_>, pieces: &[Piece<'_>]) {
+        let size = 2 * self.n * problem.phases.n_frames();
+        self.phases.resize(size * pieces.len(), 0.0);
+        self.data.clear();
+        self.pieces.clear();
+        self.weights.clear();
+        self.unit = true;
+        for (p, (piece, phases)) in pieces.iter().zip(self.phases.chunks_exact_mut(size)).enumerate() {
+            problem.phases.of(piece.wave, phases);
+            self.data.extend_from_slice(&piece.data);
+            self.pieces.resize(self.data.len() / (2 * self.n), p);
+            self.weights.push(piece.weight);
+            self.unit &= !problem.phases.shortest(piece.wave);
+        }
+    }
+
+    /// Real and imaginary parts of frame k's phases at each piece.
+    fn phase(&self, k: usize) -> impl Iterator<Item = (&[f64], &[f64])> {
+        let size = self.phases.len() / self.weights.len().max(1);
+        self.phases.chunks_exact(size.max(1)).map(move |p| p[2 * self.n * k..][..2 * self.n].split_at(self.n))
+    }
+
+    /// p̄_k p_l of each piece.
+    pub(super) fn pair(&self, k: usize, l: usize, to: &mut Vec<f64>) {
+        let n = self.n;
+        to.resize(2 * n * self.weights.len(), 0.0);
+        for ((to, (pr, pi)), (qr, qi)) in to.chunks_exact_mut(2 * n).zip(self.phase(k)).zip(self.phase(l)) {
+            let (re, im) = to.split_at_mut(n);
+            for j in 0..n {
+                re[j] = pr[j] * qr[j] + pi[j] * qi[j];
+                im[j] = pr[j] * qi[j] - pi[j] * qr[j];
+            }
+        }
+    }
+
+    /// p̄_k ∘ x becomes the work.
+    fn unshift(&mut self, k: usize, x: &[f64]) {
+        let n = self.n;
+        let mut work = std::mem::take(&mut self.work);
+        work.resize(x.len(), 0.0);
+        let phases: Vec<_> = self.phase(k).collect();
+        for ((to, x), &p) in work.chunks_exact_mut(2 * n).zip(x.chunks_exact(2 * n)).zip(&self.pieces) {
+            let ((pr, pi), (xr, xi), (re, im)) = (phases[p], x.split_at(n), to.split_at_mut(n));
+            for j in 0..n {
+                re[j] = pr[j] * xr[j] + pi[j] * xi[j];
+                im[j] = pr[j] * xi[j] - pi[j] * xr[j];
+            }
+        }
+        self.work = work;
+    }
+
+    /// Bᴴ x.
+    pub(super) fn project(&mut self, a: &Amplitudes, x: &[f64], to: &mut Vec<f64>) {
+        let (n, rank) = a.values.shape();
+        zero(to, rank * x.len() / n);
+        for (k, [first, count]) in a.ranges().filter(|(_, [_, count])| *count > 0) {
+            self.unshift(k, x);
+            let to = view_mut(to, rank).submatrix_mut(first, 0, count, x.len() / n);
+            add_product(to, a.values.subcols(first, count).transpose(), view(&self.work, n));
+        }
+    }
+
+    /// x − B Φ becomes x.
+    pub(super) fn subtract(&mut self, a: &Amplitudes, phi: &[f64], x: &mut [f64]) {
+        let (n, rank) = a.values.shape();
+        for (k, [first, count]) in a.ranges().filter(|(_, [_, count])| *count > 0) {
+            let mut work = std::mem::take(&mut self.work);
+            zero(&mut work, x.len());
+            let of = view(phi, rank).submatrix(first, 0, count, x.len() / n);
+            add_product(view_mut(&mut work, n), a.values.subcols(first, count), of);
+            let phases: Vec<_> = self.phase(k).collect();
+            for ((x, y), &p) in x.chunks_exact_mut(2 * n).zip(work.chunks_exact(2 * n)).zip(&self.pieces) {
+                let ((pr, pi), (xr, xi), (yr, yi)) = (phases[p], x.split_at_mut(n), y.split_at(n));
+                for j in 0..n {
+                    xr[j] -= pr[j] * yr[j] - pi[j] * yi[j];
+                    xi[j] -= pr[j] * yi[j] + pi[j] * yr[j];
+                }
+            }
+            self.work = work;
+        }
+    }
+
+    /// Adds −2 w Re p̄ e Φᴴ to the columns of `to`, one per amplitude, with the weights w of the pieces.
+    pub(super) fn add_gradient(&mut self, a: &Amplitudes, phi: &[f64], e: &[f64], to: &mut Mat<f64>) {
+        let (n, rank) = a.values.shape();
+        if rank == 0 {
+            return;
+        }
+        let mut scaled = std::mem::take(&mut self.scaled);
+        scaled.clear();
+        for (phi, &p) in phi.chunks_exact(2 * rank).zip(&self.pieces) {
+            scaled.extend(phi.iter().map(|x| -2.0 * self.weights[p] * x));
+        }
+        for (k, [first, count]) in a.ranges().filter(|(_, [_, count])| *count > 0) {
+            self.unshift(k, e);
+            let of = view(&scaled, rank).submatrix(first, 0, count, e.len() / n);
+            let to = to.as_mut().submatrix_mut(0, first, n, count);
+            add_product(to, view(&self.work, n), of.transpose());
+        }
+        self.scaled = scaled;
+    }
+}

@@ -88,8 +88,7 @@ fn main() {
             match d {
                 Err(why) => println!("{kind:6} {count:2} discs: {why}"),
                 Ok(d) => {
-                    let frames =
-                        GridFrames::new(grid, Interpolation::Spectral, &motions, snapshots.nrows());
+                    let frames = GridFrames::new(grid, Interpolation::Spectral, &motions, snapshots.nrows());
                     let error = frames.map_or(f64::NAN, |f| d.relative_error(&f, snapshots.as_ref()));
                     println!(
                         "{kind:6} {count:2} discs {:?} error {error:.3e} {:4} steps {} attempts {:?} \

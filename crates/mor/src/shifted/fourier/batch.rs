@@ -37,6 +37,41 @@ pub(super) fn zero(to: &mut Vec<f64>, size: usize) {
     to.resize(size, 0.0);
 }
 
+/// Calls `of` for all items with the machine's widest vectors.
+///
+/// The closure that is dispatched consumes the items: it is called as it is and therefore inlined.
+#[inline(always)]
+pub(super) fn vectorised<T>(items: impl Iterator<Item = T>, mut of: impl FnMut(T)) {
+    pulp::Arch::new().dispatch(
+        #[inline(always)]
+        move || {
+            for item in items {
+                of(item);
+            }
+        },
+    );
+}
+
+/// p̄ q.
+#[inline(always)]
+fn multiply_conjugate((pr, pi): (&[f64], &[f64]), (qr, qi): (&[f64], &[f64]), to: (&mut [f64], &mut [f64])) {
+    let of = pr.iter().zip(pi).zip(qr.iter().zip(qi));
+    for ((re, im), ((pr, pi), (qr, qi))) in to.0.iter_mut().zip(to.1).zip(of) {
+        *re = pr * qr + pi * qi;
+        *im = pr * qi - pi * qr;
+    }
+}
+
+/// x − p y becomes x.
+#[inline(always)]
+fn subtract_product((pr, pi): (&[f64], &[f64]), (yr, yi): (&[f64], &[f64]), x: (&mut [f64], &mut [f64])) {
+    let of = pr.iter().zip(pi).zip(yr.iter().zip(yi));
+    for ((xr, xi), ((pr, pi), (yr, yi))) in x.0.iter_mut().zip(x.1).zip(of) {
+        *xr -= pr * yr - pi * yi;
+        *xi -= pr * yi + pi * yr;
+    }
+}
+
 /// Data and phases of some wave vectors; B = (p_k ∘ A_k)_k is never formed.
 ///
 /// A complex column of length n is two columns, of real and of imaginary parts: C columns are an
@@ -89,6 +124,7 @@ impl Batch {
     }
 
     /// Real and imaginary parts of frame k's phases at each piece.
+    #[inline(always)]
     fn phase(&self, k: usize) -> impl Iterator<Item = (&[f64], &[f64])> {
         let size = self.phases.len() / self.weights.len().max(1);
         self.phases.chunks_exact(size.max(1)).map(move |p| p[2 * self.n * k..][..2 * self.n].split_at(self.n))
@@ -98,13 +134,12 @@ impl Batch {
     pub(super) fn pair(&self, k: usize, l: usize, to: &mut Vec<f64>) {
         let n = self.n;
         to.resize(2 * n * self.weights.len(), 0.0);
-        for ((to, (pr, pi)), (qr, qi)) in to.chunks_exact_mut(2 * n).zip(self.phase(k)).zip(self.phase(l)) {
-            let (re, im) = to.split_at_mut(n);
-            for j in 0..n {
-                re[j] = pr[j] * qr[j] + pi[j] * qi[j];
-                im[j] = pr[j] * qi[j] - pi[j] * qr[j];
-            }
-        }
+        let pieces = to.chunks_exact_mut(2 * n).zip(self.phase(k)).zip(self.phase(l));
+        vectorised(
+            pieces,
+            #[inline(always)]
+            |((to, p), q)| multiply_conjugate(p, q, to.split_at_mut(n)),
+        );
     }
 
     /// p̄_k ∘ x becomes the work.
@@ -113,13 +148,14 @@ impl Batch {
         let mut work = std::mem::take(&mut self.work);
         work.resize(x.len(), 0.0);
         let phases: Vec<_> = self.phase(k).collect();
-        for ((to, x), &p) in work.chunks_exact_mut(2 * n).zip(x.chunks_exact(2 * n)).zip(&self.pieces) {
-            let ((pr, pi), (xr, xi), (re, im)) = (phases[p], x.split_at(n), to.split_at_mut(n));
-            for j in 0..n {
-                re[j] = pr[j] * xr[j] + pi[j] * xi[j];
-                im[j] = pr[j] * xi[j] - pi[j] * xr[j];
-            }
-        }
+        let columns = work.chunks_exact_mut(2 * n).zip(x.chunks_exact(2 * n)).zip(&self.pieces);
+        vectorised(
+            columns,
+            #[inline(always)]
+            |((to, x), &p)| {
+                multiply_conjugate(phases[p], x.split_at(n), to.split_at_mut(n));
+            },
+        );
         self.work = work;
     }
 
@@ -143,13 +179,14 @@ impl Batch {
             let of = view(phi, rank).submatrix(first, 0, count, x.len() / n);
             add_product(view_mut(&mut work, n), a.values.subcols(first, count), of);
             let phases: Vec<_> = self.phase(k).collect();
-            for ((x, y), &p) in x.chunks_exact_mut(2 * n).zip(work.chunks_exact(2 * n)).zip(&self.pieces) {
-                let ((pr, pi), (xr, xi), (yr, yi)) = (phases[p], x.split_at_mut(n), y.split_at(n));
-                for j in 0..n {
-                    xr[j] -= pr[j] * yr[j] - pi[j] * yi[j];
-                    xi[j] -= pr[j] * yi[j] + pi[j] * yr[j];
-                }
-            }
+            let columns = x.chunks_exact_mut(2 * n).zip(work.chunks_exact(2 * n)).zip(&self.pieces);
+            vectorised(
+                columns,
+                #[inline(always)]
+                |((x, y), &p)| {
+                    subtract_product(phases[p], y.split_at(n), x.split_at_mut(n));
+                },
+            );
             self.work = work;
         }
     }

@@ -33,11 +33,11 @@ pub(super) fn substitute(l: &[f64], x: &mut [f64]) {
 
 /// L of L Lᴴ = M + ε for a Hermitian M, real parts of all columns before imaginary parts; pivots below ε
 /// are taken for ε.
+#[inline(always)]
 pub(super) fn factorise_hermitian(n: usize, m: &mut [f64], damping: f64) {
     let (re, im) = m.split_at_mut(n * n);
     for k in 0..n {
-        let ((re, re_after), (im, im_after)) =
-            (re.split_at_mut((k + 1) * n), im.split_at_mut((k + 1) * n));
+        let ((re, re_after), (im, im_after)) = (re.split_at_mut((k + 1) * n), im.split_at_mut((k + 1) * n));
         let (re, im) = (&mut re[k * n..], &mut im[k * n..]);
         let pivot = (re[k].max(0.0) + damping).max(f64::MIN_POSITIVE).sqrt();
         (re[k], im[k]) = (pivot, 0.0);
@@ -57,6 +57,7 @@ pub(super) fn factorise_hermitian(n: usize, m: &mut [f64], damping: f64) {
 }
 
 /// Replaces x, real parts before imaginary parts, by (L Lᴴ)⁻¹ x.
+#[inline(always)]
 pub(super) fn substitute_hermitian(l: &[f64], x: &mut [f64]) {
     let n = x.len() / 2;
     let (re, im) = l.split_at(n * n);
@@ -102,10 +103,12 @@ mod tests {
         let expected: Vec<f64> = (0..2 * n).map(|i| i as f64 - 1.7).collect();
         let mut x: Vec<f64> = (0..2 * n)
             .map(|i| {
-                (0..n).map(|j| {
-                    let ([a, b], [re, im]) = (entry(i % n, j), [expected[j], expected[n + j]]);
-                    if i < n { a * re - b * im } else { a * im + b * re }
-                }).sum()
+                (0..n)
+                    .map(|j| {
+                        let ([a, b], [re, im]) = (entry(i % n, j), [expected[j], expected[n + j]]);
+                        if i < n { a * re - b * im } else { a * im + b * re }
+                    })
+                    .sum()
             })
             .collect();
         factorise_hermitian(n, &mut m, 0.0);

@@ -1,6 +1,6 @@
 //! The least-squares problems of a batch of wave vectors.
 use super::amplitudes::Amplitudes;
-use super::batch::{Batch, view, view_mut, zero};
+use super::batch::{Batch, vectorised, view, view_mut, zero};
 use super::cholesky::{factorise_hermitian, substitute_hermitian};
 use monomorphic::{Mat, add_product};
 
@@ -69,7 +69,11 @@ impl<'a> Normal<'a> {
         batch.project(self.a, &batch.data.clone(), &mut self.phi);
         let rank = self.a.values.ncols();
         let size = 2 * rank * rank;
-        self.matrices.chunks_exact_mut(size).for_each(|m| factorise_hermitian(rank, m, DAMPING));
+        vectorised(
+            self.matrices.chunks_exact_mut(size),
+            #[inline(always)]
+            |m| factorise_hermitian(rank, m, DAMPING),
+        );
         substitute_all(rank, &self.matrices, &batch.pieces, &mut self.phi);
         batch.subtract(self.a, &self.phi, &mut self.residual);
     }
@@ -164,7 +168,11 @@ fn modes_of([[first, count], [other, others]]: [[usize; 2]; 2]) -> impl Iterator
 
 fn substitute_all(rank: usize, factors: &[f64], pieces: &[usize], x: &mut [f64]) {
     let size = 2 * rank * rank;
-    for (x, &p) in x.chunks_exact_mut(2 * rank).zip(pieces) {
-        substitute_hermitian(&factors[p * size..][..size], x);
-    }
+    vectorised(
+        x.chunks_exact_mut(2 * rank).zip(pieces),
+        #[inline(always)]
+        |(x, &p)| {
+            substitute_hermitian(&factors[p * size..][..size], x);
+        },
+    );
 }

@@ -1,4 +1,5 @@
 //! What the shifts do to each wave vector.
+use super::batch::vectorised;
 use crate::shifted::stencil::phase;
 use crate::shifted::{Grid, ShiftedError, Shifts};
 
@@ -74,19 +75,24 @@ struct Product<'a> {
 impl Product<'_> {
     /// Times factors, or their conjugates if the sign is negative.
     fn times(&mut self, factors: &[f64], sign: f64) {
-        let n = self.n_snapshots;
-        for (p, q) in self.values.chunks_exact_mut(2 * n).zip(factors.chunks_exact(2 * n)) {
-            let ((pr, pi), (qr, qi)) = (p.split_at_mut(n), q.split_at(n));
-            if self.empty {
-                pr.copy_from_slice(qr);
-                pi.iter_mut().zip(qi).for_each(|(p, q)| *p = sign * q);
-                continue;
-            }
-            for j in 0..n {
-                let qi = sign * qi[j];
-                (pr[j], pi[j]) = (pr[j] * qr[j] - pi[j] * qi, pr[j] * qi + pi[j] * qr[j]);
-            }
-        }
+        let (n, empty) = (self.n_snapshots, self.empty);
+        let frames = self.values.chunks_exact_mut(2 * n).zip(factors.chunks_exact(2 * n));
+        vectorised(
+            frames,
+            #[inline(always)]
+            |(p, q)| {
+                let ((pr, pi), (qr, qi)) = (p.split_at_mut(n), q.split_at(n));
+                if empty {
+                    pr.copy_from_slice(qr);
+                    pi.iter_mut().zip(qi).for_each(|(p, q)| *p = sign * q);
+                    return;
+                }
+                for ((pr, pi), (qr, qi)) in pr.iter_mut().zip(pi).zip(qr.iter().zip(qi)) {
+                    let qi = sign * qi;
+                    (*pr, *pi) = (*pr * qr - *pi * qi, *pr * qi + *pi * qr);
+                }
+            },
+        );
         self.empty = false;
     }
 }

@@ -254,7 +254,9 @@ impl Spectrum {
                 let back = self.layout.row(opposite) as isize - self.layout.row(group.wave) as isize;
                 for (of, &row) in full.chunks_exact(2 * n_fields).zip(&group.places) {
                     let (re, im) = of.split_at(n_fields);
-                    let part = |f: usize| if f < n_fields { Complex::new(re[f], im[f]) * weight } else { Complex::ZERO };
+                    let part = |f: usize| {
+                        if f < n_fields { Complex::new(re[f], im[f]) * weight } else { Complex::ZERO }
+                    };
                     let [a, b] = [part(field), part(field + 1)];
                     let i = Complex::<f64>::I;
                     if alone {

@@ -13,7 +13,7 @@ use crate::{Mat, MatRef};
 pub(in crate::shifted) const LONG: Patience = (10, 0.0);
 /// With fewer.
 const SHORT: Patience = (3, 0.1);
-/// On all data after a sample.
+/// On all data after a sample; less than the sample's patience asks for per step is not polished.
 const POLISH: Patience = (1, 3e-4);
 /// Of Newton's steps.
 const FLAT: Patience = (10, 1e-3);
@@ -108,7 +108,8 @@ impl Als {
             if sampled && (last || reason == StopReason::Tolerance) && reason != StopReason::Asked {
                 (problem, sampled) = (&all, false);
                 descent = descent.with(problem);
-                reason = run.descend(&mut descent, POLISH, &mut step);
+                let part = POLISH.1.max(patience.1 / patience.0 as f64);
+                reason = run.descend(&mut descent, (POLISH.0, part), &mut step);
             }
             if reason != StopReason::Stagnation || last {
                 break (descent, reason);
@@ -123,7 +124,7 @@ impl Als {
         Ok(Decomposition::of(frames, run.history, stopped))
     }
 
-    /// Goes on by Newton's steps, on all data.
+    /// Goes on by Newton's steps.
     pub(super) fn refine(
         &self,
         spectrum: &Spectrum,
@@ -132,13 +133,24 @@ impl Als {
         progress: &mut dyn FnMut(&Progress) -> bool,
     ) -> Result<Decomposition, ShiftedError> {
         let all = Problem::all(spectrum);
-        let mut descent = Descent::new(&all, begin(Some(start), &start.ranks(), spectrum.n_snapshots())?);
+        let sample = Problem::sample(spectrum, start.ranks().iter().sum());
+        let amplitudes = begin(Some(start), &start.ranks(), spectrum.n_snapshots())?;
+        let mut descent = Descent::new(sample.as_ref().unwrap_or(&all), amplitudes);
         let mut run = Run { als: self, spectrum, history: Vec::new(), progress };
-        let mut stopped = run.descend(&mut descent, FLAT, &mut |descent| newton.step(descent));
+        let mut step = |descent: &mut Descent<'_>| newton.step(descent);
+        let mut stopped = run.descend(&mut descent, FLAT, &mut step);
+        if sample.is_some() && stopped != StopReason::Asked {
+            descent = descent.with(&all);
+            stopped = run.descend(&mut descent, POLISH, &mut step);
+        }
         if stopped == StopReason::Stagnation && newton.products == 0 {
             stopped = StopReason::Steps;
         }
-        let frames = frames_of(spectrum, &descent.amplitudes, &descent.evaluation);
+        let evaluation = match (&sample, stopped) {
+            (Some(_), StopReason::Asked) => Evaluation::new(&all, &descent.amplitudes),
+            _ => descent.evaluation,
+        };
+        let frames = frames_of(spectrum, &descent.amplitudes, &evaluation);
         Ok(Decomposition::of(frames, run.history, stopped))
     }
 }

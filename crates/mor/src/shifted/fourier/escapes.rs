@@ -26,6 +26,7 @@ enum Way {
 impl Als {
     /// From nothing; if that ends above the tolerance also in other ways, of which the best is told. [`Als::fit`] adds modes of all frames at a time,
     /// and ends in the minimum to which that leads, or creeps if frames hardly move against one another. One that is found twice is taken for the least.
+    /// A fit from nothing takes no more steps than all before: each doubles the steps at most.
     pub(in crate::shifted) fn least(
         &self,
         spectrum: &Spectrum,
@@ -56,7 +57,10 @@ impl Als {
                     products = newton.products;
                     d
                 }
-                Way::Filled { backwards } => self.filled(spectrum, backwards, progress)?,
+                Way::Filled { backwards } => {
+                    let most = history.len().min(self.max_steps);
+                    Self { max_steps: most, ..self.clone() }.filled(spectrum, backwards, progress)?
+                }
             };
             attempts += 1;
             history.extend(&d.history);
@@ -97,11 +101,13 @@ impl Als {
             let k = if backwards { n - 1 - k } else { k };
             part.ranks[k] = self.ranks[k];
             let next = part.fit(spectrum, d.as_ref(), SHORT, progress)?;
-            if next.stopped == StopReason::Asked {
+            if next.stopped == StopReason::Asked || next.stopped == StopReason::Steps {
                 return Ok(next);
             }
+            part.max_steps = part.max_steps.saturating_sub(next.history.len()).max(1);
             d = Some(next);
         }
-        self.fit(spectrum, d.as_ref(), LONG, progress)
+        part.ranks = self.ranks.clone();
+        part.fit(spectrum, d.as_ref(), LONG, progress)
     }
 }

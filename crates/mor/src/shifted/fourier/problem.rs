@@ -7,11 +7,11 @@ use rand_pcg::Pcg64;
 use std::borrow::Cow;
 
 /// A sample holds so many values of every snapshot for each mode,
-const SAMPLES: usize = 200;
+const SAMPLES: usize = 50;
 /// so many in all at least,
 const LEAST: usize = 1000;
 /// and at most this part of all.
-const MOST: f64 = 0.25;
+const MOST: f64 = 0.5;
 
 /// What belongs to one wave vector.
 pub(super) struct Piece<'a> {

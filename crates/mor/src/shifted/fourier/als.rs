@@ -124,7 +124,7 @@ impl Als {
         Ok(Decomposition::of(frames, run.history, stopped))
     }
 
-    /// Goes on by Newton's steps.
+    /// Goes on by Newton's steps, on a sample first as [`Als::fit`] does.
     pub(super) fn refine(
         &self,
         spectrum: &Spectrum,
@@ -137,11 +137,10 @@ impl Als {
         let amplitudes = begin(Some(start), &start.ranks(), spectrum.n_snapshots())?;
         let mut descent = Descent::new(sample.as_ref().unwrap_or(&all), amplitudes);
         let mut run = Run { als: self, spectrum, history: Vec::new(), progress };
-        let mut step = |descent: &mut Descent<'_>| newton.step(descent);
-        let mut stopped = run.descend(&mut descent, FLAT, &mut step);
+        let mut stopped = run.descend(&mut descent, FLAT, &mut |descent| newton.step(descent));
         if sample.is_some() && stopped != StopReason::Asked {
             descent = descent.with(&all);
-            stopped = run.descend(&mut descent, POLISH, &mut step);
+            stopped = run.descend(&mut descent, POLISH, &mut Descent::step);
         }
         if stopped == StopReason::Stagnation && newton.products == 0 {
             stopped = StopReason::Steps;

@@ -1,8 +1,9 @@
 //! Shifted POD of many frames: 2, 5 and 10 discs of rank 3 on 100 × 200 cells in 101 snapshots.
 //!
 //! `cargo bench -p mor --bench shifted_frames [-- KIND … [COUNT …]]`. Kinds: `cross` (paths along both
-//! axes), `fall` (paths along the long axis only), `found` (as `cross`, ranks found). Places, radii and
-//! laws of motion are random numbers. One line per case.
+//! axes), `fall` (paths along the long axis only), `found` (as `cross`, ranks found), `fire` (two fronts
+//! on a bounded axis and on a periodic one of twice the length). Places, radii and laws of motion are
+//! random numbers. One line per case.
 use cpu_time::ProcessTime;
 use interfaces::Vector;
 use mor::Mat;
@@ -60,10 +61,79 @@ fn discs(count: usize, aside: f64, seed: u64) -> Case {
     Case { grid, motions, snapshots }
 }
 
+/// Two fronts, `width` cells wide, that run apart from the middle and a pulse in between whose height
+/// varies: 1 + pulse and both boxes less 1. On twice the length each box is periodic by itself.
+fn fire(periodic: bool, width: f64, reach: f64) -> Case {
+    let (n, n_t) = (400, 200);
+    let length = n as f64;
+    let moved = |j: usize| {
+        let t = j as f64 / (n_t - 1) as f64;
+        reach * length * t * (0.6 + 0.4 * t)
+    };
+    // Falls at 0 and rises again half a period away.
+    let period = 2.0 * length;
+    let front = |x: f64| {
+        let x = nearest(x, period);
+        let edge = |x: f64| 0.5 - 0.5 * (x / width).tanh();
+        if x > 0.5 * length {
+            1.0 - edge(x - length)
+        } else if x < -0.5 * length {
+            1.0 - edge(x + length)
+        } else {
+            edge(x)
+        }
+    };
+    let value = |i: usize, j: usize| {
+        let (x, t) = (i as f64 - 0.5 * length, j as f64 / (n_t - 1) as f64);
+        let pulse = (0.3 + 0.2 * (2.0 * t).sin()) * (-(nearest(x, period) / (0.05 * length)).powi(2)).exp();
+        front(x - moved(j)) + front(-x - moved(j)) - 1.0 + pulse
+    };
+    let grid = Grid::new([if periodic { 2 * n } else { n }], [1.0]).expect("a grid");
+    let grid = if periodic { grid } else { grid.bounded([0]) };
+    let to = |k: usize, j: usize| [1.0, -1.0, 0.0][k] * moved(j);
+    Case {
+        motions: Motions::by(3, n_t, |k, j| Motion::translation(Vector::x() * to(k, j))),
+        snapshots: Mat::from_fn(grid.n_cells(), n_t, value),
+        grid,
+    }
+}
+
+/// Errors of the same fronts with and without ends.
+fn fronts() {
+    for (width, reach) in [(2.0, 0.4), (4.0, 0.4), (4.0, 0.6)] {
+        let i = Interpolation::QuinticSpline;
+        for (periodic, interpolation) in [(false, i), (true, i), (true, Interpolation::Spectral)] {
+            for ranks in [Ranks::Given(vec![1, 1, 2]), Ranks::Given(vec![2, 2, 2]), Ranks::Found] {
+                let Case { grid, motions, snapshots } = fire(periodic, width, reach);
+                let kind = if ranks == Ranks::Found { "found" } else { "given" };
+                let pod = ShiftedPod::new(grid, interpolation).ranks(ranks);
+                let start = ProcessTime::now();
+                let d = pod.solve(&motions, snapshots.as_ref(), None, &mut |_| ControlFlow::Continue(()));
+                let seconds = start.elapsed().as_secs_f64();
+                let d = d.expect("a decomposition");
+                let frames = GridFrames::new(grid, interpolation, &motions, snapshots.nrows());
+                let error = frames.map_or(f64::NAN, |f| d.relative_error(&f, snapshots.as_ref()));
+                println!(
+                    "fire   width {width} reach {reach} {} {:15} {kind} {:?} error {error:.3e} {:4} steps {:?} \
+                     {seconds:7.2} s",
+                    if periodic { "periodic" } else { "bounded " },
+                    interpolation.name(),
+                    d.ranks(),
+                    d.history.len(),
+                    d.stopped,
+                );
+            }
+        }
+    }
+}
+
 fn main() {
     let chosen: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
     let counts: Vec<usize> = chosen.iter().filter_map(|a| a.parse().ok()).collect();
     let kinds: Vec<_> = chosen.iter().filter(|a| a.parse::<usize>().is_err()).collect();
+    if kinds.is_empty() || kinds.iter().any(|k| *k == "fire") {
+        fronts();
+    }
     for (kind, aside, found) in [("cross", 40.0, false), ("fall", 0.0, false), ("found", 40.0, true)] {
         if !kinds.is_empty() && kinds.iter().all(|k| *k != kind) {
             continue;

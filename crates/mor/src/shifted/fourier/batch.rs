@@ -211,3 +211,25 @@ impl Batch {
         self.scaled = scaled;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{COLUMNS, batches};
+    use crate::shifted::fourier::problem::Piece;
+
+    #[test]
+    fn batches_are_all_pieces_in_their_order() {
+        // A piece with more columns than a batch is one of its own.
+        let piece = |(i, columns): (usize, &usize)| Piece {
+            wave: [i, 0, 0],
+            data: vec![0.0; 2 * 3 * columns].into(),
+            weight: 1.0,
+        };
+        let counts = [1, COLUMNS, 2 * COLUMNS, 1, COLUMNS - 1, 1, 0];
+        let pieces: Vec<_> = counts.iter().enumerate().map(piece).collect();
+        let sizes: Vec<_> = batches(3, &pieces).map(<[_]>::len).collect();
+        assert_eq!(sizes, [1, 1, 1, 2, 2]);
+        let order: Vec<_> = batches(3, &pieces).flatten().map(|p| p.wave[0]).collect();
+        assert_eq!(order, [0, 1, 2, 3, 4, 5, 6]);
+    }
+}

@@ -41,8 +41,7 @@ pub(super) fn factorise_hermitian(n: usize, m: &mut [f64], damping: f64) {
         let (re, im) = (&mut re[k * n..], &mut im[k * n..]);
         let pivot = (re[k].max(0.0) + damping).max(f64::MIN_POSITIVE).sqrt();
         (re[k], im[k]) = (pivot, 0.0);
-        let inverse = pivot.recip();
-        re[k + 1..].iter_mut().chain(&mut im[k + 1..]).for_each(|x| *x *= inverse);
+        re[k + 1..].iter_mut().chain(&mut im[k + 1..]).for_each(|x| *x /= pivot);
         let others = re_after.chunks_exact_mut(n).zip(im_after.chunks_exact_mut(n));
         for (j, (to_re, to_im)) in (k + 1..n).zip(others) {
             // M_ij − L_ik L̄_jk

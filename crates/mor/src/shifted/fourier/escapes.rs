@@ -26,7 +26,7 @@ enum Way {
 impl Als {
     /// From nothing; if that ends above the tolerance also in other ways, of which the best is told. [`Als::fit`] adds modes of all frames at a time,
     /// and ends in the minimum to which that leads, or creeps if frames hardly move against one another. One that is found twice is taken for the least.
-    /// A fit from nothing takes no more steps than all before: each doubles the steps at most.
+    /// A further fit from nothing takes no more steps than all before together and those that tell that nothing gets better.
     pub(in crate::shifted) fn least(
         &self,
         spectrum: &Spectrum,
@@ -58,7 +58,8 @@ impl Als {
                     d
                 }
                 Way::Filled { backwards } => {
-                    let most = history.len().min(self.max_steps);
+                    let least = SHORT.0 * (self.ranks.len() - 1) + LONG.0;
+                    let most = (history.len() + least).min(self.max_steps);
                     Self { max_steps: most, ..self.clone() }.filled(spectrum, backwards, progress)?
                 }
             };
@@ -67,7 +68,9 @@ impl Als {
             let flat = flat && d.stopped == StopReason::Stagnation;
             let same = flat && !newton && (error(&d) / error(&best) - 1.0).abs() <= ALIKE;
             let asked = d.stopped == StopReason::Asked;
-            if error(&d) < error(&best) {
+            // An attempt that ends before all frames have their modes is none.
+            let full = d.ranks().iter().zip(best.ranks()).all(|(&r, s)| r >= s);
+            if full && error(&d) < error(&best) {
                 (best, refined) = (d, newton);
             }
             if asked {

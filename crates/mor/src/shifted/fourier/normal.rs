@@ -66,7 +66,7 @@ impl<'a> Normal<'a> {
             return;
         }
         self.multiply(batch);
-        batch.project(self.a, &batch.data.clone(), &mut self.phi);
+        batch.project(self.a, &self.residual, &mut self.phi);
         let rank = self.a.values.ncols();
         let size = 2 * rank * rank;
         vectorised(

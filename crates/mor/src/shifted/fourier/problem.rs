@@ -6,7 +6,8 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::borrow::Cow;
 
-/// A sample holds so many values of every snapshot for each mode,
+/// A sample holds so many values of every snapshot for each mode: n r amplitudes of n snapshots by 2 · 50 r (n − r)
+/// equations leave about 1 % too little of the squared error, which the last steps on all data make up for,
 const SAMPLES: usize = 50;
 /// so many in all at least,
 const LEAST: usize = 1000;

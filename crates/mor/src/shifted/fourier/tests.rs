@@ -351,6 +351,27 @@ proptest! {
     }
 }
 
+#[test]
+fn further_attempts_take_no_more_steps_than_all_before() {
+    // Five frames and more than their modes explain.
+    let grid = Grid::new([60], [1.0]).unwrap();
+    let (motions, mut q) = random(&grid, &[2; 5], 1, 40, 60.0, 5);
+    let mut rng = Pcg64::seed_from_u64(6);
+    q += Mat::from_fn(60, 40, |_, _| 0.01 * rng.random_range(-1.0..1.0));
+    let als = Als::new([2; 5]);
+    let spectrum = Spectrum::new(&grid, &motions, q.as_ref(), None, als.cut()).unwrap();
+    let first = als.fit(&spectrum, None, super::LONG, &mut |_| true).unwrap().history.len();
+    let d = als.least(&spectrum, &mut |_| true).unwrap();
+    assert_eq!(d.ranks(), [2; 5]);
+    let starts: Vec<_> =
+        (1..d.history.len()).filter(|&i| d.history[i].rank < d.history[i - 1].rank).collect();
+    assert!(d.attempts > 0 && starts[0] == first, "{} {starts:?} {first}", d.attempts);
+    let ends = starts[1..].iter().copied().chain([d.history.len() - 1]);
+    let lengths: Vec<_> = starts.iter().zip(ends).map(|(start, end)| (*start, end - start)).collect();
+    // Ten steps of each frame tell that nothing gets better; each fit notes the error before its first step.
+    assert!(lengths[0].1 <= lengths[0].0 + 10 * 5 + 2, "{lengths:?}");
+}
+
 /// Where nothing is left, what is called the curvature is that of the squared error: the gradient's change along any direction.
 #[test]
 fn second_derivatives_are_those_of_the_gradient() {

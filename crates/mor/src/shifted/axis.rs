@@ -21,9 +21,15 @@ pub(super) struct Axis {
     kind: Kind,
 }
 
+/// Nodes on either side of a line whose coefficients are found and not used. Beyond the ends of a bounded axis
+/// the [`MARGIN`] before them is: its last coefficient, that of all nodes further on, is the value at the end.
+fn padding(periodic: bool) -> usize {
+    if periodic { MARGIN } else { 2 * MARGIN }
+}
+
 enum Kind {
     Lagrange(Interpolation),
-    /// Coefficients of `n` nodes and [`MARGIN`] on either side.
+    /// Coefficients of `n` nodes and [`padding`] on either side.
     Spline(Interpolation, Collocation),
     Spectral([Arc<dyn Fft<f64>>; 2]),
 }
@@ -32,7 +38,9 @@ impl Axis {
     pub(super) fn new(n: usize, periodic: bool, interpolation: Interpolation) -> Self {
         let kind = match (interpolation, interpolation.basis()) {
             (Interpolation::Spectral, _) => Kind::Spectral(fourier_transforms(n)),
-            (_, Some(basis)) => Kind::Spline(interpolation, Collocation::new(basis, n + 2 * MARGIN)),
+            (_, Some(basis)) => {
+                Kind::Spline(interpolation, Collocation::new(basis, n + 2 * padding(periodic)))
+            }
             _ => Kind::Lagrange(interpolation),
         };
         Self { n, periodic, kind }
@@ -117,14 +125,15 @@ impl Axis {
         let Kind::Spline(_, collocation) = &self.kind else { return };
         let (n, m) = (self.n, self.n_coefficients());
         let mut out = Vec::with_capacity(data.len() / n * m);
-        let mut line = vec![0.0; (n + 2 * MARGIN) * inner];
+        let padding = padding(self.periodic);
+        let start = (padding - (m - n) / 2) * inner;
+        let mut line = vec![0.0; (n + 2 * padding) * inner];
         for block in data.chunks_exact(n * inner) {
             for (i, row) in line.chunks_exact_mut(inner).enumerate() {
-                row.copy_from_slice(&block[self.node(i as isize - MARGIN as isize) * inner..][..inner]);
+                row.copy_from_slice(&block[self.node(i as isize - padding as isize) * inner..][..inner]);
             }
             collocation.solve(inner, &mut line);
-            let kept = if m == n { &line[MARGIN * inner..][..n * inner] } else { &line[..] };
-            out.extend_from_slice(kept);
+            out.extend_from_slice(&line[start..][..m * inner]);
         }
         *data = out;
     }
@@ -134,14 +143,15 @@ impl Axis {
         let Kind::Spline(_, collocation) = &self.kind else { return };
         let (n, m) = (self.n, self.n_coefficients());
         let mut out = vec![0.0; data.len() / m * n];
-        let mut line = vec![0.0; (n + 2 * MARGIN) * inner];
+        let padding = padding(self.periodic);
+        let start = (padding - (m - n) / 2) * inner;
+        let mut line = vec![0.0; (n + 2 * padding) * inner];
         for (out, block) in out.chunks_exact_mut(n * inner).zip(data.chunks_exact(m * inner)) {
             line.fill(0.0);
-            let start = if m == n { MARGIN * inner } else { 0 };
             line[start..][..block.len()].copy_from_slice(block);
             collocation.solve(inner, &mut line);
             for (i, row) in line.chunks_exact(inner).enumerate() {
-                let to = &mut out[self.node(i as isize - MARGIN as isize) * inner..][..inner];
+                let to = &mut out[self.node(i as isize - padding as isize) * inner..][..inner];
                 to.iter_mut().zip(row).for_each(|(to, x)| *to += x);
             }
         }

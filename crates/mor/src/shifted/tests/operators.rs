@@ -1,6 +1,8 @@
 //! The operators of frames on a grid.
 use super::{ALL, distance, dot, norm, random};
-use crate::shifted::{FrameOperators, Grid, GridFrames, Interpolation, Motion, Motions, ShiftedError};
+use crate::shifted::{
+    FieldShift, FrameOperators, Grid, GridFrames, Interpolation, Motion, Motions, ShiftedError,
+};
 use interfaces::{Point, Rotation, Vector};
 use monomorphic::Mat;
 use proptest::prelude::*;
@@ -209,6 +211,20 @@ fn displacements_beyond_double_precision() {
             let found = with(distance);
             let expected = matches!(found, Some(ShiftedError::TooFar { frame: 0, snapshot: 1, axis: 0, .. }));
             assert!(expected, "{interpolation:?}, {distance:e}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn beyond_an_end_a_field_continues_with_the_value_there() {
+    let grid = Grid::new([80], [1.0]).unwrap().bounded([0]);
+    for interpolation in Interpolation::ALL.into_iter().filter(|i| *i != Interpolation::Spectral) {
+        let operator = FieldShift::new(grid, interpolation);
+        // Past the margin of splines and past the other end.
+        for cells in [0.4, 46.7, 50.96, 75.2, 120.7, -50.96, -300.1] {
+            let moved = operator.shift(Vector::x() * cells, &[1.0; 80]);
+            let off = moved.iter().map(|x| (x - 1.0).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-13, "{} by {cells}: {off:.1e}", interpolation.name());
         }
     }
 }

@@ -14,6 +14,7 @@ pub mod fourier;
 mod frames;
 mod gather;
 mod grid;
+mod huber_descent;
 
 mod lines;
 mod motion;
@@ -22,6 +23,7 @@ mod operators;
 mod proximal;
 mod rank_search;
 mod residual;
+mod residual_parts;
 mod robust;
 mod shifted_pod;
 mod spline;
@@ -32,6 +34,7 @@ mod tangent;
 mod tests;
 mod thinning;
 mod translated;
+mod translated_fit;
 mod turn;
 mod waves;
 

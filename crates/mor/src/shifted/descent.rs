@@ -3,7 +3,7 @@ use super::dense::columns;
 use super::residual::{Course, Limits, Observer, Problem};
 use super::tangent::{Base, Tangent};
 use super::{Decomposition, Frame, FrameOperators, ShiftedError, StopReason};
-use monomorphic::{ColRef, Mat, MatRef};
+use monomorphic::{Mat, MatRef};
 
 /// Descent on J₂ = ½ ‖Q − Σ_k T^k Q_k‖² over all fields Q_k of given ranks at once (the functional of Reiss 2021).
 ///
@@ -17,6 +17,7 @@ pub struct JointDescent {
     limits: Limits,
     ignored: Vec<(usize, usize)>,
     level: Option<f64>,
+    ridge: f64,
 }
 
 impl JointDescent {
@@ -25,7 +26,7 @@ impl JointDescent {
     #[must_use]
     pub fn new(ranks: impl Into<Vec<usize>>) -> Self {
         let limits = Limits { tolerance: 1e-10, stagnation: 1e-4, max_steps: 100, settled: f64::INFINITY };
-        Self { ranks: ranks.into(), limits, ignored: vec![], level: None }
+        Self { ranks: ranks.into(), limits, ignored: vec![], level: None, ridge: 0.0 }
     }
 
     /// Stops at this relative error.
@@ -56,11 +57,18 @@ impl JointDescent {
         self
     }
 
-    /// Entries that are off by more than `level` count by how much, not by the square of it (Huber 1964): ½ R² becomes level (|R| − ½ level).
-    /// So wrong entries that are not known to be wrong do little harm.
+    /// Huber's function (1964) of the residual's entries in place of ½ R²: level (|R| − ½ level) beyond
+    /// ±level, by iteratively reweighted least squares.
     #[must_use]
     pub fn huber(mut self, level: f64) -> Self {
         self.level = Some(level);
+        self
+    }
+
+    /// Adds ½ `weight` Σ_k ‖Q_k‖² to J₂ (Tikhonov).
+    #[must_use]
+    pub fn ridge(mut self, weight: f64) -> Self {
+        self.ridge = weight;
         self
     }
 
@@ -68,8 +76,8 @@ impl JointDescent {
     ///
     /// # Errors
     /// [`ShiftedError::Empty`], [`ShiftedError::Snapshots`], [`ShiftedError::Unknowns`], [`ShiftedError::Ranks`],
-    /// [`ShiftedError::NotFinite`]; [`ShiftedError::Entry`] if an ignored entry is none; [`ShiftedError::Parameter`] if Huber's level
-    /// is not positive.
+    /// [`ShiftedError::NotFinite`]; [`ShiftedError::Entry`] if an ignored entry is none; [`ShiftedError::Parameter`] if Huber's level is
+    /// not positive or the weight of the fields is negative.
     pub fn solve(
         &self,
         operators: &dyn FrameOperators,
@@ -81,6 +89,10 @@ impl JointDescent {
         if let Some(value) = self.level.filter(|&level| !(level > 0.0 && level.is_finite())) {
             return Err(ShiftedError::Parameter { name: "Huber's level", value, limit: f64::INFINITY });
         }
+        if !(self.ridge >= 0.0 && self.ridge.is_finite()) {
+            let (name, value, limit) = ("the weight of the fields", self.ridge, f64::INFINITY);
+            return Err(ShiftedError::Parameter { name, value, limit });
+        }
         let ranks = problem.ranks(&self.ranks)?;
         let mut frames = problem.start(start)?;
         if frames.iter().zip(&ranks).any(|(frame, &rank)| frame.rank() != rank) {
@@ -88,7 +100,7 @@ impl JointDescent {
                 joint_step(&problem, &ranks, &mut frames);
             }
         }
-        let least_squares = LeastSquares { problem, level: self.level };
+        let least_squares = LeastSquares { problem, level: self.level, ridge: self.ridge };
         let mut course = Course::new(self.limits, observer)?;
         let (frames, stopped) = least_squares.descend(frames, &mut course);
         Ok(Decomposition::of(frames, course.history, stopped))
@@ -123,6 +135,7 @@ const MAX_INNER: usize = 40;
 struct LeastSquares<'a> {
     problem: Problem<'a>,
     level: Option<f64>,
+    ridge: f64,
 }
 
 /// One direction per frame.
@@ -139,18 +152,21 @@ fn combine(a: &mut Directions, keep: f64, factor: f64, b: &Directions) {
 impl LeastSquares<'_> {
     fn descend(&self, mut frames: Vec<Frame>, course: &mut Course<'_>) -> (Vec<Frame>, StopReason) {
         let mut residual = self.problem.residual(&frames);
-        let mut size = self.size(&residual);
+        let mut size = self.size(&residual, &frames);
         let mut damping = 1e-3;
         loop {
             let weights = self.weights(&residual);
             weigh(weights.as_ref(), &mut residual);
             let bases: Vec<_> = frames.iter().map(Base::new).collect();
-            let gradient = self.project(&bases, &residual);
+            let mut gradient = self.project(&bases, &residual);
+            for (gradient, base) in gradient.iter_mut().zip(&bases) {
+                gradient.combine(1.0, -self.ridge, &base.field());
+            }
             let better = loop {
                 let (step, predicted) = self.minimise(&bases, weights.as_ref(), &gradient, damping);
                 let trial: Vec<_> = bases.iter().zip(&step).map(|(b, s)| b.moved(s)).collect();
                 let trial_residual = self.problem.residual(&trial);
-                let trial_size = self.size(&trial_residual);
+                let trial_size = self.size(&trial_residual, &trial);
                 let gain = (size - trial_size) * (size + trial_size) / (2.0 * predicted);
                 if trial_size < size {
                     if gain > 0.75 {
@@ -181,22 +197,27 @@ impl LeastSquares<'_> {
         }
     }
 
-    /// ‖R‖ or, if large entries are to count less, the root of twice what Huber has in place of ½ ‖R‖².
-    fn size(&self, residual: &Mat<f64>) -> f64 {
-        let Some(level) = self.level else { return residual.norm_l2() };
-        let part = |r: f64| if r <= level { r * r } else { level * (2.0 * r - level) };
-        let column = |c: ColRef<'_, f64>| c.iter().map(|r| part(r.abs())).sum::<f64>();
-        residual.col_iter().map(column).sum::<f64>().sqrt()
+    /// √(‖R‖² + w Σ_k ‖Q_k‖²), with twice Huber's function in place of the square.
+    fn size(&self, residual: &Mat<f64>, frames: &[Frame]) -> f64 {
+        let fields: f64 = frames.iter().flat_map(|f| &f.singular_values).map(|s| s * s).sum();
+        let square = self.level.map_or_else(
+            || residual.squared_norm_l2(),
+            |level| {
+                let part = |r: f64| if r <= level { r * r } else { level * (2.0 * r - level) };
+                residual.col_iter().map(|c| c.iter().map(|r| part(r.abs())).sum::<f64>()).sum()
+            },
+        );
+        (square + self.ridge * fields).sqrt()
     }
 
-    /// By what entries count less.
+    /// Derivative of Huber's function over the residual.
     fn weights(&self, residual: &Mat<f64>) -> Option<Mat<f64>> {
         let level = self.level?;
         let weight = |i, j| level / level.max(f64::abs(residual[(i, j)]));
         Some(Mat::from_fn(residual.nrows(), residual.ncols(), weight))
     }
 
-    /// Σ_k T^k ξ_k, as it counts.
+    /// Σ_k T^k ξ_k where entries are known.
     fn image(&self, bases: &[Base<'_>], weights: Option<&Mat<f64>>, directions: &Directions) -> Mat<f64> {
         let (m, n) = self.problem.snapshots.shape();
         let (mut sum, mut field) = (Mat::zeros(m, n), Mat::zeros(m, n));
@@ -221,7 +242,7 @@ impl LeastSquares<'_> {
         bases.iter().enumerate().map(project).collect()
     }
 
-    /// The directions that minimise ½ ‖residual − Σ T ξ‖² + ½ damping ‖ξ‖² nearly, and how much less that is than before.
+    /// The directions that minimise J₂ + ½ damping ‖ξ‖² nearly, and how much less that is than before.
     fn minimise(
         &self,
         bases: &[Base<'_>],
@@ -241,7 +262,7 @@ impl LeastSquares<'_> {
             }
             let image = self.image(bases, weights, &search);
             let mut curved = self.project(bases, &image);
-            combine(&mut curved, 1.0, damping, &search);
+            combine(&mut curved, 1.0, damping + self.ridge, &search);
             let curvature = dot(&search, &curved);
             if curvature <= 0.0 {
                 break;

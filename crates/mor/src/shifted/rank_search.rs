@@ -90,7 +90,7 @@ impl RankSearch<'_> {
     }
 
     /// The frames with the largest mode of the residual, or None if it does not stand out.
-    fn grown(&self, frames: &[Frame], residual: &Mat<f64>, edge: f64) -> Option<Vec<Frame>> {
+    fn grown(&self, frames: &[Frame], residual: &Mat<f64>, noise: f64) -> Option<Vec<Frame>> {
         let leading = |k: usize| {
             let mut field = residual.clone();
             self.operators.to_lab_transposed(k, field.as_mut());
@@ -103,8 +103,8 @@ impl RankSearch<'_> {
         // If it is much of all there is, the rest tells the noise.
         let (m, n) = residual.shape();
         let rest = (residual.squared_norm_l2() - mode.singular_values[0].powi(2)).max(0.0).sqrt();
-        let edge = edge.min(rest * (1.0 / (m as f64).sqrt() + 1.0 / (n as f64).sqrt()));
-        (self.all || mode.singular_values[0] > CLEARLY * edge).then(|| {
+        let bound = noise.min(edge(rest, [m, n]));
+        (self.all || mode.singular_values[0] > CLEARLY * bound).then(|| {
             let mut grown = frames.to_vec();
             grown[k] = grown[k].plus(&mode);
             grown
@@ -112,10 +112,18 @@ impl RankSearch<'_> {
     }
 }
 
+/// Deviation of normal noise over the median of its absolute values.
+pub(super) const NORMAL: f64 = 1.4826;
+
+/// Largest singular value of M × N independent numbers with a norm.
+pub(super) fn edge(norm: f64, [m, n]: [usize; 2]) -> f64 {
+    norm * ((m as f64).sqrt().recip() + (n as f64).sqrt().recip())
+}
+
 /// 1.4826 median |x|: the deviation of normal noise.
 pub(super) fn deviation(mut sizes: Vec<f64>) -> f64 {
     let middle = sizes.len() / 2;
-    if sizes.is_empty() { 0.0 } else { 1.4826 * *sizes.select_nth_unstable_by(middle, f64::total_cmp).1 }
+    if sizes.is_empty() { 0.0 } else { NORMAL * *sizes.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 /// What the largest singular value of noise like that is. Entries that are zero do not count: they are not known.

@@ -2,7 +2,7 @@
 use super::rank_search::{Fit, Found, RankSearch};
 use super::residual::{Observer, Problem};
 use super::thinning::{MANY, SOME, Thinned, thinned};
-use super::translated::Translated;
+use super::translated::{SMALL, Translated};
 use super::waves::Waves;
 use super::{
     Decomposition, Frame, FrameOperators, Grid, GridFrames, Interpolation, JointDescent, Progress,
@@ -39,7 +39,7 @@ pub enum Noise {
 ///
 /// Frames that only move along periodic axes, with [`Interpolation::Spectral`], are fitted in the space of wave vectors by [`Als`](super::fourier::Als) instead, and first brought to
 /// where what they carry is at the centres of cells ([`centred`](super::fourier::centred), [`Decomposition::offsets`]). A fit of given ranks that ends above 1e-6 is tried in other ways ([`Decomposition::attempts`]). Wrong entries are found by turns with the modes, those of some of the snapshots first: what is off by
-/// more than six deviations is replaced by what the modes have there. Only if more than a twentieth of up to a million entries is wrong, the augmented Lagrangian is asked as above.
+/// more than six deviations is replaced by what the modes have there; up to 50 000 entries, Huber's function is minimised, too, with a level that decreases to that of the noise, and the smaller of Σ ‖Q_k‖_* + ‖E‖₁/√max(M, N) is returned. Only if more than a twentieth of up to a million entries is wrong, the augmented Lagrangian is asked as above.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShiftedPod {
     pub(super) grid: Grid,
@@ -276,7 +276,7 @@ fn many_wrong(found: &Decomposition) -> bool {
     let Some(noise) = &found.noise else { return false };
     let entries = noise.nrows() * noise.ncols();
     let wrong: usize = noise.col_iter().map(|c| c.iter().filter(|x| **x != 0.0).count()).sum();
-    entries <= CONVEX && wrong as f64 > MANY_WRONG * entries as f64
+    (SMALL + 1..=CONVEX).contains(&entries) && wrong as f64 > MANY_WRONG * entries as f64
 }
 
 /// More entries than these take the convex problem too long.

@@ -1,5 +1,6 @@
 mod algorithms;
 mod estimate;
+mod huber_descent;
 mod operators;
 mod proximal;
 mod shifted_pod;

@@ -9,6 +9,9 @@ use super::spectrum::Spectrum;
 use crate::shifted::{Decomposition, Frame, Grid, Progress, ShiftedError, Shifts, StopReason};
 use crate::{Mat, MatRef};
 
+/// Weight of the fields of frames that changes them by no more than rounding errors.
+pub(super) const RIDGE: f64 = 1e-13;
+
 /// With as many modes as asked for: by [`Als::stagnation`].
 pub(in crate::shifted) const LONG: Patience = (10, 0.0);
 /// With fewer.
@@ -33,6 +36,9 @@ pub struct Als {
     pub tolerance: f64,
     /// Most steps; each costs one pass or a few over the data.
     pub max_steps: usize,
+    /// Weight w of Σ_k ‖Φ_k A_k‖² against the squared error (Tikhonov): of frames that a snapshot does not
+    /// tell apart, the smallest modes are taken.
+    pub ridge: f64,
     /// It stops when the last ten steps lowered the error by less than this part of it.
     pub stagnation: f64,
 }
@@ -41,7 +47,7 @@ impl Als {
     /// With these ranks, until the error is 1e-9 or ten steps lower it by less than 1e-4 of it, but at most 500 steps.
     #[must_use]
     pub fn new(ranks: impl Into<Vec<usize>>) -> Self {
-        Self { ranks: ranks.into(), tolerance: 1e-9, max_steps: 500, stagnation: 1e-4 }
+        Self { ranks: ranks.into(), tolerance: 1e-9, max_steps: 500, ridge: RIDGE, stagnation: 1e-4 }
     }
 
     /// Decomposes Q − E. It begins with the coefficients of `start`, and with the residual's largest ones in each frame where that
@@ -95,8 +101,8 @@ impl Als {
             run.note(0.0, 0);
             return Ok(Decomposition::of(frames, run.history, StopReason::Tolerance));
         }
-        let all = Problem::all(spectrum);
-        let sample = Problem::sample(spectrum, ranks.iter().sum());
+        let all = Problem::all(spectrum, self.ridge);
+        let sample = Problem::sample(spectrum, ranks.iter().sum(), self.ridge);
         let mut problem = sample.as_ref().unwrap_or(&all);
         let mut sampled = sample.is_some();
         let (descent, stopped) = loop {
@@ -132,8 +138,8 @@ impl Als {
         newton: &mut Newton,
         progress: &mut dyn FnMut(&Progress) -> bool,
     ) -> Result<Decomposition, ShiftedError> {
-        let all = Problem::all(spectrum);
-        let sample = Problem::sample(spectrum, start.ranks().iter().sum());
+        let all = Problem::all(spectrum, self.ridge);
+        let sample = Problem::sample(spectrum, start.ranks().iter().sum(), self.ridge);
         let amplitudes = begin(Some(start), &start.ranks(), spectrum.n_snapshots())?;
         let mut descent = Descent::new(sample.as_ref().unwrap_or(&all), amplitudes);
         let mut run = Run { als: self, spectrum, history: Vec::new(), progress };

@@ -88,6 +88,8 @@ pub(super) struct Batch {
     pub(super) weights: Vec<f64>,
     /// Whether all phases have length one.
     pub(super) unit: bool,
+    /// Weight of ‖Φ‖² against the squared error.
+    pub(super) ridge: f64,
     work: Vec<f64>,
     scaled: Vec<f64>,
 }
@@ -101,6 +103,7 @@ impl Batch {
             pieces: Vec::new(),
             weights: Vec::new(),
             unit: true,
+            ridge: 0.0,
             work: Vec::new(),
             scaled: Vec::new(),
         }
@@ -114,6 +117,7 @@ impl Batch {
         self.pieces.clear();
         self.weights.clear();
         self.unit = true;
+        self.ridge = problem.ridge;
         for (p, (piece, phases)) in pieces.iter().zip(self.phases.chunks_exact_mut(size)).enumerate() {
             problem.phases.of(piece.wave, phases);
             self.data.extend_from_slice(&piece.data);

@@ -1,4 +1,5 @@
 //! Where frames that move between cells are best at rest.
+use super::als::RIDGE;
 use super::amplitudes::Amplitudes;
 use super::batch::{Batch, batches};
 use super::normal::Normal;
@@ -54,7 +55,7 @@ pub(in crate::shifted) fn offsets(grid: &Grid, shifts: &dyn Shifts, spectrum: &S
             if c % 2 == 0 { cos } else { sin }
         });
         let amplitudes = Amplitudes { ranks: vec![2; n_frames], values };
-        let problem = Problem { phases: &spectrum.phases, pieces: Vec::new() };
+        let problem = Problem { ridge: RIDGE, phases: &spectrum.phases, pieces: Vec::new() };
         let (mut normal, mut batch) = (Normal::new(&amplitudes), Batch::new(n));
         let mut sums = vec![[0.0; 3]; n_frames];
         let shortest = || spectrum.groups.iter().filter(|g| 2 * g.wave[axis] == cells);

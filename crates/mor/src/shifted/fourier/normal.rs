@@ -4,10 +4,6 @@ use super::batch::{Batch, vectorised, view, view_mut, zero};
 use super::cholesky::{factorise_hermitian, substitute_hermitian};
 use monomorphic::{Mat, add_product};
 
-/// Weight of ‖Φ‖² against the squared error at amplitudes of length one: where the frames cannot be told apart, the smallest modes
-/// are taken.
-pub(super) const DAMPING: f64 = 1e-13;
-
 /// D ≈ B Φ for one batch after the other, with given amplitudes.
 ///
 /// (BᴴB)_rs = Σ_j a_r a_s p̄_k p_l needs the products of the phases of each pair of frames only, and the
@@ -72,7 +68,7 @@ impl<'a> Normal<'a> {
         vectorised(
             self.matrices.chunks_exact_mut(size),
             #[inline(always)]
-            |m| factorise_hermitian(rank, m, DAMPING),
+            |m| factorise_hermitian(rank, m, batch.ridge),
         );
         substitute_all(rank, &self.matrices, &batch.pieces, &mut self.phi);
         batch.subtract(self.a, &self.phi, &mut self.residual);

@@ -2,7 +2,7 @@
 use super::amplitudes::{Amplitudes, add};
 use super::batch::{Batch, batches};
 use super::cholesky::{factorise, substitute};
-use super::normal::{DAMPING, Normal, modes};
+use super::normal::{Normal, modes};
 use super::problem::{Piece, Problem};
 use crate::Mat;
 use rand::{RngExt, SeedableRng};
@@ -64,7 +64,7 @@ impl Evaluation {
                 let residuals = normal.residual.chunks_exact(2 * n);
                 for (c, (residual, &p)) in residuals.zip(&batch.pieces).enumerate() {
                     let squared = batch.weights[p] * squares(residual);
-                    let damped = batch.weights[p] * DAMPING;
+                    let damped = batch.weights[p] * problem.ridge;
                     sum.residual += squared;
                     sum.value += squared + damped * squares(&normal.phi[2 * rank * c..][..2 * rank]);
                 }

@@ -31,19 +31,21 @@ impl<'a> Piece<'a> {
 
 /// All wave vectors, or a sample of them that stands for all.
 pub(super) struct Problem<'a> {
+    /// Weight of ‖Φ‖² against the squared error, for amplitudes of length one (Tikhonov).
+    pub(super) ridge: f64,
     pub(super) phases: &'a Phases,
     pub(super) pieces: Vec<Piece<'a>>,
 }
 
 impl<'a> Problem<'a> {
     /// All.
-    pub(super) fn all(spectrum: &'a Spectrum) -> Self {
+    pub(super) fn all(spectrum: &'a Spectrum, ridge: f64) -> Self {
         let pieces = spectrum.groups.iter().map(|g| Piece::of(g, 1.0)).collect();
-        Self { phases: &spectrum.phases, pieces }
+        Self { ridge, phases: &spectrum.phases, pieces }
     }
 
     /// A sample for so many modes, if that is much less than all. Sums over it are those over all on average.
-    pub(super) fn sample(spectrum: &'a Spectrum, rank: usize) -> Option<Self> {
+    pub(super) fn sample(spectrum: &'a Spectrum, rank: usize, ridge: f64) -> Option<Self> {
         let n = spectrum.n_snapshots();
         let columns: usize = spectrum.groups.iter().map(|g| g.data.len() / (2 * n)).sum();
         let size = (SAMPLES * rank).max(LEAST);
@@ -58,7 +60,7 @@ impl<'a> Problem<'a> {
             let mixed = spectrum.groups.iter().map(|g| mixed(g, n, size.div_ceil(n_groups), &mut rng));
             mixed.collect()
         };
-        Some(Self { phases: &spectrum.phases, pieces })
+        Some(Self { ridge, phases: &spectrum.phases, pieces })
     }
 }
 

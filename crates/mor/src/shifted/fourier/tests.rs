@@ -379,7 +379,7 @@ fn second_derivatives_are_those_of_the_gradient() {
     let (shifts, q) = random(&grid, &[2, 1], 2, 9, 5.0, 11);
     let d = solve(&Als { tolerance: 1e-12, ..Als::new([2, 1]) }, &grid, &shifts, &q);
     let spectrum = Spectrum::new(&grid, &shifts, q.as_ref(), None, 1e-14).unwrap();
-    let problem = Problem::all(&spectrum);
+    let problem = Problem::all(&spectrum, 1e-13);
     let column = |c: usize| d.frames[c / 2].coefficients.row(c % 2);
     let values = Mat::from_fn(9, 3, |j, c| column(c)[j]);
     let amplitudes = Amplitudes { ranks: vec![2, 1], values };

@@ -1,0 +1,79 @@
+//! Wrong entries of small sets of snapshots.
+use super::algorithms::quiet;
+use super::random;
+use crate::shifted::{Grid, GridFrames, Interpolation, JointDescent, Motions, Noise, Ranks, ShiftedPod};
+use monomorphic::Mat;
+use std::f64::consts::PI;
+
+/// Structures of ranks 3 and 2 that cross on a periodic line of 256 cells, with 40 snapshots.
+fn crossing() -> (Motions, Mat<f64>) {
+    let (m, n) = (256, 40);
+    let path = |k: usize, j: usize| [4.1, -3.7][k] * j as f64;
+    // Frame, place, width, and the amplitude b + c sin(ω t + φ) of every pulse.
+    let pulses = [
+        (0, 40.0, 7.0, 0.9, 0.4, 5.0, 0.3),
+        (0, 52.0, 5.0, 0.3, 0.3, 3.1, 1.7),
+        (0, 31.0, 9.0, 0.2, 0.2, 8.0, 4.0),
+        (1, 200.0, 8.0, 0.8, 0.5, 4.0, 2.0),
+        (1, 188.0, 5.0, 0.4, 0.3, 7.0, 0.9),
+    ];
+    let value = |i: usize, j: usize| {
+        let of = |&(k, place, width, b, c, omega, phi): &(usize, f64, f64, f64, f64, f64, f64)| {
+            let d = i as f64 - place - path(k, j);
+            let d = d - m as f64 * (d / m as f64).round();
+            let t = j as f64 / n as f64;
+            (b + c * (omega * t * PI / 3.0 + phi).sin()) * (-(d / width).powi(2)).exp()
+        };
+        pulses.iter().map(of).sum()
+    };
+    let displacements = [0, 1].map(|k| (0..n).map(|j| path(k, j)).collect::<Vec<_>>());
+    (Motions::along_x(&displacements).unwrap(), Mat::from_fn(m, n, value))
+}
+
+#[test]
+fn wrong_entries_of_small_sets_are_found_with_the_ranks() {
+    let (shifts, clean) = crossing();
+    let (m, n) = clean.shape();
+    let grid = Grid::new([m], [1.0]).unwrap();
+    let op = GridFrames::new(grid, Interpolation::Spectral, &shifts, m).unwrap();
+    for (share, seed) in [(0.005, 1), (0.04, 2)] {
+        let numbers = random(2 * m * n, seed);
+        let wrong = |i: usize, j: usize| {
+            let [hit, size] = [0, 1].map(|c| 0.5 + 0.5 * numbers[2 * (i + m * j) + c]);
+            if hit < share { [1.5, -1.5, 0.75, -0.75][(4.0 * size) as usize % 4] } else { 0.0 }
+        };
+        let data = Mat::from_fn(m, n, |i, j| clean[(i, j)] + wrong(i, j));
+        for ranks in [Ranks::Given(vec![3, 2]), Ranks::Found] {
+            let pod = ShiftedPod::new(grid, Interpolation::Spectral).noise(Noise::Sparse).ranks(ranks);
+            let d = pod.solve(&shifts, data.as_ref(), None, &mut quiet).unwrap();
+            let error = d.relative_error(&op, clean.as_ref());
+            assert!(d.ranks() == [3, 2] && error < 1e-3, "{share}: {:?} {error:.1e}", d.ranks());
+            let noise = d.noise.unwrap();
+            let entries = || (0..n).flat_map(|j| (0..m).map(move |i| (i, j)));
+            let missed = entries().filter(|&(i, j)| wrong(i, j) != 0.0 && noise[(i, j)] == 0.0);
+            assert_eq!(missed.count(), 0, "{share}");
+        }
+    }
+}
+
+/// σ of the minimum of ½ ‖Q − σ φ aᵀ‖² + ½ w σ² is that of Q over 1 + w.
+#[test]
+fn the_weight_of_the_fields_shrinks_them() {
+    let (shifts, _) = crossing();
+    let grid = Grid::new([256], [1.0]).unwrap();
+    let op = GridFrames::new(grid, Interpolation::Spectral, &shifts, 256).unwrap();
+    let one = Mat::from_fn(256, 40, |i, j| {
+        let d = i as f64 - 40.0 - 4.1 * j as f64;
+        (-((d - 256.0 * (d / 256.0).round()) / 7.0).powi(2)).exp()
+    });
+    let descent = JointDescent::new([1, 0]).ridge(0.1).stagnation(0.0);
+    let d = descent.solve(&op, one.as_ref(), None, &mut quiet).unwrap();
+    let expected = one.norm_l2() / 1.1;
+    assert!(
+        (d.frames[0].singular_values[0] / expected - 1.0).abs() < 1e-6,
+        "{:?}",
+        d.frames[0].singular_values
+    );
+    let negative = JointDescent::new([1, 0]).ridge(-0.1).solve(&op, one.as_ref(), None, &mut quiet);
+    assert!(negative.is_err());
+}

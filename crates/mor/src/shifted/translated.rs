@@ -164,9 +164,12 @@ impl Translated<'_> {
         watch: &mut Watch<'_>,
     ) -> Result<Decomposition, ShiftedError> {
         let (m, n) = self.snapshots.shape();
+        if m * n <= SMALL {
+            return self.small(start, watch);
+        }
         let robust = match &self.pod.ranks {
-            Ranks::Given(ranks) => self.with_ranks(ranks, start.clone(), watch)?,
-            Ranks::Found if start.is_some() || n <= TOLD => self.with_ranks_found(start.clone(), watch)?,
+            Ranks::Given(ranks) => self.with_ranks(ranks, start, watch)?,
+            Ranks::Found if start.is_some() || n <= TOLD => self.with_ranks_found(start, watch)?,
             Ranks::Found => {
                 let (some, few) = thinned(self.snapshots, TOLD);
                 let thinned = Thinned { shifts: self.shifts, snapshots: &some };
@@ -182,14 +185,28 @@ impl Translated<'_> {
             }
         };
         let Robust { frames, noise, offsets, stopped } = robust;
-        let by_turns = Decomposition { noise, offsets, ..Decomposition::of(frames, vec![], stopped) };
-        if m * n > SMALL || stopped == StopReason::Asked {
-            return Ok(Decomposition { history: watch.take(), ..by_turns });
-        }
-        let start = start.unwrap_or_else(|| vec![Frame::nothing(m, n); self.shifts.n_frames()]);
+        Ok(Decomposition { noise, offsets, ..Decomposition::of(frames, watch.take(), stopped) })
+    }
+
+    /// The better of Huber's descent and of modes and wrong entries by turns with its ranks.
+    fn small(&self, start: Option<Vec<Frame>>, watch: &mut Watch<'_>) -> Result<Decomposition, ShiftedError> {
+        let (m, n) = self.snapshots.shape();
+        let nothing = || vec![Frame::nothing(m, n); self.shifts.n_frames()];
         let descent = HuberDescent { pod: self.pod, problem: self, snapshots: self.snapshots };
-        let robust = descent.solve(start, watch)?;
-        let best = if convex_size(&by_turns) < convex_size(&robust) { by_turns } else { robust };
+        let mut best = descent.solve(start.clone().unwrap_or_else(nothing), watch)?;
+        if best.stopped != StopReason::Asked {
+            let ranks = match &self.pod.ranks {
+                Ranks::Given(ranks) => ranks.clone(),
+                Ranks::Found => best.ranks(),
+            };
+            let Robust { frames, noise, offsets, stopped } = self.with_ranks(&ranks, start, watch)?;
+            let by_turns = Decomposition { noise, offsets, ..Decomposition::of(frames, vec![], stopped) };
+            if stopped == StopReason::Asked {
+                best.stopped = stopped;
+            } else if convex_size(&by_turns) < convex_size(&best) {
+                best = by_turns;
+            }
+        }
         Ok(Decomposition { history: watch.take(), ..best })
     }
 

@@ -3,38 +3,36 @@ use super::rank_search::{NORMAL, deviation, edge};
 use super::shifted_pod::{Ranks, Watch};
 use super::translated::Translated;
 use super::translated_fit::{Fields, Fit};
-use super::{Decomposition, Frame, ShiftedError, ShiftedPod, StopReason};
+use super::{Decomposition, Frame, ShiftedError, StopReason};
 use interfaces::Vector;
-use monomorphic::{Mat, MatRef};
+use monomorphic::Mat;
 
 /// Minimisation of Huber's function of the residual, whose level decreases to that of the noise.
 ///
 /// min over M = Σ_k T^k Q_k of Σ ρ_δ(Q − M) + ½ w Σ_k ‖Q_k‖², where ρ_δ(r) = ½ r² if |r| ≤ δ and
-/// δ (|r| − ½ δ) otherwise (Huber 1964). It is also min over M and E of ½ ‖Q − E − M‖² + δ ‖E‖₁ + …
-/// (Geman & Yang 1995): E = Q − M less what of it is within ±δ, and M is the least-squares fit to Q − E.
-/// Where such fits do not reach the minimum, entries are weighted by δ/|r| instead.
+/// δ (|r| − ½ δ) otherwise (Huber 1964). This is the minimum over M and E of
+/// ½ ‖Q − E − M‖² + δ ‖E‖₁ + ½ w Σ_k ‖Q_k‖² (Geman & Yang 1995): E is Q − M less its part within ±δ, and
+/// M is the least-squares fit to Q − E. Where these fits do not reach a stationary point, entries are
+/// weighted by δ/|r| instead.
 ///
-/// The level δ begins at the largest entry, where nothing is an outlier, and is halved, so that the fields
-/// at one level begin near those at the next, down to 1.345 deviations of normal noise. At each
-/// level, modes are added that stand out of the limited residual; the level stays above modes that must not be added.
+/// The level δ begins at the largest entry, where no entry is an outlier, and is halved, so that the
+/// fields at one level begin near those at the next, down to 1.345 deviations of normal noise. At each
+/// level, modes are added that stand out of the limited residual; the level stays above modes that must
+/// not be added.
 ///
-/// The weight w keeps frames from cancelling one another where a snapshot hardly tells them apart, so
-/// that their difference takes its wrong entries up. It changes the fields by no more than the largest
-/// singular value of noise like the limited residual.
+/// The weight w bounds the amplitudes of frames that cancel one another in a snapshot that hardly tells
+/// them apart: their difference could take up its wrong entries. It changes the fields by no more than
+/// the largest singular value of noise like the limited residual.
 pub(super) struct HuberDescent<'a> {
-    pub(super) pod: &'a ShiftedPod,
     pub(super) problem: &'a Translated<'a>,
-    pub(super) snapshots: MatRef<'a, f64>,
 }
 
 /// Level of Huber's function in deviations of normal noise: the estimate of a mean is 95 per cent
 /// efficient (Huber 1964).
 const EFFICIENT: f64 = 1.345;
-/// Fields are stationary if the tangent part of the residual is below this share of what a mode must exceed.
+/// Fields are stationary if the tangent part of the residual is below this share of the bound that a
+/// mode must exceed.
 const STATIONARY: f64 = 0.1;
-/// Entries that a deviation is estimated from, about.
-const SAMPLES: usize = 1 << 20;
-
 /// Fields at a level, and what they leave.
 #[derive(Clone)]
 struct State {
@@ -83,40 +81,45 @@ impl HuberDescent<'_> {
         start: Vec<Frame>,
         watch: &mut Watch<'_>,
     ) -> Result<Decomposition, ShiftedError> {
+        let pod = self.problem.pod;
         let offsets = vec![Vector::zeros(); start.len()];
         let fields = Fields { frames: start, offsets, stopped: StopReason::Steps };
         let residual = self.problem.residual(&fields.frames, &fields.offsets);
         let level = residual.norm_max();
         let mut state = State { fields, residual, level };
-        let most = match &self.pod.ranks {
+        let most = match &pod.ranks {
             Ranks::Given(ranks) => ranks.clone(),
             Ranks::Found => {
-                let most = vec![self.pod.max_rank; state.fields.frames.len()];
-                state = self.descend(state, &most, self.pod.rank_tolerance, watch)?;
+                let most = vec![pod.max_rank; state.fields.frames.len()];
+                state = self.descend(state, &most, pod.rank_tolerance, watch)?;
                 if !state.asked_to_stop() {
-                    let known = self.snapshots - state.beyond(self.bound(&state));
-                    state.fields = self.problem.pruned(known.as_ref(), state.fields, watch)?;
-                    state.residual = self.problem.residual(&state.fields.frames, &state.fields.offsets);
+                    let known = self.problem.snapshots - state.beyond(self.bound(&state));
+                    let fields = self.problem.pruned(known.as_ref(), state.fields.clone(), watch)?;
+                    state = self.with_fields(state, fields);
                 }
                 state.fields.ranks()
             }
         };
         if !state.asked_to_stop() {
-            state = self.descend(state, &most, self.pod.tolerance, watch)?;
+            state = self.descend(state, &most, pod.tolerance, watch)?;
         }
         let bound = self.bound(&state);
-        let mut noise = state.beyond(bound);
         if !state.asked_to_stop() {
             state = self.refit(state, &most, bound, watch)?;
-            noise = state.beyond(bound);
         }
+        let noise = Some(state.beyond(bound));
         let Fields { frames, offsets, stopped } = state.fields;
-        Ok(Decomposition { noise: Some(noise), offsets, ..Decomposition::of(frames, vec![], stopped) })
+        Ok(Decomposition { noise, offsets, ..Decomposition::of(frames, vec![], stopped) })
+    }
+
+    fn with_fields(&self, state: State, fields: Fields) -> State {
+        let residual = self.problem.residual(&fields.frames, &fields.offsets);
+        State { fields, residual, ..state }
     }
 
     /// Lowers the level to that of the noise, of modes that must not be added, or of an error that is
-    /// small enough; or until the error of the others is, and the entries beyond it are wrong, all of them,
-    /// and the same ones at two levels.
+    /// small enough; or until, at two levels, the same entries are wrong, none but these is beyond the
+    /// level, and the error without them reaches the tolerance for which ranks are found.
     fn descend(
         &self,
         mut state: State,
@@ -131,9 +134,13 @@ impl HuberDescent<'_> {
             if state.asked_to_stop() || size == 0.0 {
                 return Ok(state);
             }
-            let explained = (self.snapshots - &state.residual).norm_l2();
+            let explained = self.explained(&state);
             let good = size <= sufficient * explained;
-            if let Some((k, mode)) = self.standing_out(&state, watch)? {
+            let mode = self.standing_out(&mut state, watch)?;
+            if state.asked_to_stop() {
+                return Ok(state);
+            }
+            if let Some((k, mode)) = mode {
                 let frame = &mut state.fields.frames[k];
                 if good || frame.rank() >= most[k] {
                     return Ok(state);
@@ -142,11 +149,11 @@ impl HuberDescent<'_> {
                 continue;
             }
             let noise = EFFICIENT * self.deviation(&state.residual);
-            let wrong = state.beyond(self.bound(&state));
-            let count = wrong.col_iter().map(|c| c.iter().filter(|x| **x != 0.0).count()).sum::<usize>();
+            let bound = self.bound(&state);
+            let count = state.count_beyond(bound);
             let alone = (count > 0 && count == state.count_beyond(state.level)).then_some(count);
-            let others = (&state.residual - wrong).norm_l2();
-            let complete = others <= self.pod.rank_tolerance * explained;
+            let others = (&state.residual - state.beyond(bound)).norm_l2();
+            let complete = others <= self.problem.pod.rank_tolerance * explained;
             if good || noise >= state.level || complete && alone.is_some() && alone == separate {
                 return Ok(state);
             }
@@ -162,41 +169,49 @@ impl HuberDescent<'_> {
         if ranks.iter().all(|&rank| rank == 0) {
             return Ok(state);
         }
-        for _ in 0..self.pod.max_steps {
+        for _ in 0..self.problem.pod.max_steps {
             let within = state.limited();
             let resolved = edge(within.norm_l2(), [m, n]);
-            let data = self.snapshots - &state.residual + within;
-            let fit = Fit { full: false, ridge: resolved / data.norm_l2() };
-            state.fields = self.problem.fit(data.as_ref(), state.fields, &ranks, fit, watch)?;
-            let before = std::mem::replace(
-                &mut state.residual,
-                self.problem.residual(&state.fields.frames, &state.fields.offsets),
-            );
-            if state.asked_to_stop() || (&state.residual - before).norm_l2() <= resolved {
+            let data = self.problem.snapshots - &state.residual + within;
+            let fit = Fit { full: false, ridge: self.ridge(&state, resolved) };
+            let fields = self.problem.fit(data.as_ref(), state.fields.clone(), &ranks, fit, watch)?;
+            let next = self.with_fields(state.clone(), fields);
+            let change = (&next.residual - &state.residual).norm_l2();
+            state = next;
+            if state.asked_to_stop() || change <= resolved {
                 break;
             }
         }
         let within = state.limited();
         let parts = self.problem.parts(&within, &state.fields);
         if !state.asked_to_stop() && parts.iter().any(|p| p.tangent > STATIONARY * p.noise) {
-            let fields = (self.snapshots - &state.residual).norm_l2();
-            let ridge = edge(within.norm_l2(), [m, n]) / fields.max(f64::MIN_POSITIVE);
+            let ridge = self.ridge(&state, edge(within.norm_l2(), [m, n]));
             state = self.reweighted(state, ridge, watch)?;
         }
         Ok(state)
     }
 
-    fn reweighted(&self, mut state: State, ridge: f64, watch: &mut Watch<'_>) -> Result<State, ShiftedError> {
-        state.fields = self.problem.reweighted(state.fields, state.level, ridge, watch)?;
-        state.residual = self.problem.residual(&state.fields.frames, &state.fields.offsets);
-        Ok(state)
+    fn reweighted(&self, state: State, ridge: f64, watch: &mut Watch<'_>) -> Result<State, ShiftedError> {
+        let fields = self.problem.reweighted(state.fields.clone(), state.level, ridge, watch)?;
+        Ok(self.with_fields(state, fields))
     }
 
-    /// The largest mode of the limited residual that is not noise, and its frame, also if the fields change by no more
-    /// than one entry of the limited residual by regularisation: the bias of settled ones can look like a mode.
+    /// ‖M‖.
+    fn explained(&self, state: &State) -> f64 {
+        (self.problem.snapshots - &state.residual).norm_l2()
+    }
+
+    /// Weight w that changes M by `change` in norm where frames are told apart.
+    fn ridge(&self, state: &State, change: f64) -> f64 {
+        change / self.explained(state).max(state.level).max(f64::MIN_POSITIVE)
+    }
+
+    /// The largest mode of the limited residual that is not noise, and its frame. It stands out of the
+    /// settled fields and of those with a weight that changes them by one entry of the limited residual:
+    /// the bias of settled fields can look like a mode.
     fn standing_out(
         &self,
-        state: &State,
+        state: &mut State,
         watch: &mut Watch<'_>,
     ) -> Result<Option<(usize, Frame)>, ShiftedError> {
         let largest = |state: &State| {
@@ -211,42 +226,42 @@ impl HuberDescent<'_> {
         }
         let (m, n) = state.residual.shape();
         let entry = state.limited().norm_l2() / ((m * n) as f64).sqrt();
-        let ridge = entry / (self.snapshots - &state.residual).norm_l2().max(f64::MIN_POSITIVE);
-        let state = self.reweighted(state.clone(), ridge, watch)?;
-        Ok(largest(&state))
+        let less_biased = self.reweighted(state.clone(), self.ridge(state, entry), watch)?;
+        if less_biased.asked_to_stop() {
+            state.fields.stopped = StopReason::Asked;
+        }
+        Ok(largest(&less_biased))
     }
 
-    /// Least-squares fits without the entries beyond a bound, until the fields do not change.
+    /// Least-squares fits without the entries beyond a bound, until the fields do not change; the settled
+    /// fields if those are nearer to the snapshots in the sense of Huber's function.
     fn refit(
         &self,
-        mut state: State,
+        settled: State,
         ranks: &[usize],
         bound: f64,
         watch: &mut Watch<'_>,
     ) -> Result<State, ShiftedError> {
-        let settled = state.clone();
-        let wrong = state.beyond(bound);
-        let is_wrong = |i, j| wrong[(i, j)] != 0.0;
-        for _ in 0..self.pod.max_steps {
+        let wrong = settled.beyond(bound);
+        let mut state = settled.clone();
+        for _ in 0..self.problem.pod.max_steps {
             let r = &state.residual;
-            let left_out = |i, j| if is_wrong(i, j) { r[(i, j)] } else { 0.0 };
-            let data = self.snapshots - Mat::from_fn(r.nrows(), r.ncols(), left_out);
+            let left_out = |i, j| if wrong[(i, j)] == 0.0 { 0.0 } else { r[(i, j)] };
+            let data = self.problem.snapshots - Mat::from_fn(r.nrows(), r.ncols(), left_out);
             let fit = Fit { full: true, ridge: 0.0 };
-            state.fields = self.problem.fit(data.as_ref(), state.fields, ranks, fit, watch)?;
-            let before = std::mem::replace(
-                &mut state.residual,
-                self.problem.residual(&state.fields.frames, &state.fields.offsets),
-            );
-            let change = (&state.residual - before).norm_l2();
-            if state.asked_to_stop() || change <= self.pod.tolerance * data.norm_l2() {
+            let fields = self.problem.fit(data.as_ref(), state.fields.clone(), ranks, fit, watch)?;
+            let next = self.with_fields(state.clone(), fields);
+            let change = (&next.residual - &state.residual).norm_l2();
+            state = next;
+            if state.asked_to_stop() || change <= self.problem.pod.tolerance * data.norm_l2() {
                 break;
             }
         }
-        // Too few entries are left of some snapshots.
-        Ok(if state.huber() <= settled.huber() { state } else { settled })
+        let better = state.asked_to_stop() || state.huber() <= settled.huber();
+        Ok(if better { state } else { settled })
     }
 
-    /// Residual that only wrong entries exceed: that of the largest of as many normal numbers (Donoho & Johnstone
+    /// Residual that only wrong entries exceed: the largest of as many normal numbers (Donoho & Johnstone
     /// 1994), of the deviation of the noise or of that at which the level is efficient.
     fn bound(&self, state: &State) -> f64 {
         let entries = (state.residual.nrows() * state.residual.ncols()) as f64;
@@ -254,16 +269,15 @@ impl HuberDescent<'_> {
     }
 
     /// Deviation of the noise from the median of the residual's entries; or, if that is larger, from
-    /// their median weighted by the fields, which most entries may be zero of.
+    /// their median weighted by the fields, most of whose entries may be zero.
     fn deviation(&self, residual: &Mat<f64>) -> f64 {
-        let fields = |i: usize, j: usize| (self.snapshots[(i, j)] - residual[(i, j)]).abs();
-        let (m, n) = residual.shape();
-        let stride = (m * n / SAMPLES).max(1);
-        let entries: Vec<_> = (0..n)
-            .flat_map(|j| (j % stride..m).step_by(stride).map(move |i| (i, j)))
-            .map(|(i, j)| (residual[(i, j)].abs(), fields(i, j)))
-            .collect();
-        deviation(entries.iter().map(|e| e.0).collect()).max(NORMAL * weighted_median(entries))
+        let entries = || {
+            let columns = residual.col_iter().zip(self.problem.snapshots.col_iter());
+            columns.flat_map(|(r, q)| {
+                r.iter().zip(q.iter()).map(|(r, q)| (r.abs(), (q - r).abs())).collect::<Vec<_>>()
+            })
+        };
+        deviation(entries().map(|e| e.0).collect()).max(NORMAL * weighted_median(entries().collect()))
     }
 }
 

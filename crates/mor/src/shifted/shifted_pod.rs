@@ -31,15 +31,26 @@ pub enum Noise {
 
 /// Shifted proper orthogonal decomposition, by the algorithms that suit the snapshots.
 ///
-/// 1. If entries may be wrong, the augmented Lagrangian of [`Proximal`](super::Proximal) tells the modes to start from. They are fitted so that wrong entries
-///    do little harm, by [`JointDescent::huber`], and those that are off by more than six deviations of the others are wrong.
-/// 2. Ranks that are not given are found by adding modes that stand out of the noise, and leaving out those that are not needed; first
-///    on some of the snapshots if there are many.
-/// 3. [`JointDescent`] fits all modes to the entries that are not wrong: nothing is left of the bias of the nuclear norm.
+/// Frames that only move along periodic axes, with [`Interpolation::Spectral`], are fitted in the space
+/// of wave vectors by [`Als`](super::fourier::Als), first displaced so that their fields are centred on
+/// cells ([`centred`](super::fourier::centred), [`Decomposition::offsets`]). All others are fitted by
+/// [`JointDescent`]. A fit of given ranks that ends above 1e-6 is repeated from other starts
+/// ([`Decomposition::attempts`]).
 ///
-/// Frames that only move along periodic axes, with [`Interpolation::Spectral`], are fitted in the space of wave vectors by [`Als`](super::fourier::Als) instead, and first brought to
-/// where what they carry is at the centres of cells ([`centred`](super::fourier::centred), [`Decomposition::offsets`]). A fit of given ranks that ends above 1e-6 is tried in other ways ([`Decomposition::attempts`]). Wrong entries are found by turns with the modes, those of some of the snapshots first: what is off by
-/// more than six deviations is replaced by what the modes have there; up to 50 000 entries, Huber's function is minimised, too, with a level that decreases to that of the noise, and the smaller of Σ ‖Q_k‖_* + ‖E‖₁/√max(M, N) is returned. Only if more than a twentieth of up to a million entries is wrong, the augmented Lagrangian is asked as above.
+/// [`Ranks::Found`]: modes are added that stand out of the noise, and those that are not needed are
+/// removed; first on some of the snapshots if there are many.
+///
+/// [`Noise::Sparse`], frames in the space of wave vectors:
+/// - up to 50 000 entries Huber's function of the residual is minimised with a level that decreases to
+///   that of the noise, and modes and wrong entries are fitted in turn with the ranks of that fit; the
+///   one with the smaller Σ_k ‖Q_k‖_* + ‖E‖₁/√max(M, N) is returned;
+/// - beyond, modes and wrong entries are fitted in turn: an entry that is off by more than six
+///   deviations is replaced by its value in the fields. If more than a twentieth of up to a million
+///   entries is wrong, the fit of all other frames follows.
+///
+/// [`Noise::Sparse`], other frames: modes by the augmented Lagrangian of [`Proximal`](super::Proximal),
+/// then by [`JointDescent::huber`]; entries that are off by more than six deviations are wrong, and
+/// [`JointDescent`] fits all others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShiftedPod {
     pub(super) grid: Grid,

@@ -192,7 +192,7 @@ impl Translated<'_> {
     fn small(&self, start: Option<Vec<Frame>>, watch: &mut Watch<'_>) -> Result<Decomposition, ShiftedError> {
         let (m, n) = self.snapshots.shape();
         let nothing = || vec![Frame::nothing(m, n); self.shifts.n_frames()];
-        let descent = HuberDescent { pod: self.pod, problem: self, snapshots: self.snapshots };
+        let descent = HuberDescent { problem: self };
         let mut best = descent.solve(start.clone().unwrap_or_else(nothing), watch)?;
         if best.stopped != StopReason::Asked {
             let ranks = match &self.pod.ranks {
@@ -205,6 +205,18 @@ impl Translated<'_> {
                 best.stopped = stopped;
             } else if convex_size(&by_turns) < convex_size(&best) {
                 best = by_turns;
+            }
+        }
+        // The last step has the error of the fit that is returned.
+        let mut left = self.residual(&best.frames, &best.offsets);
+        if let Some(noise) = &best.noise {
+            left -= noise;
+        }
+        if best.stopped != StopReason::Asked {
+            let relative = left.norm_l2() / self.snapshots.norm_l2().max(f64::MIN_POSITIVE);
+            let rank = best.frames.iter().map(Frame::rank).sum();
+            if watch.see(&Progress { step: 0, error: relative, rank }).is_break() {
+                best.stopped = StopReason::Asked;
             }
         }
         Ok(Decomposition { history: watch.take(), ..best })

@@ -27,7 +27,7 @@ impl Fields {
 pub(super) struct Fit {
     /// To the tolerance of the decomposition; otherwise while steps lower the error by per cents.
     pub(super) full: bool,
-    /// Weight of Σ_k ‖Φ_k Σ_k A_k‖² against the squared error.
+    /// Weight of Σ_k ‖Q_k‖² against the squared error; no less than the default of [`Als`].
     pub(super) ridge: f64,
 }
 
@@ -47,7 +47,8 @@ impl Translated<'_> {
         let part = Translated { snapshots: data, ..*self };
         let (spectrum, offsets) = part.spectrum(None)?;
         let patience = if fit.full { LONG } else { BRIEF };
-        let als = Als { ridge: fit.ridge, ..self.als(ranks, self.pod.tolerance) };
+        let als = self.als(ranks, self.pod.tolerance);
+        let als = Als { ridge: fit.ridge.max(als.ridge), ..als };
         let mut go_on = |p: &Progress| watch.see(p).is_continue();
         let d = als.fit(&spectrum, Some(&started(start.frames)), patience, &mut go_on)?;
         Ok(Fields { frames: d.frames, offsets, stopped: d.stopped })

@@ -37,7 +37,7 @@ pub struct Als {
     /// Most steps; each costs one pass or a few over the data.
     pub max_steps: usize,
     /// Weight w of Σ_k ‖Φ_k A_k‖² against the squared error (Tikhonov): of frames that a snapshot does not
-    /// tell apart, the smallest modes are taken.
+    /// tell apart, the smallest modes are taken. Positive.
     pub ridge: f64,
     /// It stops when the last ten steps lowered the error by less than this part of it.
     pub stagnation: f64,
@@ -73,6 +73,10 @@ impl Als {
             return Err(ShiftedError::Ranks { ranks: self.ranks.len(), frames });
         }
         ShiftedError::check_tolerance("tolerance", self.tolerance)?;
+        if !(self.ridge > 0.0 && self.ridge.is_finite()) {
+            let (name, value, limit) = ("the weight of the fields", self.ridge, f64::INFINITY);
+            return Err(ShiftedError::Parameter { name, value, limit });
+        }
         let spectrum = Spectrum::new(grid, shifts, snapshots, noise, self.cut())?;
         let d = self.fit(&spectrum, start, LONG, progress)?;
         Ok(Decomposition { noise: noise.map(|e| e.to_owned()), ..d })

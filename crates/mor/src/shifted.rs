@@ -3,6 +3,7 @@
 //! Q(x, t_j) ≈ Σ_k T^{Δ_k(t_j)} [ Σ_i σ_i^k a_i^k(t_j) φ_i^k(x) ] (Reiss, Schulze, Sesterhenn & Mehrmann 2018; equation (9) of Isoz et al. 2023)
 //!
 //! T^s q (x) = q(x − s): what frame k carries is at rest in it, and moved by Δ_k(t_j) in snapshot j.
+mod anderson;
 mod axis;
 mod correlation;
 mod dense;

@@ -17,7 +17,6 @@ pub struct JointDescent {
     limits: Limits,
     ignored: Vec<(usize, usize)>,
     level: Option<f64>,
-    ridge: f64,
 }
 
 impl JointDescent {
@@ -26,7 +25,7 @@ impl JointDescent {
     #[must_use]
     pub fn new(ranks: impl Into<Vec<usize>>) -> Self {
         let limits = Limits { tolerance: 1e-10, stagnation: 1e-4, max_steps: 100, settled: f64::INFINITY };
-        Self { ranks: ranks.into(), limits, ignored: vec![], level: None, ridge: 0.0 }
+        Self { ranks: ranks.into(), limits, ignored: vec![], level: None }
     }
 
     /// Stops at this relative error.
@@ -65,19 +64,12 @@ impl JointDescent {
         self
     }
 
-    /// Adds ½ `weight` Σ_k ‖Q_k‖² to J₂ (Tikhonov).
-    #[must_use]
-    pub fn ridge(mut self, weight: f64) -> Self {
-        self.ridge = weight;
-        self
-    }
-
     /// Decomposes snapshots, from nothing or from frames that are known already.
     ///
     /// # Errors
     /// [`ShiftedError::Empty`], [`ShiftedError::Snapshots`], [`ShiftedError::Unknowns`], [`ShiftedError::Ranks`],
     /// [`ShiftedError::NotFinite`]; [`ShiftedError::Entry`] if an ignored entry is none; [`ShiftedError::Parameter`] if Huber's level is
-    /// not positive or the weight of the fields is negative.
+    /// not positive.
     pub fn solve(
         &self,
         operators: &dyn FrameOperators,
@@ -89,10 +81,6 @@ impl JointDescent {
         if let Some(value) = self.level.filter(|&level| !(level > 0.0 && level.is_finite())) {
             return Err(ShiftedError::Parameter { name: "Huber's level", value, limit: f64::INFINITY });
         }
-        if !(self.ridge >= 0.0 && self.ridge.is_finite()) {
-            let (name, value, limit) = ("the weight of the fields", self.ridge, f64::INFINITY);
-            return Err(ShiftedError::Parameter { name, value, limit });
-        }
         let ranks = problem.ranks(&self.ranks)?;
         let mut frames = problem.start(start)?;
         if frames.iter().zip(&ranks).any(|(frame, &rank)| frame.rank() != rank) {
@@ -100,7 +88,7 @@ impl JointDescent {
                 joint_step(&problem, &ranks, &mut frames);
             }
         }
-        let least_squares = LeastSquares { problem, level: self.level, ridge: self.ridge };
+        let least_squares = LeastSquares { problem, level: self.level };
         let mut course = Course::new(self.limits, observer)?;
         let (frames, stopped) = least_squares.descend(frames, &mut course);
         Ok(Decomposition::of(frames, course.history, stopped))
@@ -135,7 +123,6 @@ const MAX_INNER: usize = 40;
 struct LeastSquares<'a> {
     problem: Problem<'a>,
     level: Option<f64>,
-    ridge: f64,
 }
 
 /// One direction per frame.
@@ -152,21 +139,18 @@ fn combine(a: &mut Directions, keep: f64, factor: f64, b: &Directions) {
 impl LeastSquares<'_> {
     fn descend(&self, mut frames: Vec<Frame>, course: &mut Course<'_>) -> (Vec<Frame>, StopReason) {
         let mut residual = self.problem.residual(&frames);
-        let mut size = self.size(&residual, &frames);
+        let mut size = self.size(&residual);
         let mut damping = 1e-3;
         loop {
             let weights = self.weights(&residual);
             weigh(weights.as_ref(), &mut residual);
             let bases: Vec<_> = frames.iter().map(Base::new).collect();
-            let mut gradient = self.project(&bases, &residual);
-            for (gradient, base) in gradient.iter_mut().zip(&bases) {
-                gradient.combine(1.0, -self.ridge, &base.field());
-            }
+            let gradient = self.project(&bases, &residual);
             let better = loop {
                 let (step, predicted) = self.minimise(&bases, weights.as_ref(), &gradient, damping);
                 let trial: Vec<_> = bases.iter().zip(&step).map(|(b, s)| b.moved(s)).collect();
                 let trial_residual = self.problem.residual(&trial);
-                let trial_size = self.size(&trial_residual, &trial);
+                let trial_size = self.size(&trial_residual);
                 let gain = (size - trial_size) * (size + trial_size) / (2.0 * predicted);
                 if trial_size < size {
                     if gain > 0.75 {
@@ -197,17 +181,11 @@ impl LeastSquares<'_> {
         }
     }
 
-    /// √(‖R‖² + w Σ_k ‖Q_k‖²), with twice Huber's function in place of the square.
-    fn size(&self, residual: &Mat<f64>, frames: &[Frame]) -> f64 {
-        let fields: f64 = frames.iter().flat_map(|f| &f.singular_values).map(|s| s * s).sum();
-        let square = self.level.map_or_else(
-            || residual.squared_norm_l2(),
-            |level| {
-                let part = |r: f64| if r <= level { r * r } else { level * (2.0 * r - level) };
-                residual.col_iter().map(|c| c.iter().map(|r| part(r.abs())).sum::<f64>()).sum()
-            },
-        );
-        (square + self.ridge * fields).sqrt()
+    /// ‖R‖, or the root of twice Huber's function.
+    fn size(&self, residual: &Mat<f64>) -> f64 {
+        let Some(level) = self.level else { return residual.norm_l2() };
+        let part = |r: f64| if r <= level { r * r } else { level * (2.0 * r - level) };
+        residual.col_iter().map(|c| c.iter().map(|r| part(r.abs())).sum::<f64>()).sum::<f64>().sqrt()
     }
 
     /// Derivative of Huber's function over the residual.
@@ -262,7 +240,7 @@ impl LeastSquares<'_> {
             }
             let image = self.image(bases, weights, &search);
             let mut curved = self.project(bases, &image);
-            combine(&mut curved, 1.0, damping + self.ridge, &search);
+            combine(&mut curved, 1.0, damping, &search);
             let curvature = dot(&search, &curved);
             if curvature <= 0.0 {
                 break;

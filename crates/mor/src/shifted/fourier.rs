@@ -21,7 +21,8 @@ mod spectrum;
 mod tests;
 
 pub use als::Als;
-pub(super) use als::LONG;
+pub(super) use als::{LONG, Patience, RIDGE};
 pub use centring::centred;
 pub(super) use centring::offsets;
+pub(super) use cholesky::{factorise, substitute};
 pub(super) use spectrum::Spectrum;

@@ -1,38 +1,53 @@
 //! Decomposition of snapshots some of whose entries are wrong.
+use super::anderson::Anderson;
+use super::fourier::LONG;
 use super::rank_search::{NORMAL, deviation, edge};
 use super::shifted_pod::{Ranks, Watch};
-use super::translated::Translated;
-use super::translated_fit::{Fields, Fit};
+use super::translated::{BRIEF, Translated};
+use super::translated_fit::Fields;
 use super::{Decomposition, Frame, ShiftedError, StopReason};
 use interfaces::Vector;
 use monomorphic::Mat;
 
-/// Minimisation of Huber's function of the residual, whose level decreases to that of the noise.
+/// Minimisation of Huber's function of the residual, whose level decreases until the entries that are
+/// wrong are told from the others.
 ///
 /// min over M = Σ_k T^k Q_k of Σ ρ_δ(Q − M) + ½ w Σ_k ‖Q_k‖², where ρ_δ(r) = ½ r² if |r| ≤ δ and
 /// δ (|r| − ½ δ) otherwise (Huber 1964). This is the minimum over M and E of
 /// ½ ‖Q − E − M‖² + δ ‖E‖₁ + ½ w Σ_k ‖Q_k‖² (Geman & Yang 1995): E is Q − M less its part within ±δ, and
-/// M is the least-squares fit to Q − E. Where these fits do not reach a stationary point, entries are
-/// weighted by δ/|r| instead.
+/// M is the least-squares fit to Q − E.
 ///
-/// The level δ begins at the largest entry, where no entry is an outlier, and is halved, so that the
-/// fields at one level begin near those at the next, down to 1.345 deviations of normal noise. At each
-/// level, modes are added that stand out of the limited residual; the level stays above modes that must
-/// not be added.
+/// The level δ begins at the largest entry, where no entry is an outlier, and is lowered by decades, so that
+/// the fields at one level begin near those at the next. At each level a least-squares fit without the
+/// entries beyond it follows, which has no bias by them (least trimmed squares, Rousseeuw 1984). If that
+/// fit reaches the error that is sufficient, these entries hold all wrong ones. If not, a mode is added
+/// that stands out of both residuals limited to ±δ; if none does, the level is lowered, to no less than
+/// 1.345 deviations of the noise.
 ///
-/// The weight w bounds the amplitudes of frames that cancel one another in a snapshot that hardly tells
-/// them apart: their difference could take up its wrong entries. It changes the fields by no more than
-/// the largest singular value of noise like the limited residual.
+/// A snapshot that hardly tells frames apart would lend them its wrong entries: it is left out until the
+/// modes are known (coherence, Candès & Recht 2009). In the end the amplitudes of all snapshots are
+/// fitted to the modes, which has one minimum only.
 pub(super) struct HuberDescent<'a> {
-    pub(super) problem: &'a Translated<'a>,
+    problem: &'a Translated<'a>,
+    /// Q, zero in snapshots that are left out.
+    known: Mat<f64>,
+    left_out: Vec<usize>,
 }
 
 /// Level of Huber's function in deviations of normal noise: the estimate of a mean is 95 per cent
 /// efficient (Huber 1964).
 const EFFICIENT: f64 = 1.345;
-/// Fields are stationary if the tangent part of the residual is below this share of the bound that a
-/// mode must exceed.
-const STATIONARY: f64 = 0.1;
+/// Fields are settled when a step changes them by no more than this share of what counts.
+const SETTLED: f64 = 0.1;
+/// Factor from one level to the next.
+const LOWERED: f64 = 0.1;
+/// Frames cancel one another in a snapshot if the sum of their squares is so many times that of their sum.
+const CANCELLING: f64 = 2.0;
+/// A snapshot tells a mode alone if it has more than this share of the square of its coefficients.
+const ALONE: f64 = 0.5;
+/// Share of the snapshots that are left out, at most.
+const FEW: f64 = 0.1;
+
 /// Fields at a level, and what they leave.
 #[derive(Clone)]
 struct State {
@@ -57,35 +72,77 @@ impl State {
         Mat::from_fn(r.nrows(), r.ncols(), |i, j| entry(r[(i, j)]))
     }
 
-    /// Number of the residual's entries beyond ±`bound`.
-    fn count_beyond(&self, bound: f64) -> usize {
-        self.residual.col_iter().map(|c| c.iter().filter(|r| r.abs() > bound).count()).sum()
-    }
-
-    /// Σ ρ_δ(Q − M).
-    fn huber(&self) -> f64 {
-        let level = self.level;
-        let rho = |r: f64| if r <= level { 0.5 * r * r } else { level * (r - 0.5 * level) };
-        self.residual.col_iter().map(|c| c.iter().map(|r| rho(r.abs())).sum::<f64>()).sum()
-    }
-
     fn asked_to_stop(&self) -> bool {
         self.fields.stopped == StopReason::Asked
     }
+
+    /// Snapshot that hardly tells frames apart: their fields cancel one another there, or it alone tells a
+    /// mode. The one that exceeds a bound most, by its ratio to the bound.
+    fn doubtful(&self, known: &Mat<f64>, left_out: &[usize]) -> Option<usize> {
+        let excess = |j: usize| {
+            let field = (known.col(j) - self.residual.col(j)).squared_norm_l2();
+            let (mut frames, mut share) = (0.0, 0.0_f64);
+            for frame in &self.fields.frames {
+                for (sigma, a) in frame.singular_values.iter().zip(frame.coefficients.col(j).iter()) {
+                    frames += (sigma * a).powi(2);
+                    share = share.max(a * a);
+                }
+            }
+            (share / ALONE).max(if frames > 0.0 { frames / (CANCELLING * field) } else { 0.0 })
+        };
+        let told = (0..known.ncols()).filter(|j| !left_out.contains(j));
+        let (j, most) = told.map(|j| (j, excess(j))).max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (most > 1.0).then_some(j)
+    }
 }
 
-impl HuberDescent<'_> {
+/// Function of the residual's entries.
+enum Loss {
+    /// ρ_δ.
+    Huber { level: f64 },
+    /// ½ r² of all but those entries where `wrong` is not zero; the norm of the others is as small as need be.
+    Trimmed { wrong: Mat<f64>, sufficient: f64 },
+}
+
+impl Loss {
+    /// Residual without which the loss is that of least squares.
+    fn outliers(&self, residual: &Mat<f64>) -> Mat<f64> {
+        let outlier = |i, j| {
+            let r = residual[(i, j)];
+            match self {
+                Self::Huber { level } => r - r.clamp(-level, *level),
+                Self::Trimmed { wrong, .. } if wrong[(i, j)] == 0.0 => 0.0,
+                Self::Trimmed { .. } => r,
+            }
+        };
+        Mat::from_fn(residual.nrows(), residual.ncols(), outlier)
+    }
+
+    /// Of a residual with these outliers and this norm of the others.
+    fn value(&self, outliers: &Mat<f64>, right: f64) -> f64 {
+        match self {
+            Self::Huber { level } => 0.5 * right * right + level * outliers.norm_l1(),
+            Self::Trimmed { .. } => 0.5 * right * right,
+        }
+    }
+}
+
+impl<'a> HuberDescent<'a> {
+    pub(super) fn new(problem: &'a Translated<'a>) -> Self {
+        Self { problem, known: problem.snapshots.to_owned(), left_out: vec![] }
+    }
+
     /// From these frames on, which may be empty.
     pub(super) fn solve(
-        &self,
+        mut self,
         start: Vec<Frame>,
         watch: &mut Watch<'_>,
     ) -> Result<Decomposition, ShiftedError> {
         let pod = self.problem.pod;
         let offsets = vec![Vector::zeros(); start.len()];
-        let fields = Fields { frames: start, offsets, stopped: StopReason::Steps };
-        let residual = self.problem.residual(&fields.frames, &fields.offsets);
+        let residual = self.problem.residual(&start, &offsets);
         let level = residual.norm_max();
+        let fields = Fields { frames: start, offsets, stopped: StopReason::Steps };
         let mut state = State { fields, residual, level };
         let most = match &pod.ranks {
             Ranks::Given(ranks) => ranks.clone(),
@@ -93,8 +150,8 @@ impl HuberDescent<'_> {
                 let most = vec![pod.max_rank; state.fields.frames.len()];
                 state = self.descend(state, &most, pod.rank_tolerance, watch)?;
                 if !state.asked_to_stop() {
-                    let known = self.problem.snapshots - state.beyond(self.bound(&state));
-                    let fields = self.problem.pruned(known.as_ref(), state.fields.clone(), watch)?;
+                    let right = &self.known - state.beyond(self.bound(&state));
+                    let fields = self.problem.pruned(right.as_ref(), state.fields.clone(), watch)?;
                     state = self.with_fields(state, fields);
                 }
                 state.fields.ranks()
@@ -103,9 +160,15 @@ impl HuberDescent<'_> {
         if !state.asked_to_stop() {
             state = self.descend(state, &most, pod.tolerance, watch)?;
         }
+        state = self.put_back(state);
         let bound = self.bound(&state);
         if !state.asked_to_stop() {
-            state = self.refit(state, &most, bound, watch)?;
+            let (trimmed, kept) = self.trimmed(&state, bound, pod.tolerance, watch)?;
+            state = State { level: kept.norm_max(), ..trimmed };
+            if !state.asked_to_stop() {
+                let reached = kept.norm_l2() <= pod.tolerance * self.explained(&state);
+                state.fields.stopped = if reached { StopReason::Tolerance } else { StopReason::Stagnation };
+            }
         }
         let noise = Some(state.beyond(bound));
         let Fields { frames, offsets, stopped } = state.fields;
@@ -113,152 +176,164 @@ impl HuberDescent<'_> {
     }
 
     fn with_fields(&self, state: State, fields: Fields) -> State {
-        let residual = self.problem.residual(&fields.frames, &fields.offsets);
+        let part = Translated { snapshots: self.known.as_ref(), ..*self.problem };
+        let residual = part.residual(&fields.frames, &fields.offsets);
         State { fields, residual, ..state }
     }
 
-    /// Lowers the level to that of the noise, of modes that must not be added, or of an error that is
-    /// small enough; or until, at two levels, the same entries are wrong, none but these is beyond the
-    /// level, and the error without them reaches the tolerance for which ranks are found.
+    /// Lowers the level until the entries beyond it hold all wrong ones, or to that of the noise. The level
+    /// returned is that of the entries that are right.
     fn descend(
-        &self,
+        &mut self,
         mut state: State,
         most: &[usize],
         sufficient: f64,
         watch: &mut Watch<'_>,
     ) -> Result<State, ShiftedError> {
-        let mut separate = None;
         loop {
-            state = self.settle(state, watch)?;
-            let size = state.limited().norm_l2();
-            if state.asked_to_stop() || size == 0.0 {
+            state = self.settled(state, watch)?;
+            if state.asked_to_stop() || state.residual.norm_max() == 0.0 {
                 return Ok(state);
             }
-            let explained = self.explained(&state);
-            let good = size <= sufficient * explained;
-            let mode = self.standing_out(&mut state, watch)?;
-            if state.asked_to_stop() {
-                return Ok(state);
-            }
-            if let Some((k, mode)) = mode {
-                let frame = &mut state.fields.frames[k];
-                if good || frame.rank() >= most[k] {
-                    return Ok(state);
-                }
-                *frame = frame.plus(&mode);
+            let many = (self.left_out.len() + 1) as f64 > FEW * self.known.ncols() as f64;
+            if let Some(j) = state.doubtful(&self.known, &self.left_out).filter(|_| !many) {
+                state = self.leave_out(state, j);
                 continue;
             }
-            let noise = EFFICIENT * self.deviation(&state.residual);
-            let bound = self.bound(&state);
-            let count = state.count_beyond(bound);
-            let alone = (count > 0 && count == state.count_beyond(state.level)).then_some(count);
-            let others = (&state.residual - state.beyond(bound)).norm_l2();
-            let complete = others <= self.problem.pod.rank_tolerance * explained;
-            if good || noise >= state.level || complete && alone.is_some() && alone == separate {
+            let (trimmed, kept) = self.trimmed(&state, state.level, sufficient, watch)?;
+            if trimmed.asked_to_stop() || kept.norm_l2() <= sufficient * self.explained(&trimmed) {
+                return Ok(State { level: kept.norm_max(), ..trimmed });
+            }
+            if let Some((k, mode)) = self.standing_out(&state, &trimmed, most) {
+                state.fields.frames[k] = state.fields.frames[k].plus(&mode);
+                continue;
+            }
+            let noise = EFFICIENT * self.deviation(&trimmed.residual);
+            if noise >= state.level {
                 return Ok(state);
             }
-            separate = alone;
-            state.level = noise.max(0.5 * state.level);
+            state.level = noise.max(LOWERED * state.level);
         }
     }
 
-    /// The minimum at the level.
-    fn settle(&self, mut state: State, watch: &mut Watch<'_>) -> Result<State, ShiftedError> {
+    /// Minimum of Huber's function at the level. The weight w changes M by less than a step that counts, where
+    /// frames are told apart.
+    fn settled(&self, state: State, watch: &mut Watch<'_>) -> Result<State, ShiftedError> {
         let (m, n) = state.residual.shape();
+        let change = SETTLED * edge(state.limited().norm_l2(), [m, n]);
+        let ridge = change / self.explained(&state).max(state.level).max(f64::MIN_POSITIVE);
+        self.minimum(&Loss::Huber { level: state.level }, ridge, state, watch)
+    }
+
+    /// Least-squares fit without the entries beyond a bound, and what it leaves of the others.
+    fn trimmed(
+        &self,
+        state: &State,
+        bound: f64,
+        sufficient: f64,
+        watch: &mut Watch<'_>,
+    ) -> Result<(State, Mat<f64>), ShiftedError> {
+        let sufficient = sufficient * self.explained(state);
+        let loss = Loss::Trimmed { wrong: state.beyond(bound), sufficient };
+        let state = self.minimum(&loss, 0.0, state.clone(), watch)?;
+        let kept = &state.residual - loss.outliers(&state.residual);
+        Ok((state, kept))
+    }
+
+    /// Minimum of a loss and ½ w Σ_k ‖Q_k‖² by fits M to Q − E, with E the outliers of Q − M.
+    fn minimum(
+        &self,
+        loss: &Loss,
+        ridge: f64,
+        mut state: State,
+        watch: &mut Watch<'_>,
+    ) -> Result<State, ShiftedError> {
         let ranks = state.fields.ranks();
         if ranks.iter().all(|&rank| rank == 0) {
             return Ok(state);
         }
+        let (m, n) = state.residual.shape();
+        let mut wrong = loss.outliers(&state.residual);
+        let mut mixing = Anderson::default();
+        let mut least = f64::INFINITY;
+        let mut patience = BRIEF;
         for _ in 0..self.problem.pod.max_steps {
-            let within = state.limited();
-            let resolved = edge(within.norm_l2(), [m, n]);
-            let data = self.problem.snapshots - &state.residual + within;
-            let fit = Fit { full: false, ridge: self.ridge(&state, resolved) };
-            let fields = self.problem.fit(data.as_ref(), state.fields.clone(), &ranks, fit, watch)?;
-            let next = self.with_fields(state.clone(), fields);
-            let change = (&next.residual - &state.residual).norm_l2();
-            state = next;
-            if state.asked_to_stop() || change <= resolved {
-                break;
+            let data = &self.known - &wrong;
+            let start = state.fields.clone();
+            let fields = self.problem.fit(data.as_ref(), start, &ranks, ridge, patience, watch)?;
+            drop(data);
+            let trial = self.with_fields(state.clone(), fields);
+            if trial.asked_to_stop() {
+                return Ok(trial);
             }
-        }
-        let within = state.limited();
-        let parts = self.problem.parts(&within, &state.fields);
-        if !state.asked_to_stop() && parts.iter().any(|p| p.tangent > STATIONARY * p.noise) {
-            let ridge = self.ridge(&state, edge(within.norm_l2(), [m, n]));
-            state = self.reweighted(state, ridge, watch)?;
+            let next = loss.outliers(&trial.residual);
+            let right = (&trial.residual - &next).norm_l2();
+            let value = loss.value(&next, right) + 0.5 * ridge * trial.fields.square();
+            if value > least {
+                // A mixture can be worse than the step it is made of.
+                if mixing.is_empty() {
+                    break;
+                }
+                mixing = Anderson::default();
+                wrong = loss.outliers(&state.residual);
+                continue;
+            }
+            (state, least) = (trial, value);
+            let change = &next - &wrong;
+            let (counts, last) = match loss {
+                Loss::Huber { .. } => (edge(right, [m, n]), BRIEF),
+                Loss::Trimmed { sufficient, .. } if right <= *sufficient => break,
+                Loss::Trimmed { .. } => (right, LONG),
+            };
+            if change.norm_l2() <= SETTLED * counts {
+                if patience == last {
+                    break;
+                }
+                patience = last;
+            }
+            wrong = mixing.next(next, change);
         }
         Ok(state)
     }
 
-    fn reweighted(&self, state: State, ridge: f64, watch: &mut Watch<'_>) -> Result<State, ShiftedError> {
-        let fields = self.problem.reweighted(state.fields.clone(), state.level, ridge, watch)?;
-        Ok(self.with_fields(state, fields))
+    /// Zeros in place of a snapshot.
+    fn leave_out(&mut self, state: State, j: usize) -> State {
+        self.left_out.push(j);
+        self.known.col_as_slice_mut(j).fill(0.0);
+        let mut fields = state.fields.clone();
+        for frame in &mut fields.frames {
+            (0..frame.rank()).for_each(|i| frame.coefficients[(i, j)] = 0.0);
+        }
+        self.with_fields(state, fields)
+    }
+
+    /// Amplitudes of all snapshots at the modes found.
+    fn put_back(&mut self, state: State) -> State {
+        if state.asked_to_stop() || state.fields.ranks().iter().all(|&rank| rank == 0) {
+            return state;
+        }
+        let bound = self.bound(&state);
+        self.known = self.problem.snapshots.to_owned();
+        let fields = self.problem.with_amplitudes(state.fields.clone(), bound);
+        self.with_fields(state, fields)
     }
 
     /// ‖M‖.
     fn explained(&self, state: &State) -> f64 {
-        (self.problem.snapshots - &state.residual).norm_l2()
+        (&self.known - &state.residual).norm_l2()
     }
 
-    /// Weight w that changes M by `change` in norm where frames are told apart.
-    fn ridge(&self, state: &State, change: f64) -> f64 {
-        change / self.explained(state).max(state.level).max(f64::MIN_POSITIVE)
-    }
-
-    /// The largest mode of the limited residual that is not noise, and its frame. It stands out of the
-    /// settled fields and of those with a weight that changes them by one entry of the limited residual:
-    /// the bias of settled fields can look like a mode.
-    fn standing_out(
-        &self,
-        state: &mut State,
-        watch: &mut Watch<'_>,
-    ) -> Result<Option<(usize, Frame)>, ShiftedError> {
+    /// The largest mode that stands out of the limited residual, and its frame. It must stand out without
+    /// the bias of settled fields, too, which can look like a mode.
+    fn standing_out(&self, settled: &State, trimmed: &State, most: &[usize]) -> Option<(usize, Frame)> {
         let largest = |state: &State| {
             let parts = self.problem.parts(&state.limited(), &state.fields).into_iter().enumerate();
             let sigma = |mode: &Frame| mode.singular_values.first().copied().unwrap_or_default();
-            let clear = parts.filter(|(_, p)| sigma(&p.mode) > p.noise).map(|(k, p)| (k, p.mode));
+            let open = parts.filter(|(k, _)| state.fields.frames[*k].rank() < most[*k]);
+            let clear = open.filter(|(_, p)| sigma(&p.mode) > p.noise).map(|(k, p)| (k, p.mode));
             clear.max_by(|(_, a), (_, b)| sigma(a).total_cmp(&sigma(b)))
         };
-        let mode = largest(state);
-        if mode.is_none() || state.fields.frames.iter().all(|f| f.rank() == 0) {
-            return Ok(mode);
-        }
-        let (m, n) = state.residual.shape();
-        let entry = state.limited().norm_l2() / ((m * n) as f64).sqrt();
-        let less_biased = self.reweighted(state.clone(), self.ridge(state, entry), watch)?;
-        if less_biased.asked_to_stop() {
-            state.fields.stopped = StopReason::Asked;
-        }
-        Ok(largest(&less_biased))
-    }
-
-    /// Least-squares fits without the entries beyond a bound, until the fields do not change; the settled
-    /// fields if those are nearer to the snapshots in the sense of Huber's function.
-    fn refit(
-        &self,
-        settled: State,
-        ranks: &[usize],
-        bound: f64,
-        watch: &mut Watch<'_>,
-    ) -> Result<State, ShiftedError> {
-        let wrong = settled.beyond(bound);
-        let mut state = settled.clone();
-        for _ in 0..self.problem.pod.max_steps {
-            let r = &state.residual;
-            let left_out = |i, j| if wrong[(i, j)] == 0.0 { 0.0 } else { r[(i, j)] };
-            let data = self.problem.snapshots - Mat::from_fn(r.nrows(), r.ncols(), left_out);
-            let fit = Fit { full: true, ridge: 0.0 };
-            let fields = self.problem.fit(data.as_ref(), state.fields.clone(), ranks, fit, watch)?;
-            let next = self.with_fields(state.clone(), fields);
-            let change = (&next.residual - &state.residual).norm_l2();
-            state = next;
-            if state.asked_to_stop() || change <= self.problem.pod.tolerance * data.norm_l2() {
-                break;
-            }
-        }
-        let better = state.asked_to_stop() || state.huber() <= settled.huber();
-        Ok(if better { state } else { settled })
+        largest(settled).and_then(|_| largest(trimmed))
     }
 
     /// Residual that only wrong entries exceed: the largest of as many normal numbers (Donoho & Johnstone
@@ -272,7 +347,7 @@ impl HuberDescent<'_> {
     /// their median weighted by the fields, most of whose entries may be zero.
     fn deviation(&self, residual: &Mat<f64>) -> f64 {
         let entries = || {
-            let columns = residual.col_iter().zip(self.problem.snapshots.col_iter());
+            let columns = residual.col_iter().zip(self.known.col_iter());
             columns.flat_map(|(r, q)| {
                 r.iter().zip(q.iter()).map(|(r, q)| (r.abs(), (q - r).abs())).collect::<Vec<_>>()
             })

@@ -5,8 +5,6 @@ use monomorphic::Mat;
 
 /// Parts of a residual R in a frame with the field Φ Σ A.
 pub(super) struct Parts {
-    /// Norm of the part that is tangent to the fields of the frame's rank.
-    pub(super) tangent: f64,
     /// Largest mode of the normal part (1 − Φ Φᵀ) R (1 − Aᵀ A).
     pub(super) mode: Frame,
     /// Bound of the norm of a matrix of independent entries like those of the normal part without the
@@ -18,15 +16,12 @@ pub(super) struct Parts {
 impl Parts {
     pub(super) fn new(mut field: Mat<f64>, frame: &Frame) -> Self {
         let (phi, a) = (frame.modes.as_ref(), frame.coefficients.as_ref());
-        let mut tangent = 0.0;
         if frame.rank() > 0 {
-            let all = field.squared_norm_l2();
             field -= product(phi, product(phi.transpose(), field.as_ref()).as_ref());
             field -= product(product(field.as_ref(), a.transpose()).as_ref(), a);
-            tangent = (all - field.squared_norm_l2()).max(0.0).sqrt();
         }
         let mode = Frame::leading(field.as_ref(), 1);
-        let Some(sigma) = mode.singular_values.first() else { return Self { tangent, mode, noise: 0.0 } };
+        let Some(sigma) = mode.singular_values.first() else { return Self { mode, noise: 0.0 } };
         let rest = |square: f64, part: f64| (square - (sigma * part).powi(2)).max(0.0);
         let columns = field.col_iter().zip(mode.coefficients.row(0).iter());
         let column = columns.map(|(c, a)| rest(c.squared_norm_l2(), *a)).fold(0.0, f64::max);
@@ -38,6 +33,6 @@ impl Parts {
         let row = rows.map(|(square, phi)| rest(square, *phi)).fold(0.0, f64::max);
         let few = field.nrows().min(field.ncols()) as f64;
         let noise = row.sqrt() + column.sqrt() + few.ln().sqrt() * field.norm_max();
-        Self { tangent, noise, mode }
+        Self { noise, mode }
     }
 }

@@ -2,7 +2,7 @@
 use super::rank_search::{Fit, Found, RankSearch};
 use super::residual::{Observer, Problem};
 use super::thinning::{MANY, SOME, Thinned, thinned};
-use super::translated::{SMALL, Translated};
+use super::translated::Translated;
 use super::waves::Waves;
 use super::{
     Decomposition, Frame, FrameOperators, Grid, GridFrames, Interpolation, JointDescent, Progress,
@@ -40,13 +40,10 @@ pub enum Noise {
 /// [`Ranks::Found`]: modes are added that stand out of the noise, and those that are not needed are
 /// removed; first on some of the snapshots if there are many.
 ///
-/// [`Noise::Sparse`], frames in the space of wave vectors:
-/// - up to 50 000 entries Huber's function of the residual is minimised with a level that decreases to
-///   that of the noise, and modes and wrong entries are fitted in turn with the ranks of that fit; the
-///   one with the smaller Σ_k ‖Q_k‖_* + ‖E‖₁/√max(M, N) is returned;
-/// - beyond, modes and wrong entries are fitted in turn: an entry that is off by more than six
-///   deviations is replaced by its value in the fields. If more than a twentieth of up to a million
-///   entries is wrong, the fit of all other frames follows.
+/// [`Noise::Sparse`], frames in the space of wave vectors: Huber's function of the residual is minimised
+/// with a level that decreases until a least-squares fit without the entries beyond it is exact, or to
+/// the level of the noise. Of more than 200 snapshots 200 tell the modes, and the modes the amplitudes of
+/// the others.
 ///
 /// [`Noise::Sparse`], other frames: modes by the augmented Lagrangian of [`Proximal`](super::Proximal),
 /// then by [`JointDescent::huber`]; entries that are off by more than six deviations are wrong, and
@@ -140,13 +137,7 @@ impl ShiftedPod {
         let mut watch = Watch { observer, history: vec![] };
         let waves = Waves::new(&self.grid, shifts, snapshots.nrows());
         match (waves.filter(|_| self.interpolation == Interpolation::Spectral), self.noise) {
-            (Some(_), _) => {
-                let found = Translated { pod: self, shifts, snapshots }.solve(start.clone(), &mut watch)?;
-                if found.stopped == StopReason::Asked || !many_wrong(&found) {
-                    return Ok(found);
-                }
-                self.robust(&operators, snapshots, start, &mut watch)
-            }
+            (Some(_), _) => Translated { pod: self, shifts, snapshots }.solve(start, &mut watch),
             (None, Noise::Sparse) => self.robust(&operators, snapshots, start, &mut watch),
             (None, Noise::Dense) => self.dense(&operators, shifts, snapshots, start, &mut watch),
         }
@@ -281,19 +272,6 @@ impl ShiftedPod {
         search.search(start.map_or_else(|| problem.start(None), Ok)?, &mut |p| watch.see(p))
     }
 }
-
-/// Are so many entries wrong that the convex problem should tell where to start, and is it small enough?
-fn many_wrong(found: &Decomposition) -> bool {
-    let Some(noise) = &found.noise else { return false };
-    let entries = noise.nrows() * noise.ncols();
-    let wrong: usize = noise.col_iter().map(|c| c.iter().filter(|x| **x != 0.0).count()).sum();
-    (SMALL + 1..=CONVEX).contains(&entries) && wrong as f64 > MANY_WRONG * entries as f64
-}
-
-/// More entries than these take the convex problem too long.
-const CONVEX: usize = 1_000_000;
-/// Up to this part of all, wrong entries and modes are found by turns.
-const MANY_WRONG: f64 = 0.05;
 
 /// Numbers the steps of several iterations through.
 pub(super) struct Watch<'a> {

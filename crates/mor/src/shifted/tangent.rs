@@ -35,15 +35,6 @@ impl<'a> Base<'a> {
         Tangent { m, u, v }
     }
 
-    /// Φ Σ A itself, which is one of its tangents.
-    pub(super) fn field(&self) -> Tangent {
-        let r = self.frame.rank();
-        let sigma = |i, j| if i == j { self.frame.singular_values[i] } else { 0.0 };
-        let zero = |rows| Mat::zeros(rows, r);
-        let [u, v] = [self.frame.modes.nrows(), self.v.nrows()].map(zero);
-        Tangent { m: Mat::from_fn(r, r, sigma), u, v }
-    }
-
     /// `to` += ξ.
     pub(super) fn add_to(&self, direction: &Tangent, to: &mut Mat<f64>) {
         let phi = &self.frame.modes;

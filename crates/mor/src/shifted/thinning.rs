@@ -34,6 +34,12 @@ impl Shifts for Thinned<'_> {
 }
 
 impl Frame {
+    /// At some of the snapshots.
+    pub(super) fn at(&self, some: &[usize]) -> Self {
+        let coefficients = Mat::from_fn(self.rank(), some.len(), |i, j| self.coefficients[(i, some[j])]);
+        Self { coefficients, ..self.clone() }
+    }
+
     /// From some of `n` snapshots to all of them, σ a linear in between.
     pub(super) fn between(&self, some: &[usize], n: usize) -> Self {
         let scaled = self.scaled_coefficients();

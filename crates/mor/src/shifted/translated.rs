@@ -1,10 +1,12 @@
 //! Frames that only move along periodic axes: all in the space of wave vectors.
+use super::dense::columns;
 use super::fourier::{Als, LONG, Spectrum, offsets};
 use super::huber_descent::HuberDescent;
-use super::rank_search::{Found, RankSearch, deviation};
+use super::rank_search::{Found, RankSearch};
 use super::residual::{Observer, Problem};
 use super::shifted_pod::{Ranks, Watch};
 use super::thinning::{MANY, SOME, Thinned, thinned};
+use super::translated_fit::Fields;
 use super::waves::Waves;
 use super::{
     Decomposition, Frame, FrameOperators, Motions, Noise, Progress, ShiftedError, ShiftedPod, Shifts,
@@ -20,29 +22,10 @@ pub(super) struct Translated<'a> {
     pub(super) snapshots: MatRef<'a, f64>,
 }
 
-/// Up to this number of entries Huber's function is minimised, too, which takes about 0.3 ms an entry.
-pub(super) const SMALL: usize = 50_000;
-/// Modes and wrong entries by turns, at most so often.
-const ROUNDS: usize = 40;
-/// In a round the modes are fitted until so many steps lower the error by less than this part.
+/// Snapshots that tell modes beside wrong entries, if there are more.
+const TELLING: usize = 200;
+/// In a brief fit so many steps lower the error by at least this part.
 pub(super) const BRIEF: (usize, f64) = (3, 0.05);
-/// A round that lowers deviation and error to no less than this part of what they were is one of the last.
-const SETTLED: f64 = 0.7;
-/// Entries that are so many deviations off are wrong.
-const WRONG: f64 = 6.0;
-/// In a snapshot whose amplitude is off all entries are, alike.
-const WRONG_OF_ONE: f64 = 4.0;
-/// When there are other modes to be found, only what is off by more than this part of the largest value counts as wrong at first.
-const CLEARLY: f64 = 0.1;
-/// Beside wrong entries ranks are looked for on so many snapshots, if there are more: fewer do not tell small modes from entries that are a little off.
-const TOLD: usize = 200;
-/// A level is at least this part of the one before. The modes must follow: what they do not show yet, such as the edges of bodies, would count as wrong and
-/// not be fitted any more (0.4 left 1e-4 of two discs).
-const SHRINK: f64 = 0.6;
-/// Fewer entries do not tell a deviation.
-const FEW: usize = 10;
-/// Entries that tell the deviation, about.
-const TELLING: usize = 1 << 20;
 
 impl Translated<'_> {
     pub(super) fn solve(
@@ -157,218 +140,44 @@ impl Translated<'_> {
         Ok((carried(frames, &|modes| waves.fields(modes)), stopped))
     }
 
-    /// Some entries are wrong. Ranks are looked for on some of the snapshots first, if there are many.
+    /// Some entries are wrong. Of many snapshots some tell the modes.
     fn sparse(
         &self,
         start: Option<Vec<Frame>>,
         watch: &mut Watch<'_>,
     ) -> Result<Decomposition, ShiftedError> {
         let (m, n) = self.snapshots.shape();
-        if m * n <= SMALL {
-            return self.small(start, watch);
-        }
-        let robust = match &self.pod.ranks {
-            Ranks::Given(ranks) => self.with_ranks(ranks, start, watch)?,
-            Ranks::Found if start.is_some() || n <= TOLD => self.with_ranks_found(start, watch)?,
-            Ranks::Found => {
-                let (some, few) = thinned(self.snapshots, TOLD);
-                let thinned = Thinned { shifts: self.shifts, snapshots: &some };
-                let part = Translated { pod: self.pod, shifts: &thinned, snapshots: few.as_ref() };
-                let found = part.with_ranks_found(None, watch)?;
-                if found.stopped == StopReason::Asked {
-                    let frames = found.frames.iter().map(|f| f.between(&some, n)).collect();
-                    Robust { frames, noise: Some(Mat::zeros(m, n)), ..found }
-                } else {
-                    let ranks: Vec<_> = found.frames.iter().map(Frame::rank).collect();
-                    self.with_ranks(&ranks, None, watch)?
-                }
-            }
+        let start = start.unwrap_or_else(|| vec![Frame::nothing(m, n); self.shifts.n_frames()]);
+        let mut d = if n <= TELLING {
+            HuberDescent::new(self).solve(start, watch)?
+        } else {
+            let (some, few) = thinned(self.snapshots, TELLING);
+            let shifts = Thinned { shifts: self.shifts, snapshots: &some };
+            let part = Translated { pod: self.pod, shifts: &shifts, snapshots: few.as_ref() };
+            let start = start.iter().map(|frame| frame.at(&some)).collect();
+            let d = HuberDescent::new(&part).solve(start, watch)?;
+            let noise = d.noise.as_ref().expect("wrong entries");
+            let bound = (part.residual(&d.frames, &d.offsets) - noise).norm_max();
+            let frames: Vec<_> = d.frames.iter().map(|f| f.between(&some, n)).collect();
+            let fields = Fields { frames, offsets: d.offsets, stopped: d.stopped };
+            let Fields { frames, offsets, stopped } = self.with_amplitudes(fields, bound);
+            let mut noise = self.residual(&frames, &offsets);
+            columns(&mut noise).into_iter().flatten().filter(|r| r.abs() <= bound).for_each(|r| *r = 0.0);
+            Decomposition { noise: Some(noise), offsets, ..Decomposition::of(frames, vec![], stopped) }
         };
-        let Robust { frames, noise, offsets, stopped } = robust;
-        Ok(Decomposition { noise, offsets, ..Decomposition::of(frames, watch.take(), stopped) })
-    }
-
-    /// The better of Huber's descent and of modes and wrong entries by turns with its ranks.
-    fn small(&self, start: Option<Vec<Frame>>, watch: &mut Watch<'_>) -> Result<Decomposition, ShiftedError> {
-        let (m, n) = self.snapshots.shape();
-        let nothing = || vec![Frame::nothing(m, n); self.shifts.n_frames()];
-        let descent = HuberDescent { problem: self };
-        let mut best = descent.solve(start.clone().unwrap_or_else(nothing), watch)?;
-        if best.stopped != StopReason::Asked {
-            let ranks = match &self.pod.ranks {
-                Ranks::Given(ranks) => ranks.clone(),
-                Ranks::Found => best.ranks(),
-            };
-            let Robust { frames, noise, offsets, stopped } = self.with_ranks(&ranks, start, watch)?;
-            let by_turns = Decomposition { noise, offsets, ..Decomposition::of(frames, vec![], stopped) };
-            if stopped == StopReason::Asked {
-                best.stopped = stopped;
-            } else if convex_size(&by_turns) < convex_size(&best) {
-                best = by_turns;
-            }
-        }
         // The last step has the error of the fit that is returned.
-        let mut left = self.residual(&best.frames, &best.offsets);
-        if let Some(noise) = &best.noise {
+        let mut left = self.residual(&d.frames, &d.offsets);
+        if let Some(noise) = &d.noise {
             left -= noise;
         }
-        if best.stopped != StopReason::Asked {
-            let relative = left.norm_l2() / self.snapshots.norm_l2().max(f64::MIN_POSITIVE);
-            let rank = best.frames.iter().map(Frame::rank).sum();
-            if watch.see(&Progress { step: 0, error: relative, rank }).is_break() {
-                best.stopped = StopReason::Asked;
+        if d.stopped != StopReason::Asked {
+            let error = left.norm_l2() / self.snapshots.norm_l2().max(f64::MIN_POSITIVE);
+            let rank = d.frames.iter().map(Frame::rank).sum();
+            if watch.see(&Progress { step: 0, error, rank }).is_break() {
+                d.stopped = StopReason::Asked;
             }
         }
-        Ok(Decomposition { history: watch.take(), ..best })
-    }
-
-    /// One mode in each frame first, and more when most wrong entries are known: what is not explained at all would count as wrong. Then again from a
-    /// level at which hardly anything does: what was taken for wrong when the modes were would stay as they had it.
-    fn with_ranks(
-        &self,
-        ranks: &[usize],
-        start: Option<Vec<Frame>>,
-        watch: &mut Watch<'_>,
-    ) -> Result<Robust, ShiftedError> {
-        let (m, n) = self.snapshots.shape();
-        let frames = start.unwrap_or_else(|| vec![Frame::nothing(m, n); ranks.len()]);
-        let offsets = vec![Vector::zeros(); ranks.len()];
-        let start = Robust { frames, noise: None, offsets, stopped: StopReason::Steps };
-        let first: Vec<_> = ranks.iter().map(|&r| r.min(1)).collect();
-        let robust = self.rounds(start, &first, watch)?;
-        match robust.stopped {
-            StopReason::Asked => Ok(robust),
-            _ => self.rounds(robust, ranks, watch),
-        }
-    }
-
-    /// A mode more, or less, at a time, until those needed are there once the wrong entries are left out.
-    fn with_ranks_found(
-        &self,
-        start: Option<Vec<Frame>>,
-        watch: &mut Watch<'_>,
-    ) -> Result<Robust, ShiftedError> {
-        let first = match &start {
-            Some(frames) => frames.iter().map(|f| f.rank().max(1)).collect(),
-            None => vec![1; self.shifts.n_frames()],
-        };
-        let mut robust = self.with_ranks(&first, start, watch)?;
-        // Each fit begins there: entries that fewer modes took for wrong would stay as those had them.
-        let begun = robust.clone();
-        for _ in 0..2 * self.pod.max_rank {
-            if robust.stopped == StopReason::Asked {
-                break;
-            }
-            let before: Vec<_> = robust.frames.iter().map(Frame::rank).collect();
-            let known = match &robust.noise {
-                Some(noise) => self.snapshots - noise,
-                None => self.snapshots.to_owned(),
-            };
-            let moved = Motions::beside(self.shifts, &robust.offsets);
-            let part = Translated { pod: self.pod, shifts: &moved, snapshots: known.as_ref() };
-            let most: Vec<_> = before.iter().map(|r| (r + 1).min(self.pod.max_rank)).collect();
-            let start = Some(robust.frames.clone());
-            let (frames, stopped) = part.search(start, &most, self.pod.rank_tolerance, watch)?;
-            if stopped == StopReason::Asked {
-                robust = Robust { frames, stopped, ..robust };
-                break;
-            }
-            let ranks: Vec<_> = frames.iter().map(Frame::rank).collect();
-            if ranks == before {
-                break;
-            }
-            robust = self.rounds(begun.clone(), &ranks, watch)?;
-        }
-        Ok(robust)
-    }
-
-    /// Modes of these ranks and wrong entries by turns: what is off by more than six deviations is replaced by what the modes have there.
-    fn rounds(
-        &self,
-        mut robust: Robust,
-        ranks: &[usize],
-        watch: &mut Watch<'_>,
-    ) -> Result<Robust, ShiftedError> {
-        let als = self.als(ranks, self.pod.tolerance);
-        let mut before = f64::INFINITY;
-        let mut patience = BRIEF;
-        let mut level = f64::INFINITY;
-        if robust.noise.is_some() {
-            level = 0.0;
-            let mut noise = self.noise(&robust.frames, &robust.offsets, &mut level);
-            release(&mut noise);
-            robust.noise = Some(noise);
-        }
-        for _ in 0..ROUNDS {
-            let (spectrum, offsets) = self.spectrum(robust.noise.as_ref())?;
-            let start = started(robust.frames);
-            let mut go_on = |p: &Progress| watch.see(p).is_continue();
-            let d = als.fit(&spectrum, Some(&start), patience, &mut go_on)?;
-            let error = d.history.last().map_or(0.0, |p| p.error);
-            drop(spectrum);
-            let known = robust.noise.is_some();
-            robust = Robust { frames: d.frames, offsets, stopped: d.stopped, ..robust };
-            if robust.stopped == StopReason::Asked {
-                break;
-            }
-            let level_before = level;
-            robust.noise = Some(self.noise(&robust.frames, &robust.offsets, &mut level));
-            let settled = known && error > SETTLED * before && level > SETTLED * level_before;
-            if known && error <= self.pod.tolerance || settled && patience == LONG {
-                break;
-            }
-            if settled {
-                patience = LONG;
-            }
-            before = error;
-        }
-        Ok(robust)
-    }
-
-    /// What the frames leave, where that is much.
-    fn noise(&self, frames: &[Frame], offsets: &[Vector], before: &mut f64) -> Mat<f64> {
-        let mut residual = self.residual(frames, offsets);
-        let (m, n) = residual.shape();
-        let explained = |i: usize, j: usize, left: f64| (self.snapshots[(i, j)] - left).abs();
-        let mut largest = 0.0_f64;
-        for j in 0..n {
-            let column = residual.col_as_slice(j);
-            largest = (0..m).fold(largest, |most, i| most.max(explained(i, j, column[i])));
-        }
-        // Where nothing is explained nothing is wrong.
-        if largest == 0.0 {
-            return Mat::zeros(m, n);
-        }
-        // Of all entries, and of those where there is something to carry along; of all snapshots, and of each, whose amplitudes may still be off.
-        let stride = (m * n / TELLING).max(1);
-        let mut all = [vec![], vec![]];
-        let mut levels = vec![0.0_f64; n];
-        for (j, level) in levels.iter_mut().enumerate() {
-            let column = residual.col_as_slice(j);
-            let some = || (j % stride..m).step_by(stride);
-            let there = some().filter(|&i| explained(i, j, column[i]) > 0.02 * largest);
-            let of_snapshot =
-                [some().map(|i| column[i].abs()).collect(), there.map(|i| column[i].abs()).collect()];
-            for (all, sizes) in all.iter_mut().zip::<[Vec<f64>; 2]>(of_snapshot) {
-                all.extend_from_slice(&sizes);
-                if sizes.len() >= FEW {
-                    *level = level.max(WRONG_OF_ONE * deviation(sizes));
-                }
-            }
-        }
-        let all = all.map(deviation).into_iter().fold(0.0, f64::max);
-        let floor = match *before {
-            f64::INFINITY => 0.0,
-            0.0 => CLEARLY * largest,
-            before => SHRINK * before,
-        };
-        let least = (WRONG * all.max(1e-10 * self.snapshots.norm_max())).max(floor);
-        *before = least;
-        for (j, level) in levels.into_iter().enumerate() {
-            let level = level.max(least);
-            residual.col_as_slice_mut(j).iter_mut().filter(|x| x.abs() <= level).for_each(|x| *x = 0.0);
-        }
-        residual
+        Ok(Decomposition { history: watch.take(), ..d })
     }
 
     /// Q − Σ_k T^k Q_k.
@@ -400,36 +209,8 @@ impl Translated<'_> {
     }
 }
 
-/// Σ_k ‖Q_k‖_* + ‖E‖₁/√max(M, N), which true fields and wrong entries minimise under the conditions of
-/// Candès, Li, Ma & Wright (2011). Frames that cancel one another have large singular values.
-fn convex_size(d: &Decomposition) -> f64 {
-    let nuclear: f64 = d.frames.iter().flat_map(|f| &f.singular_values).sum();
-    let sparse = d.noise.as_ref().map_or(0.0, |e| e.norm_l1() / (e.nrows().max(e.ncols()) as f64).sqrt());
-    nuclear + sparse
-}
-
-/// A snapshot with clearly more wrong entries than others have is one whose amplitudes are: what was taken for wrong there is to be fitted again.
-fn release(noise: &mut Mat<f64>) {
-    let counts: Vec<usize> = noise.col_iter().map(|c| c.iter().filter(|x| **x != 0.0).count()).collect();
-    let mut order = counts.clone();
-    order.sort_unstable();
-    let usual = order.get(order.len() / 2).map_or(0.0, |&n| n as f64);
-    for (j, _) in counts.iter().enumerate().filter(|(_, n)| **n as f64 > usual + 4.0 * usual.sqrt()) {
-        noise.col_as_slice_mut(j).fill(0.0);
-    }
-}
-
 /// Snapshots that are put together at a time.
 const BATCH: usize = 32;
-
-/// Modes besides wrong entries.
-#[derive(Clone)]
-struct Robust {
-    frames: Vec<Frame>,
-    noise: Option<Mat<f64>>,
-    offsets: Vec<Vector>,
-    stopped: StopReason,
-}
 
 /// To start from.
 pub(super) fn started(frames: Vec<Frame>) -> Decomposition {

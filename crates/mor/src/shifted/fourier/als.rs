@@ -10,7 +10,7 @@ use crate::shifted::{Decomposition, Frame, Grid, Progress, ShiftedError, Shifts,
 use crate::{Mat, MatRef};
 
 /// Weight of the fields of frames that changes them by no more than rounding errors.
-pub(super) const RIDGE: f64 = 1e-13;
+pub(in crate::shifted) const RIDGE: f64 = 1e-13;
 
 /// With as many modes as asked for: by [`Als::stagnation`].
 pub(in crate::shifted) const LONG: Patience = (10, 0.0);

@@ -1,7 +1,7 @@
 //! Factors of small matrices.
 
 /// L of L Lᵀ = M + ε for M, column by column; pivots below ε are taken for ε.
-pub(super) fn factorise(n: usize, m: &mut [f64], damping: f64) {
+pub(in crate::shifted) fn factorise(n: usize, m: &mut [f64], damping: f64) {
     for k in 0..n {
         let (before, after) = m.split_at_mut((k + 1) * n);
         let column = &mut before[k * n..];
@@ -16,7 +16,7 @@ pub(super) fn factorise(n: usize, m: &mut [f64], damping: f64) {
 }
 
 /// Replaces x by (L Lᵀ)⁻¹ x.
-pub(super) fn substitute(l: &[f64], x: &mut [f64]) {
+pub(in crate::shifted) fn substitute(l: &[f64], x: &mut [f64]) {
     let n = x.len();
     for k in 0..n {
         let column = &l[k * n..][..n];

@@ -3,8 +3,7 @@ use super::algorithms::quiet;
 use super::random;
 use crate::shifted::fourier::Als;
 use crate::shifted::{
-    Grid, GridFrames, Interpolation, JointDescent, Motions, Noise, Ranks, ShiftedError, ShiftedPod,
-    StopReason,
+    Grid, GridFrames, Interpolation, Motions, Noise, Ranks, ShiftedError, ShiftedPod, StopReason,
 };
 use monomorphic::Mat;
 use std::f64::consts::PI;
@@ -41,7 +40,7 @@ fn wrong_entries_of_small_sets_are_found_with_the_ranks() {
     let (m, n) = clean.shape();
     let grid = Grid::new([m], [1.0]).unwrap();
     let op = GridFrames::new(grid, Interpolation::Spectral, &shifts, m).unwrap();
-    for (share, seed) in [(0.005, 1), (0.03, 2)] {
+    for (share, seed) in [(0.005, 1), (0.03, 2), (0.12, 3)] {
         let numbers = random(2 * m * n, seed);
         let wrong = |i: usize, j: usize| {
             let [hit, size] = [0, 1].map(|c| 0.5 + 0.5 * numbers[2 * (i + m * j) + c]);
@@ -52,7 +51,7 @@ fn wrong_entries_of_small_sets_are_found_with_the_ranks() {
             let pod = ShiftedPod::new(grid, Interpolation::Spectral).noise(Noise::Sparse).ranks(ranks);
             let d = pod.solve(&shifts, data.as_ref(), None, &mut quiet).unwrap();
             let error = d.relative_error(&op, clean.as_ref());
-            assert!(d.ranks() == [3, 2] && error < 1e-3, "{share}: {:?} {error:.1e}", d.ranks());
+            assert!(d.ranks() == [3, 2] && error < 1e-8, "{share}: {:?} {error:.1e}", d.ranks());
             let noise = d.noise.as_ref().unwrap();
             let left = (&data - d.fields(&op) - noise).norm_l2() / data.norm_l2();
             let last = d.history.last().unwrap();
@@ -100,21 +99,11 @@ fn a_stop_at_any_step_ends_the_descent() {
 fn the_weight_of_the_fields_shrinks_them() {
     let (shifts, _) = crossing();
     let grid = Grid::new([256], [1.0]).unwrap();
-    let op = GridFrames::new(grid, Interpolation::Spectral, &shifts, 256).unwrap();
     let one = Mat::from_fn(256, 40, |i, j| {
         let d = i as f64 - 40.0 - 4.1 * j as f64;
         (-((d - 256.0 * (d / 256.0).round()) / 7.0).powi(2)).exp()
     });
-    let descent = JointDescent::new([1, 0]).ridge(0.1).stagnation(0.0);
-    let d = descent.solve(&op, one.as_ref(), None, &mut quiet).unwrap();
     let expected = one.norm_l2() / 1.1;
-    assert!(
-        (d.frames[0].singular_values[0] / expected - 1.0).abs() < 1e-6,
-        "{:?}",
-        d.frames[0].singular_values
-    );
-    let negative = JointDescent::new([1, 0]).ridge(-0.1).solve(&op, one.as_ref(), None, &mut quiet);
-    assert!(matches!(negative, Err(ShiftedError::Parameter { value: -0.1, .. })));
     let als = Als { ridge: 0.1, stagnation: 0.0, max_steps: 60, ..Als::new([1, 0]) };
     let d = als.solve(&grid, &shifts, one.as_ref(), None, None, &mut |_| true).unwrap();
     let found = d.frames[0].singular_values[0];

@@ -4,15 +4,20 @@
 //! random places of their frame whose amplitudes vary by random laws. A share of the entries (PART,
 //! in per cent) is wrong: ±1.5 or ±0.75 are added to half of them, and replace the other half. One
 //! line per run: ranks, relative error against the field without wrong entries in Frobenius' norm,
-//! wrong entries that are missed and right ones that are rejected, steps, CPU seconds.
+//! wrong entries that are missed and right ones that are rejected, steps, CPU seconds. With
+//! `EXPORT=FOLDER` in the environment it writes `.npy` files for `benches/peers/shifted.py` instead.
 use cpu_time::ProcessTime;
-use interfaces::Vector;
+use interfaces::{SnapshotSink, Vector};
 use mor::Mat;
-use mor::shifted::{Grid, GridFrames, Interpolation, Motion, Motions, Noise, Proximal, Ranks, ShiftedPod};
+use mor::shifted::{
+    Grid, GridFrames, Interpolation, Motion, Motions, Noise, Proximal, Ranks, ShiftedPod, Shifts,
+};
+use mor::snapshots::NpyWriter;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
+use std::path::Path;
 
 const CELLS: usize = 512;
 const SNAPSHOTS: usize = 60;
@@ -63,6 +68,25 @@ fn spoilt(clean: &Mat<f64>, part: f64, rng: &mut Pcg64) -> Mat<f64> {
     })
 }
 
+/// One file of columns.
+fn write(path: &Path, columns: usize, column: impl Fn(usize) -> Vec<f64>) {
+    let mut writer = NpyWriter::create(path).expect("a file");
+    for j in 0..columns {
+        writer.push(j as f64, &column(j)).expect("a column");
+    }
+    writer.flush().expect("a whole file");
+}
+
+/// Data, clean field and shifts (cells, one column per frame).
+fn export(folder: &Path, case: &Case, data: &Mat<f64>) {
+    std::fs::create_dir_all(folder).expect("a folder");
+    for (name, field) in [("data.npy", data), ("clean.npy", &case.clean)] {
+        write(&folder.join(name), SNAPSHOTS, |j| field.col_as_slice(j).to_vec());
+    }
+    let path = |k: usize, j: usize| case.shifts.motion(k, j).displacement.x;
+    write(&folder.join("shifts.npy"), 2, |k| (0..SNAPSHOTS).map(|j| path(k, j)).collect());
+}
+
 fn main() {
     let numbers: Vec<f64> = std::env::args().skip(1).filter_map(|a| a.parse().ok()).collect();
     let seeds = numbers.first().map_or(4, |&n| n as u64);
@@ -70,18 +94,24 @@ fn main() {
     let first = std::env::var("SEED").ok().and_then(|s| s.parse().ok()).unwrap_or(0);
     for seed in first..first + seeds {
         let mut rng = Pcg64::seed_from_u64(seed);
-        let Case { grid, shifts, clean } = crossing(&mut rng);
-        let op = GridFrames::new(grid, Interpolation::Spectral, &shifts, CELLS).expect("frames");
+        let case = crossing(&mut rng);
+        let Case { grid, shifts, clean } = &case;
+        let grid = *grid;
+        let op = GridFrames::new(grid, Interpolation::Spectral, shifts, CELLS).expect("frames");
         for &part in parts {
             let mut rng = Pcg64::seed_from_u64(1000 * seed + (10.0 * part) as u64);
-            let data = spoilt(&clean, 0.01 * part, &mut rng);
+            let data = spoilt(clean, 0.01 * part, &mut rng);
+            if let Some(folder) = std::env::var_os("EXPORT") {
+                export(&Path::new(&folder).join(format!("seed{seed}_part{part}")), &case, &data);
+                continue;
+            }
             let pod = ShiftedPod::new(grid, Interpolation::Spectral).noise(Noise::Sparse);
             for (name, ranks) in [("given", Ranks::Given(RANKS.to_vec())), ("found", Ranks::Found)] {
                 let start = ProcessTime::now();
                 let d = pod
                     .clone()
                     .ranks(ranks)
-                    .solve(&shifts, data.as_ref(), None, &mut |_| ControlFlow::Continue(()));
+                    .solve(shifts, data.as_ref(), None, &mut |_| ControlFlow::Continue(()));
                 let seconds = start.elapsed().as_secs_f64();
                 let d = d.expect("a decomposition");
                 let noise = d.noise.as_ref().expect("wrong entries");

@@ -10,7 +10,7 @@ mod least_squares;
 mod solve;
 mod sparse;
 
-pub use decompositions::{add_gram, self_adjoint_eigen, thin_svd};
+pub use decompositions::{TriangularFactor, add_gram, self_adjoint_eigen, thin_svd};
 pub use dense::{add_product, inverse, self_adjoint_eigenvectors};
 pub use faer::{ColRef, Mat, MatMut, MatRef};
 pub use least_squares::LeastSquares;

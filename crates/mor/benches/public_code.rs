@@ -5,7 +5,7 @@
 //! * `shifted FOLDER RANKS`: `data.npy`, `clean.npy`, `shifts.npy` (cells per frame) on a periodic line;
 //!   RANKS is `found` or as `3,2`.
 //! * `model FOLDER RANK METHOD`: `snapshots.npy` at `points.npy`, errors at `held_points.npy` against
-//!   `held.npy`; METHOD is a kernel, `spline`, `network WIDTH …` or `best`.
+//!   `held.npy`; METHOD is a kernel, `spline`, `network ITERATIONS WIDTH …` or `best`.
 //!
 //! One line of `name value` pairs; CPU and wall seconds are without reading.
 use cpu_time::ProcessTime;
@@ -55,7 +55,8 @@ fn pod([file, method, rank]: [&str; 3]) -> Outcome {
 }
 
 fn shifted([folder, ranks]: [&str; 2]) -> Outcome {
-    let [data, clean, shifts] = ["data", "clean", "shifts"].map(|n| read(Path::new(folder).join(n).with_extension("npy")));
+    let [data, clean, shifts] =
+        ["data", "clean", "shifts"].map(|n| read(Path::new(folder).join(n).with_extension("npy")));
     let (data, clean, shifts) = (data?, clean?, shifts?);
     let grid = Grid::new([data.nrows()], [1.0])?;
     let to = |k: usize, j: usize| Motion::translation(Vector::x() * shifts[(j, k)]);
@@ -75,16 +76,18 @@ fn shifted([folder, ranks]: [&str; 2]) -> Outcome {
 }
 
 fn model(arguments: &[&str]) -> Outcome {
-    let [folder, rank, method, widths @ ..] = arguments else { return Err("FOLDER RANK METHOD".into()) };
+    let [folder, rank, method, numbers @ ..] = arguments else { return Err("FOLDER RANK METHOD".into()) };
     let file = |name: &str| read(Path::new(folder).join(name).with_extension("npy"));
-    let [snapshots, points, held, held_points] =
-        ["snapshots", "points", "held", "held_points"].map(file);
+    let [snapshots, points, held, held_points] = ["snapshots", "points", "held", "held_points"].map(file);
     let (snapshots, points, held, held_points) = (snapshots?, points?, held?, held_points?);
-    let widths: Vec<usize> = widths.iter().map(|w| w.parse()).collect::<Result<_, _>>()?;
+    let numbers: Vec<usize> = numbers.iter().map(|w| w.parse()).collect::<Result<_, _>>()?;
     let method: Option<Box<dyn Method>> = match *method {
         "best" => None,
         "spline" => Some(Box::new(SplineParams::new(Degree::Cubic))),
-        "network" => Some(Box::new(NetworkParams::new(&widths))),
+        "network" => {
+            let [iterations, hidden @ ..] = numbers.as_slice() else { return Err("ITERATIONS".into()) };
+            Some(Box::new(NetworkParams { iterations: *iterations, ..NetworkParams::new(hidden) }))
+        }
         name => {
             let kernel = Kernel::ALL.into_iter().find(|k| k.name() == name);
             let kernel = kernel.ok_or_else(|| format!("no method {name}"))?;
@@ -105,7 +108,9 @@ fn model(arguments: &[&str]) -> Outcome {
     let error = (fields - &held).norm_l2() / held.norm_l2();
     let projection = pod.relative_projection_error(held.as_ref())?;
     let name = model.method().unwrap_or("none").replace(' ', "_");
-    println!("cpu {cpu} wall {wall} predict {predict} error {error:e} projection {projection:e} method {name}");
+    println!(
+        "cpu {cpu} wall {wall} predict {predict} error {error:e} projection {projection:e} method {name}"
+    );
     Ok(())
 }
 

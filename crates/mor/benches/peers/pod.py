@@ -62,6 +62,9 @@ def randomised(x):
     return u, s
 
 
+import logging
+
+
 def pymor(method):
     def run(x):
         from pymor.algorithms.pod import pod

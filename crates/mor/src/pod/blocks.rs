@@ -2,7 +2,7 @@
 use super::PodError;
 use crate::snapshots::SnapshotSource;
 use crate::{Mat, MatRef};
-use monomorphic::{add_gram, add_product};
+use monomorphic::{TriangularFactor, add_gram, add_product};
 
 /// Rows of a block in memory: with 600 snapshots it is 5 MB.
 const ROWS: usize = 1024;
@@ -146,6 +146,12 @@ impl<'a> Blocks<'a> {
             whole.as_mut().subrows_mut(first, block.nrows()).copy_from(block);
         })?;
         Ok(whole)
+    }
+    /// R of Y = Q R.
+    pub(super) fn triangular(&self) -> Result<TriangularFactor, PodError> {
+        let mut factor = TriangularFactor::new(self.data.snapshots());
+        self.each(true, |_, block| factor.add(block))?;
+        Ok(factor)
     }
     /// Y B, or (X − x̄) B if it is not `weighted`.
     pub(super) fn times(&self, weighted: bool, b: MatRef<'_, f64>) -> Result<Mat<f64>, PodError> {

@@ -50,7 +50,24 @@ pub(super) fn needs_gram(data: &Data<'_>, params: &PodParams) -> bool {
     }
 }
 
+/// Right singular vectors of R of Y = Q R, then modes as by the method of snapshots; more snapshots than rows are
+/// decomposed whole.
 fn by_qr(y: &Blocks<'_>, params: &PodParams, floor: f64) -> Result<Factors, PodError> {
+    if y.data.rows() < y.data.snapshots() {
+        return whole(y, params, floor);
+    }
+    let triangular = y.triangular()?;
+    let (_, values, v) = thin_svd(triangular.factor()).ok_or_else(|| y.not_converged())?;
+    let energy = values.iter().map(|s| s * s).sum();
+    let r = params.kept(&values, energy, floor);
+    let vectors = v.subcols(0, r).to_owned();
+    match orthonormal_modes(y, values, &vectors)? {
+        Some((modes, values, coefficients)) => Ok(Factors { modes, values, coefficients, energy }),
+        None => whole(y, params, floor),
+    }
+}
+
+fn whole(y: &Blocks<'_>, params: &PodParams, floor: f64) -> Result<Factors, PodError> {
     let svd = match (&y.data, &y.mean, y.weights) {
         (Data::Memory(snapshots), None, None) => thin_svd(*snapshots),
         _ => thin_svd(y.whole()?.as_ref()),
@@ -65,6 +82,35 @@ fn by_qr(y: &Blocks<'_>, params: &PodParams, floor: f64) -> Result<Factors, PodE
         Some(weights) => unweighted(y, weights, u.subcols(0, r), v.as_ref(), &values)?,
     };
     Ok(Factors { modes, values, coefficients, energy })
+}
+
+/// Modes, singular values (the first of those given, corrected) and coefficients.
+type Orthonormal = (Mat<f64>, Vec<f64>, Mat<f64>);
+
+/// Y V Σ⁻¹ with right singular vectors V, made orthonormal by one pass of Cholesky QR, which corrects singular values,
+/// too. None if the products of the modes are not positive definite.
+fn orthonormal_modes(
+    y: &Blocks<'_>,
+    mut values: Vec<f64>,
+    vectors: &Mat<f64>,
+) -> Result<Option<Orthonormal>, PodError> {
+    let (m, r) = vectors.shape();
+    let scaled = Mat::from_fn(m, r, |j, k| vectors[(j, k)] / values[k]);
+    let modes = y.times(false, scaled.as_ref())?;
+    // S = Lᵀ Σ Vᵀ with L of the modes' products: modes L⁻ᵀ are orthonormal, and so are the factors of S.
+    let Some((inverse, lower)) = cholesky(products(modes.as_ref(), y.weights).as_ref()) else {
+        return Ok(None);
+    };
+    let right = Mat::from_fn(r, m, |k, j| values[k] * vectors[(j, k)]);
+    let mut s = Mat::zeros(r, m);
+    add_product(s.as_mut(), lower.as_ref().transpose(), right.as_ref());
+    let (u, exact, v) = thin_svd(s.as_ref()).ok_or_else(|| y.not_converged())?;
+    let turn = inverse.transpose() * u;
+    let mut turned = Mat::zeros(modes.nrows(), r);
+    add_product(turned.as_mut(), modes.as_ref(), turn.as_ref());
+    values[..r].copy_from_slice(&exact[..r]);
+    let coefficients = v.subcols(0, r).transpose().to_owned();
+    Ok(Some((turned, values, coefficients)))
 }
 
 /// W^−½ U; where the weight is 0, the values that the snapshots' combination has.
@@ -94,26 +140,14 @@ fn by_gram(
     let m = ascending.len();
     let mut values: Vec<f64> = ascending.iter().rev().map(|v| v.max(0.0).sqrt()).collect();
     let energy = values.iter().map(|s| s * s).sum();
-    let wanted = params.kept(&values, energy, floor);
     let sound = values.iter().take_while(|s| **s >= GRAM * values[0] && **s > floor).count();
+    let wanted = params.kept(&values, energy, floor);
     let r = wanted.min(sound);
-    let scaled = Mat::from_fn(m, r, |j, k| vectors[(j, m - 1 - k)] / values[k]);
-    let mut modes = y.times(false, scaled.as_ref())?;
-    // S = Lᵀ Σ Vᵀ with L of the modes' products: modes L⁻ᵀ are orthonormal, and so are the factors of S.
-    let (inverse, lower) =
-        cholesky(products(modes.as_ref(), y.weights).as_ref()).ok_or_else(|| y.not_converged())?;
-    let right = Mat::from_fn(r, m, |k, j| values[k] * vectors[(j, m - 1 - k)]);
-    let mut s = Mat::zeros(r, m);
-    add_product(s.as_mut(), lower.as_ref().transpose(), right.as_ref());
-    let (u, exact, v) = thin_svd(s.as_ref()).ok_or_else(|| y.not_converged())?;
-    let turn = inverse.transpose() * u;
-    let mut turned = Mat::zeros(modes.nrows(), r);
-    add_product(turned.as_mut(), modes.as_ref(), turn.as_ref());
-    std::mem::swap(&mut modes, &mut turned);
-    values[..r].copy_from_slice(&exact[..r]);
     // Squares have lost smaller ones.
     values.truncate(sound);
-    let coefficients = v.subcols(0, r).transpose().to_owned();
+    let vectors = Mat::from_fn(m, r, |j, k| vectors[(j, m - 1 - k)]);
+    let (modes, values, coefficients) =
+        orthonormal_modes(y, values, &vectors)?.ok_or_else(|| y.not_converged())?;
     Ok((Factors { modes, values, coefficients, energy }, r == wanted))
 }
 

@@ -39,8 +39,8 @@ impl Pod {
     }
 
     /// Of snapshots that need not be in memory, in two passes over blocks of rows by the method of snapshots: it holds a block of 64 MB, m × m numbers and twice the
-    /// modes. With [`SvdMethod::Auto`](super::SvdMethod::Auto), too, modes with σ_k < 1e-5 σ₁ are left out then. [`SvdMethod::Qr`](super::SvdMethod::Qr) and more snapshots
-    /// than rows take the whole into memory.
+    /// modes. With [`SvdMethod::Auto`](super::SvdMethod::Auto), too, modes with σ_k < 1e-5 σ₁ are left out then. [`SvdMethod::Qr`](super::SvdMethod::Qr) keeps
+    /// them, also in two passes; more snapshots than rows are taken into memory whole.
     ///
     /// # Errors
     /// [`PodError`]; [`PodError::Source`] if snapshots cannot be read.

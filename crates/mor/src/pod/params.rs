@@ -7,7 +7,8 @@ pub enum SvdMethod {
     /// The method of snapshots if all modes that are kept have σ_k ≥ 1e-5 σ₁, else by QR.
     #[default]
     Auto,
-    /// Bidiagonalisation of R of a QR decomposition: all singular values to round-off of the largest, in about 4 n m² operations.
+    /// Right singular vectors V of R of Y = Q R, made of blocks of rows (2 n m² operations), modes Y V Σ⁻¹ and one pass of
+    /// Cholesky QR: all singular values to round-off of the largest. More snapshots than rows are decomposed whole.
     Qr,
     /// Eigenvectors of the matrix of all products of snapshots (Sirovich, Q. Appl. Math. 45 (1987) 561), n m² operations, and one pass of Cholesky QR, which
     /// makes modes orthonormal again; modes with σ_k < 1e-5 σ₁ are lost in round-off and left out.

@@ -276,3 +276,25 @@ fn singular_values_beyond_the_rank() {
         }
     }
 }
+
+/// Singular values down to 1e-10 σ₁ of many rows, by QR of blocks of rows.
+#[test]
+fn small_singular_values_of_tall_snapshots() {
+    let (n, m) = (20_000, 48);
+    // Cosines of type IV are orthonormal.
+    let cosine = |k: usize, i: usize, n: usize| {
+        (2.0 / n as f64).sqrt()
+            * (std::f64::consts::PI * (k as f64 + 0.5) * (i as f64 + 0.5) / n as f64).cos()
+    };
+    let sigma = |k: usize| 10f64.powf(-0.25 * k as f64);
+    let u = Mat::from_fn(n, m, |i, k| sigma(k) * cosine(k, i, n));
+    let v = Mat::from_fn(m, m, |k, j| cosine(k, j, m));
+    let x = &u * &v;
+    for method in [SvdMethod::Auto, SvdMethod::Qr] {
+        let pod = Pod::new(x.as_ref(), &PodParams { method, ..PodParams::of_rank(41) }).unwrap();
+        assert!(skew(&pod) < 1e-13);
+        for (k, s) in pod.singular_values.iter().enumerate().take(41) {
+            assert!((s / sigma(k) - 1.0).abs() < 1e-6, "{method:?} {k}: {s:e}");
+        }
+    }
+}

@@ -2,7 +2,7 @@
 //! in `benches/peers`, which call it: `cargo bench -p mor --bench public_code -- KIND …`.
 //!
 //! * `pod FILE METHOD RANK`: singular values; METHOD is `auto`, `snapshots`, `qr` or `randomised`.
-//! * `shifted FOLDER RANKS`: `data.npy`, `clean.npy`, `shifts.npy` (cells per frame) on a periodic line;
+//! * `shifted FOLDER RANKS TOLERANCE`: `data.npy`, `clean.npy`, `shifts.npy` (cells per frame) on a periodic line;
 //!   RANKS is `found` or as `3,2`.
 //! * `model FOLDER RANK METHOD`: `snapshots.npy` at `points.npy`, errors at `held_points.npy` against
 //!   `held.npy`; METHOD is a kernel, `spline`, `network ITERATIONS WIDTH …` or `best`.
@@ -54,7 +54,7 @@ fn pod([file, method, rank]: [&str; 3]) -> Outcome {
     Ok(())
 }
 
-fn shifted([folder, ranks]: [&str; 2]) -> Outcome {
+fn shifted([folder, ranks, tolerance]: [&str; 3]) -> Outcome {
     let [data, clean, shifts] =
         ["data", "clean", "shifts"].map(|n| read(Path::new(folder).join(n).with_extension("npy")));
     let (data, clean, shifts) = (data?, clean?, shifts?);
@@ -65,7 +65,7 @@ fn shifted([folder, ranks]: [&str; 2]) -> Outcome {
         "found" => Ranks::Found,
         given => Ranks::Given(given.split(',').map(str::parse).collect::<Result<_, _>>()?),
     };
-    let pod = ShiftedPod::new(grid, Interpolation::Spectral).ranks(ranks);
+    let pod = ShiftedPod::new(grid, Interpolation::Spectral).ranks(ranks).tolerance(tolerance.parse()?);
     let (d, [cpu, wall]) =
         timed(|| pod.solve(&motions, data.as_ref(), None, &mut |_| ControlFlow::Continue(())));
     let d = d?;
@@ -119,7 +119,7 @@ fn main() -> Outcome {
     let all: Vec<&str> = all.iter().map(String::as_str).collect();
     match *all.as_slice() {
         ["pod", file, method, rank] => pod([file, method, rank]),
-        ["shifted", folder, ranks] => shifted([folder, ranks]),
+        ["shifted", folder, ranks, tolerance] => shifted([folder, ranks, tolerance]),
         ["model", ref arguments @ ..] => model(arguments),
         _ => {
             println!("called by the scripts in benches/peers");

@@ -62,14 +62,13 @@ def randomised(x):
     return u, s
 
 
-import logging
-
-
 def pymor(method):
     def run(x):
         from pymor.algorithms.pod import pod
+        from pymor.core.logger import set_log_levels
         from pymor.vectorarrays.numpy import NumpyVectorSpace
 
+        set_log_levels({"pymor": "ERROR"})
         modes, s = pod(NumpyVectorSpace.from_numpy(x), modes=RANK, rtol=0.0, method=method)
         return modes.to_numpy(), s
 

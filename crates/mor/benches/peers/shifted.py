@@ -81,9 +81,14 @@ def clean(rounds):
             for file, array in (("data", data.T), ("clean", data.T), ("shifts", shifts)):
                 np.save(Path(folder) / file, np.ascontiguousarray(array))
             for _ in range(rounds):
-                for given in (",".join(map(str, ranks)), "found"):
-                    o = ours("shifted", folder, given)
-                    print(f"{name:28} ours {given:5} error {o['error']:.2e} ranks {o['ranks']} {o['steps']} steps {o['cpu']:.3f} CPU s", flush=True)
+                given = ",".join(map(str, ranks))
+                for given, tolerance in ((given, 1e-10), (given, 1e-14), ("found", 1e-10)):
+                    o = ours("shifted", folder, given, tolerance)
+                    print(
+                        f"{name:28} ours {given:5} to {tolerance:.0e} error {o['error']:.2e} ranks "
+                        f"{[int(r) for r in o['ranks']]} {int(o['steps']):4} steps {o['cpu']:7.3f} CPU s",
+                        flush=True,
+                    )
                 for method in ("J2", "BFB", "ALM"):
                     report(name, method, timed(lambda: spod(method, data, shifts, ranks)), data)
 

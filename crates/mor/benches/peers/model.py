@@ -1,13 +1,14 @@
-"""POD with interpolated coefficients by EZyRB beside `Podiann`: errors at points left out, CPU seconds.
+"""POD with interpolated coefficients by EZyRB and `Podiann`: errors at points left out, CPU time.
 
     pip install numpy ezyrb
     python3 crates/mor/benches/peers/model.py [ROUNDS]
 
 Cases: a pulse that travels a period in 601 times, every second left out, 40 modes (as in the bench
-`interpolation`); sin(3x - t mu) + 0.3 mu^2 cos 5x cos 2t at 41 times and 8 mu in [1, 2], errors at 7 mu
-between, 10 modes. Inputs are scaled to [0, 1] for EZyRB. Networks: tanh, 24 + 24, 300 iterations (ours);
-coefficients scaled to unit deviation (plugin DatabaseScaler), Adam with 10 000 epochs (EZyRB). Times
-are those of POD, fit and prediction; `Podiann` has error estimates as well, from further fits.
+`interpolation`); sin(3x - t mu) + 0.3 mu^2 cos 5x cos 2t at 41 times and 8 mu in [1, 2], errors at
+7 mu between, 10 modes. Inputs are scaled to [0, 1]. Networks: tanh, 24 + 24, 300 iterations
+(`Podiann`); coefficients scaled to unit deviation (plugin DatabaseScaler), Adam with 10 000 epochs
+(EZyRB). Times are those of POD, fit and prediction; `Podiann` has error estimates as well, from
+further fits.
 """
 
 import io
@@ -62,7 +63,8 @@ def ezyrb(approximation):
         else:
             fitted = ezyrb.RBF(approximation)
         database = ezyrb.Database(points, np.ascontiguousarray(known.T))
-        model = ezyrb.ReducedOrderModel(database, ezyrb.POD("svd", rank=rank), fitted, plugins=plugins)
+        pod = ezyrb.POD("svd", rank=rank)
+        model = ezyrb.ReducedOrderModel(database, pod, fitted, plugins=plugins)
         with redirect_stdout(io.StringIO()):
             model.fit()
             found = model.predict(ezyrb.Database(held_points)).snapshots_matrix
@@ -86,7 +88,8 @@ def main():
     for case in (pulse, wave):
         known, points, held, held_points, rank = data = case()
         with tempfile.TemporaryDirectory() as folder:
-            for name, array in zip(("snapshots", "points", "held", "held_points"), (known.T, points, held.T, held_points)):
+            names = ("snapshots", "points", "held", "held_points")
+            for name, array in zip(names, (known.T, points, held.T, held_points)):
                 np.save(Path(folder) / name, np.ascontiguousarray(array))
             for name, arguments, peer in METHODS:
                 a, b = [], []
@@ -98,7 +101,8 @@ def main():
                         b.append(cpu)
                 theirs = f"EZyRB {error:.2e} {statistics.median(b):8.3f} CPU s" if peer else ""
                 print(
-                    f"{case.__name__:6} {name:10} projection {o['projection']:.2e} ours {o['error']:.2e} "
+                    f"{case.__name__:6} {name:10} projection {o['projection']:.2e} "
+                    f"ours {o['error']:.2e} "
                     f"{statistics.median(a):8.4f} CPU s  {theirs}  {o['method']}",
                     flush=True,
                 )

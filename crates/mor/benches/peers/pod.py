@@ -3,8 +3,8 @@
     pip install numpy scipy scikit-learn pymor
     python3 crates/mor/benches/peers/pod.py [DECADES [ROUNDS [METHOD ...]]]
 
-sigma_k = 10^(-DECADES (k - 1)/39): DECADES orders of magnitude over the first 40. In every round each
-method runs once, on one thread; medians of CPU and wall seconds, errors of sigma_k relative to sigma_k.
+sigma_k = 10^(-DECADES (k - 1)/39): DECADES orders of magnitude over the first 40. In every round
+each method runs once, on one thread; medians of CPU and wall seconds, errors relative to sigma_k.
 """
 
 import os
@@ -58,7 +58,8 @@ def qr_svd(x):
 def randomised(x):
     from sklearn.utils.extmath import randomized_svd
 
-    u, s, _ = randomized_svd(x, RANK, n_oversamples=10, n_iter=2, power_iteration_normalizer="QR", random_state=1)
+    how = dict(n_oversamples=10, n_iter=2, power_iteration_normalizer="QR", random_state=1)
+    u, s, _ = randomized_svd(x, RANK, **how)
     return u, s
 
 
@@ -102,14 +103,15 @@ def main():
         np.save(file, x.T)
         file.flush()
         for _ in range(rounds):
-            for method in filter(lambda m: wanted("ours " + m), ("auto", "snapshots", "qr", "randomised")):
+            methods = ("auto", "snapshots", "qr", "randomised")
+            for method in filter(lambda m: wanted("ours " + m), methods):
                 found = ours("pod", file.name, method, RANK)
                 note("ours " + method, found["cpu"], found["wall"], found["values"], found["skew"])
             for name in filter(wanted, PEERS):
                 (modes, s), cpu, wall = timed(lambda: PEERS[name](x))
                 skew = np.abs(modes.T @ modes - np.eye(modes.shape[1])).max()
                 note(name, cpu, wall, s, skew)
-    print(f"{'method':28} {'CPU s':>7} {'wall s':>7} {'skew':>8}  error of sigma_1, 10, 20, 40   modes")
+    print(f"{'method':28} {'CPU s':>7} {'wall s':>7} {'skew':>8}  error of sigma_1, 10, 20, 40  modes")
     for name, all_ in runs.items():
         cpu, wall = (statistics.median(r[i] for r in all_) for i in (0, 1))
         _, _, error, skew = all_[-1]

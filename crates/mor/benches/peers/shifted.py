@@ -1,16 +1,17 @@
 """Shifted POD by sPOD (J2, BFB, ALM) beside `ShiftedPod`, on the very same matrices.
 
     pip install numpy scipy scikit-learn
-    SPOD_LIB=FOLDER/lib python3 crates/mor/benches/peers/shifted.py clean
-    EXPORT=FOLDER cargo bench -p mor --bench shifted_outliers -- 3
+    EXPORT=FOLDER cargo bench -p mor --bench shifted_outliers -- 3 0 0.1 0.5 1 3 5 8 12
+    SPOD_LIB=FOLDER/lib python3 crates/mor/benches/peers/shifted.py clean FOLDER
     SPOD_LIB=FOLDER/lib python3 crates/mor/benches/peers/shifted.py wrong FOLDER
 
-sPOD is no package: SPOD_LIB is the folder `lib` of a clone (github.com/Philipp137/SPOD). Parameters are
+sPOD is no package: SPOD_LIB is the folder `lib` of github.com/Philipp137/SPOD. Parameters are
 those of its example `01_travelling_wave_1D.py`: Lagrange polynomials of degree 5, ALM with mu =
 M N/(4 sum |q|) and 10 modes more than needed (with wrong entries a tenth of that mu, lambda =
 1/sqrt(max(M, N)) and 50 modes more), BFB with lambda_s = 0.3, at most 500 steps.
 """
 
+import inspect
 import io
 import os
 import sys
@@ -40,6 +41,14 @@ def examples():
     yield "multiple_ranks 400 x 200", left + right, cells * np.array([-t, t]), [4, 2]
 
 
+def call(algorithm, data, frames, params, ranks, **more):
+    """With the names of arguments that this version of sPOD has."""
+    names = inspect.signature(algorithm).parameters
+    more["nmodes" if "nmodes" in names else "nmodes_max"] = ranks
+    more = {name: value for name, value in more.items() if name in names}
+    return algorithm(data, frames, myparams=params, **more)
+
+
 def spod(method, data, shifts, ranks, wrong=False):
     """Its approximation and ranks (singular values above 1e-10 of the largest)."""
     m, n = data.shape
@@ -47,27 +56,27 @@ def spod(method, data, shifts, ranks, wrong=False):
     with redirect_stdout(io.StringIO()):
         frames = [Transform(shape, [m], shifts=-s, dx=[1.0], interp_order=5) for s in shifts]
         params = sPOD_Param()
-        params.maxit, params.isVerbose = 500, False
+        params.maxit, params.isVerbose, params.isError = 500, False, wrong
         mu = m * n / (4 * np.abs(data).sum())
         if method == "J2":
-            found = shifted_POD_J2(data, frames, ranks, params)
+            found = call(shifted_POD_J2, data, frames, params, ranks)
         elif method == "BFB":
-            params.lambda_s, params.isError = 0.3, wrong
-            found = shifted_POD_FB(data, frames, ranks, params, method="BFB")
-        elif wrong:
-            found = shifted_POD_ALM(
-                data, frames, params, nmodes_max=max(ranks) + 50, mu=0.1 * mu, isError=True
-            )
+            params.lambda_s = 0.3
+            found = call(shifted_POD_FB, data, frames, params, ranks, method="BFB")
         else:
-            found = shifted_POD_ALM(data, frames, params, nmodes_max=max(ranks) + 10, mu=mu)
+            params.lambda_E = 1 / np.sqrt(max(m, n))
+            most, mu = (max(ranks) + 50, 0.1 * mu) if wrong else (max(ranks) + 10, mu)
+            found = call(shifted_POD_ALM, data, frames, params, most, mu=mu, isError=wrong)
     values = [frame.modal_system["sigma"] for frame in found.frames]
-    return found.data_approx, [int((s > 1e-10 * s[0]).sum()) for s in values], len(found.rel_err_hist)
+    found_ranks = [int((s > 1e-10 * s[0]).sum()) for s in values]
+    return found.data_approx, found_ranks, len(found.rel_err_hist)
 
 
 def report(name, method, result, clean):
     (approximation, ranks, steps), cpu, _ = result
     error = np.linalg.norm(approximation - clean) / np.linalg.norm(clean)
-    print(f"{name:28} sPOD {method:4} error {error:.2e} ranks {ranks} {steps:4} steps {cpu:7.2f} CPU s", flush=True)
+    end = f"ranks {ranks} {steps:4} steps {cpu:7.2f} CPU s"
+    print(f"{name:28} sPOD {method:4} error {error:.2e} {end}", flush=True)
 
 
 def clean(rounds):
@@ -86,7 +95,8 @@ def clean(rounds):
                     o = ours("shifted", folder, given, tolerance)
                     print(
                         f"{name:28} ours {given:5} to {tolerance:.0e} error {o['error']:.2e} ranks "
-                        f"{[int(r) for r in o['ranks']]} {int(o['steps']):4} steps {o['cpu']:7.3f} CPU s",
+                        f"{[int(r) for r in o['ranks']]} {int(o['steps']):4} steps "
+                        f"{o['cpu']:7.3f} CPU s",
                         flush=True,
                     )
                 for method in ("J2", "BFB", "ALM"):
@@ -98,7 +108,8 @@ def wrong(folder):
         data, exact = (np.load(case / f"{n}.npy").T for n in ("data", "clean"))
         shifts = np.load(case / "shifts.npy")
         for method in ("ALM", "BFB"):
-            report(case.name, method, timed(lambda: spod(method, data, shifts, [3, 2], wrong=True)), exact)
+            result = timed(lambda: spod(method, data, shifts, [3, 2], wrong=True))
+            report(case.name, method, result, exact)
 
 
 if __name__ == "__main__":

@@ -38,6 +38,8 @@ pub struct Scene {
     pub densities: Vec<f64>,
     /// Diameter of the discs \[m\].
     pub diameter: f64,
+    /// Kinematic viscosity of the fluid \[m²/s\].
+    pub viscosity: f64,
     /// How far the second disc starts aside of the first \[m\].
     pub aside: f64,
     /// Walls below and above instead of a periodic box.
@@ -59,6 +61,7 @@ impl Default for Scene {
             bodies: 2,
             densities: vec![1060.0, 1030.0],
             diameter: 1e-3,
+            viscosity: FLUID.viscosity,
             aside: 0.05e-3,
             floor: false,
             balance: WeightBalance::NetWeight,
@@ -142,9 +145,13 @@ impl Scene {
     /// # Errors
     /// Where the scene makes no sense.
     pub fn flow(&self) -> Result<Projection<2>, SceneError> {
-        let flow = Projection::new(self.grid()?, self.sides(), FLUID)?;
+        let flow = Projection::new(self.grid()?, self.sides(), self.fluid())?;
         // The immersed boundary's accuracy is known for explicit diffusion.
         Ok(flow.with_diffusion(Diffusion::Explicit))
+    }
+
+    fn fluid(&self) -> Fluid {
+        Fluid { viscosity: self.viscosity, ..FLUID }
     }
 
     fn sides(&self) -> [[Side; 2]; 2] {
@@ -213,7 +220,7 @@ impl Scene {
     /// # Errors
     /// Where the scene makes no sense.
     pub fn hfdib_dem(&self) -> Result<HfdibDem<2>, SceneError> {
-        let flow = Piso::new(self.grid()?, self.sides(), FLUID)?;
+        let flow = Piso::new(self.grid()?, self.sides(), self.fluid())?;
         Ok(hfdib_dem(flow, self.discs()?, Vector::new(0.0, -GRAVITY, 0.0), self.weight_balance())?)
     }
 }

@@ -1,7 +1,7 @@
 //! Reduced models of falling discs at times and parameters that are not among their samples.
 //!
-//! λ and the paths of the discs are simulated. sPODIANN ([`mor::models::Spodiann`]) is fitted to a part of the
-//! snapshots and compared with the projection of the others on its modes:
+//! λ and the paths of the discs are simulated. sPODIANN ([`mor::models::Spodiann`]) is fitted to a
+//! part of the snapshots and compared with the projection of the others on its modes:
 //!
 //! - `ten`: ten discs, every other snapshot;
 //! - `densities`: two discs, five densities of the upper one, and four densities between them;
@@ -12,6 +12,7 @@
 //! cargo run --release --example unseen_falls -- --kinds ten --seeds 1 --rank 2
 //! ```
 #[path = "../reduced_discs/fall.rs"]
+#[expect(dead_code, reason = "shared with examples that need more of a run")]
 mod fall;
 mod study;
 
@@ -112,7 +113,9 @@ fn parts(cli: &Cli, kind: Kind, seed: u64, stop: &AtomicBool) -> Outcome<Option<
     if kind == Kind::Ten {
         let densities = (0..10).map(|k| 1040.0 + 15.0 * spread(seed, k + 3)).collect();
         let scene = Scene { bodies: 10, densities, ..scene };
-        let Some(fallen) = fall::run(&scene, cli.end, 2 * (cli.snapshots - 1), stop)? else { return Ok(None) };
+        let Some(fallen) = fall::run(&scene, cli.end, 2 * (cli.snapshots - 1), stop)? else {
+            return Ok(None);
+        };
         let runs = [Run { parameter: None, fallen }];
         return Ok(Some([0, 1].map(|first| Part::new(&runs, first, 2))));
     }

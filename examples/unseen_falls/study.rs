@@ -83,7 +83,8 @@ pub(crate) fn table(name: &str, ranks: &[usize], known: &Part, unseen: &Part, se
     let header =
         ["given", "projection", "total", "ratio", "worst", "last", "paths", "fit CPU s", "coefficients"];
     table.matrix(&header, rows);
-    table.note("ratio: total error over that of the projection, of all unseen snapshots; worst, last: of one");
+    table
+        .note("ratio: total error over that of the projection, of all unseen snapshots; worst, last: of one");
     table.note("snapshot; paths: root mean square error of places, in cells.");
     Ok(table)
 }
@@ -94,7 +95,8 @@ fn row(name: &str, model: &Spodiann, unseen: &Part, fit: f64) -> Outcome<Vec<Str
     let (mut squares, mut frames) = (0.0, 0);
     for j in 0..m {
         let motions = Motions::by(unseen.motions.n_frames(), 1, |k, _| unseen.motions.motion(k, j));
-        let (point, snapshot) = (unseen.points.as_ref().subcols(j, 1), unseen.snapshots.as_ref().subcols(j, 1));
+        let (point, snapshot) =
+            (unseen.points.as_ref().subcols(j, 1), unseen.snapshots.as_ref().subcols(j, 1));
         let error = model.assess(point, snapshot, &motions)?;
         ratios.push(error.total / error.projection);
         let x: Vec<f64> = point.col(0).iter().copied().collect();

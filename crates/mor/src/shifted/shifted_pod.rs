@@ -43,7 +43,9 @@ pub enum Noise {
 /// [`Noise::Sparse`], frames in the space of wave vectors: Huber's function of the residual is minimised
 /// with a level that decreases until a least-squares fit without the entries beyond it is exact, or to
 /// the level of the noise. Of more than 200 snapshots 200 tell the modes, and the modes the amplitudes of
-/// the others.
+/// the others. [`Decomposition::stopped`] is [`StopReason::Tolerance`] if all entries that are not wrong
+/// are fitted to the tolerance; otherwise the error of the last step tells how far they are off, and
+/// modes that do not stand out of that are left out, though they are given.
 ///
 /// [`Noise::Sparse`], other frames: modes by the augmented Lagrangian of [`Proximal`](super::Proximal),
 /// then by [`JointDescent::huber`]; entries that are off by more than six deviations are wrong, and

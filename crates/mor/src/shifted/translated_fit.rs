@@ -55,7 +55,7 @@ impl Translated<'_> {
         Ok(Fields { frames: d.frames, offsets, stopped: d.stopped })
     }
 
-    /// Fields with amplitudes that are robust beside wrong entries, at the given modes.
+    /// Fields whose amplitudes minimise Huber's function at the given modes, with the bound for its level.
     pub(super) fn with_amplitudes(&self, fields: Fields, bound: f64) -> Fields {
         let moved = Motions::beside(self.shifts, &fields.offsets);
         let waves = Waves::new(&self.pod.grid, &moved, self.snapshots.nrows());
@@ -72,11 +72,15 @@ impl Translated<'_> {
             }
         }
         let mut amplitudes: Vec<Mat<f64>> = fields.frames.iter().map(Frame::scaled_coefficients).collect();
-        let regressed = |j: usize| {
+        let better = |j: usize| {
             let modes: Vec<&[f64]> = images.iter().map(|image| image.col_as_slice(j)).collect();
-            regressed(&self.snapshots.col(j).iter().copied().collect::<Vec<_>>(), &modes, bound)
+            let snapshot: Vec<f64> = self.snapshots.col(j).iter().copied().collect();
+            let before: Vec<f64> = amplitudes.iter().flat_map(|a| a.col_as_slice(j).to_vec()).collect();
+            let found = regressed(&snapshot, &modes, bound);
+            let loss = |x: &[f64]| huber(&snapshot, &modes, x, bound);
+            if loss(&found) < loss(&before) { found } else { before }
         };
-        let found: Vec<_> = (0..n).into_par_iter().map(regressed).collect();
+        let found: Vec<_> = (0..n).into_par_iter().map(better).collect();
         for (j, found) in found.into_iter().enumerate() {
             let mut found = found.into_iter();
             for a in &mut amplitudes {
@@ -144,6 +148,13 @@ fn regressed(q: &[f64], b: &[&[f64]], bound: f64) -> Vec<f64> {
         level *= 0.5;
     }
     x
+}
+
+/// Σ ρ_δ(q − Σ_s x_s b_s).
+fn huber(q: &[f64], b: &[&[f64]], x: &[f64], level: f64) -> f64 {
+    let residual = |i: usize| (q[i] - b.iter().zip(x).map(|(b, x)| b[i] * x).sum::<f64>()).abs();
+    let rho = |r: f64| if r <= level { 0.5 * r * r } else { level * (r - 0.5 * level) };
+    (0..q.len()).map(|i| rho(residual(i))).sum()
 }
 
 /// Change of x by weighted least squares.

@@ -52,6 +52,7 @@ fn wrong_entries_of_small_sets_are_found_with_the_ranks() {
             let d = pod.solve(&shifts, data.as_ref(), None, &mut quiet).unwrap();
             let error = d.relative_error(&op, clean.as_ref());
             assert!(d.ranks() == [3, 2] && error < 1e-8, "{share}: {:?} {error:.1e}", d.ranks());
+            assert_eq!(d.stopped, StopReason::Tolerance, "{share}");
             let noise = d.noise.as_ref().unwrap();
             let left = (&data - d.fields(&op) - noise).norm_l2() / data.norm_l2();
             let last = d.history.last().unwrap();
@@ -61,6 +62,23 @@ fn wrong_entries_of_small_sets_are_found_with_the_ranks() {
             assert_eq!(missed.count(), 0, "{share}");
         }
     }
+}
+
+/// Two of five entries are wrong: that they are not found shows in the reason and in the last error.
+#[test]
+fn too_many_wrong_entries_are_no_success() {
+    let (shifts, clean) = crossing();
+    let (m, n) = clean.shape();
+    let numbers = random(2 * m * n, 5);
+    let data = Mat::from_fn(m, n, |i, j| {
+        let [hit, size] = [0, 1].map(|c| numbers[2 * (i + m * j) + c]);
+        clean[(i, j)] + if hit < -0.2 { 1.5 * size } else { 0.0 }
+    });
+    let pod = ShiftedPod::new(Grid::new([m], [1.0]).unwrap(), Interpolation::Spectral);
+    let pod = pod.noise(Noise::Sparse).ranks(Ranks::Given(vec![3, 2]));
+    let d = pod.solve(&shifts, data.as_ref(), None, &mut quiet).unwrap();
+    let (error, stopped) = (d.history.last().unwrap().error, d.stopped);
+    assert!(stopped == StopReason::Stagnation && error > 1e-2, "{stopped:?} {error:.1e}");
 }
 
 #[test]
@@ -88,7 +106,7 @@ fn a_stop_at_any_step_ends_the_descent() {
     };
     let (whole, steps) = run(usize::MAX);
     assert!(whole.stopped != StopReason::Asked && whole.ranks() == [1, 1], "{:?}", whole.ranks());
-    for most in (1..=steps).step_by(3) {
+    for most in (1..=steps).step_by(17) {
         let (d, calls) = run(most);
         assert_eq!((d.stopped, calls, d.history.len()), (StopReason::Asked, most, most));
     }

@@ -3,9 +3,9 @@ use super::dense::{columns, inner};
 use monomorphic::Mat;
 use std::collections::VecDeque;
 
-/// Anderson's mixing for x = G(x): the next x is that combination of the last values of G whose residuals
-/// F = G(x) − x cancel best in the sense of least squares (Anderson 1965). For an affine G it is as good as
-/// GMRES of as many steps (Walker & Ni 2011).
+/// Anderson's mixing for x = G(x): the next x is that combination of the last values of G whose
+/// residuals F = G(x) − x cancel best in the sense of least squares (Anderson 1965). For an affine
+/// G it is as good as GMRES of as many steps (Walker & Ni 2011).
 #[derive(Default)]
 pub(super) struct Anderson {
     /// Changes ΔG and ΔF of the last steps, combined so that the ΔF are orthonormal.
@@ -68,7 +68,8 @@ mod tests {
     use super::Anderson;
     use monomorphic::Mat;
 
-    /// G(x)ᵢ = 1 + λᵢ xᵢ with four different λ, up to 0.99: plain iteration needs thousands of steps.
+    /// G(x)ᵢ = 1 + λᵢ xᵢ with four different λ, up to 0.99: plain iteration needs thousands of
+    /// steps.
     #[test]
     fn an_affine_map_is_solved_in_as_many_steps_as_it_has_eigenvalues() {
         let lambda = |i: usize| [0.99, 0.9, 0.3, -0.5][i % 4];

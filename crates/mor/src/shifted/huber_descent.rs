@@ -9,24 +9,24 @@ use super::{Decomposition, Frame, ShiftedError, StopReason};
 use interfaces::Vector;
 use monomorphic::Mat;
 
-/// Minimisation of Huber's function of the residual, whose level decreases until the entries that are
-/// wrong are told from the others.
+/// Minimisation of Huber's function of the residual, whose level decreases until the entries that
+/// are wrong are told from the others.
 ///
-/// min over M = Σ_k T^k Q_k of Σ ρ_δ(Q − M) + ½ w Σ_k ‖Q_k‖², where ρ_δ(r) = ½ r² if |r| ≤ δ and
-/// δ (|r| − ½ δ) otherwise (Huber 1964). This is the minimum over M and E of
-/// ½ ‖Q − E − M‖² + δ ‖E‖₁ + ½ w Σ_k ‖Q_k‖² (Geman & Yang 1995): E is Q − M less its part within ±δ, and
-/// M is the least-squares fit to Q − E.
+/// min over M = Σ_k T^k Q_k of Σ ρ_δ(Q − M) + ½ w Σ_k ‖Q_k‖², where ρ_δ(r) = ½ r² if |r| ≤ δ and δ
+/// (|r| − ½ δ) otherwise (Huber 1964). This is the minimum over M and E of ½ ‖Q − E − M‖² + δ ‖E‖₁ +
+/// ½ w Σ_k ‖Q_k‖² (Geman & Yang 1995): E is Q − M less its part within ±δ, and M is the
+/// least-squares fit to Q − E.
 ///
-/// The level δ begins at the largest entry, where no entry is an outlier, and is lowered by decades, so that
-/// the fields at one level begin near those at the next. At each level a least-squares fit without the
-/// entries beyond it follows, which has no bias by them (least trimmed squares, Rousseeuw 1984). If that
-/// fit reaches the error that is sufficient, these entries hold all wrong ones. If not, a mode is added
-/// that stands out of both residuals limited to ±δ; if none does, the level is lowered, to no less than
-/// 1.345 deviations of the noise.
+/// The level δ begins at the largest entry, where no entry is an outlier, and is lowered by
+/// decades, so that the fields at one level begin near those at the next. At each level a
+/// least-squares fit without the entries beyond it follows, which has no bias by them (least
+/// trimmed squares, Rousseeuw 1984). If that fit reaches the error that is sufficient, these
+/// entries hold all wrong ones. If not, a mode is added that stands out of both residuals limited
+/// to ±δ; if none does, the level is lowered, to no less than 1.345 deviations of the noise.
 ///
-/// A snapshot that hardly tells frames apart would lend them its wrong entries: it is left out until the
-/// modes are known (coherence, Candès & Recht 2009). In the end the amplitudes of all snapshots are
-/// fitted to the modes, which has one minimum only.
+/// A snapshot that hardly tells frames apart would lend them its wrong entries: it is left out
+/// until the modes are known (coherence, Candès & Recht 2009). In the end the amplitudes of all
+/// snapshots are fitted to the modes, which has one minimum only.
 pub(super) struct HuberDescent<'a> {
     problem: &'a Translated<'a>,
     /// Q, zero in snapshots that are left out.
@@ -41,7 +41,8 @@ const EFFICIENT: f64 = 1.345;
 const SETTLED: f64 = 0.1;
 /// Factor from one level to the next.
 const LOWERED: f64 = 0.1;
-/// Frames cancel one another in a snapshot if the sum of their squares is so many times that of their sum.
+/// Frames cancel one another in a snapshot if the sum of their squares is so many times that of
+/// their sum.
 const CANCELLING: f64 = 2.0;
 /// A snapshot tells a mode alone if it has more than this share of the square of its coefficients.
 const ALONE: f64 = 0.5;
@@ -76,8 +77,8 @@ impl State {
         self.fields.stopped == StopReason::Asked
     }
 
-    /// Snapshot that hardly tells frames apart: their fields cancel one another there, or it alone tells a
-    /// mode. The one that exceeds a bound most, by its ratio to the bound.
+    /// Snapshot that hardly tells frames apart: their fields cancel one another there, or it alone
+    /// tells a mode. The one that exceeds a bound most, by its ratio to the bound.
     fn doubtful(&self, known: &Mat<f64>, left_out: &[usize]) -> Option<usize> {
         let excess = |j: usize| {
             let field = (known.col(j) - self.residual.col(j)).squared_norm_l2();
@@ -100,7 +101,8 @@ impl State {
 enum Loss {
     /// ρ_δ.
     Huber { level: f64 },
-    /// ½ r² of all but those entries where `wrong` is not zero; the norm of the others is as small as need be.
+    /// ½ r² of all but those entries where `wrong` is not zero; the norm of the others is as small
+    /// as need be.
     Trimmed { wrong: Mat<f64>, sufficient: f64 },
 }
 
@@ -181,8 +183,8 @@ impl<'a> HuberDescent<'a> {
         State { fields, residual, ..state }
     }
 
-    /// Lowers the level until the entries beyond it hold all wrong ones, or to that of the noise. The level
-    /// returned is that of the entries that are right.
+    /// Lowers the level until the entries beyond it hold all wrong ones, or to that of the noise.
+    /// The level returned is that of the entries that are right.
     fn descend(
         &mut self,
         mut state: State,
@@ -216,8 +218,8 @@ impl<'a> HuberDescent<'a> {
         }
     }
 
-    /// Minimum of Huber's function at the level. The weight w changes M by less than a step that counts, where
-    /// frames are told apart.
+    /// Minimum of Huber's function at the level. The weight w changes M by less than a step that
+    /// counts, where frames are told apart.
     fn settled(&self, state: State, watch: &mut Watch<'_>) -> Result<State, ShiftedError> {
         let (m, n) = state.residual.shape();
         let change = SETTLED * edge(state.limited().norm_l2(), [m, n]);
@@ -323,8 +325,8 @@ impl<'a> HuberDescent<'a> {
         (&self.known - &state.residual).norm_l2()
     }
 
-    /// The largest mode that stands out of the limited residual, and its frame. It must stand out without
-    /// the bias of settled fields, too, which can look like a mode.
+    /// The largest mode that stands out of the limited residual, and its frame. It must stand out
+    /// without the bias of settled fields, too, which can look like a mode.
     fn standing_out(&self, settled: &State, trimmed: &State, most: &[usize]) -> Option<(usize, Frame)> {
         let largest = |state: &State| {
             let parts = self.problem.parts(&state.limited(), &state.fields).into_iter().enumerate();
@@ -336,15 +338,15 @@ impl<'a> HuberDescent<'a> {
         largest(settled).and_then(|_| largest(trimmed))
     }
 
-    /// Residual that only wrong entries exceed: the largest of as many normal numbers (Donoho & Johnstone
-    /// 1994), of the deviation of the noise or of that at which the level is efficient.
+    /// Residual that only wrong entries exceed: the largest of as many normal numbers (Donoho &
+    /// Johnstone 1994), of the deviation of the noise or of that at which the level is efficient.
     fn bound(&self, state: &State) -> f64 {
         let entries = (state.residual.nrows() * state.residual.ncols()) as f64;
         (2.0 * entries.ln()).sqrt() * self.deviation(&state.residual).max(state.level / EFFICIENT)
     }
 
-    /// Deviation of the noise from the median of the residual's entries; or, if that is larger, from
-    /// their median weighted by the fields, most of whose entries may be zero.
+    /// Deviation of the noise from the median of the residual's entries; or, if that is larger,
+    /// from their median weighted by the fields, most of whose entries may be zero.
     fn deviation(&self, residual: &Mat<f64>) -> f64 {
         let entries = || {
             let columns = residual.col_iter().zip(self.known.col_iter());

@@ -7,9 +7,9 @@ use monomorphic::Mat;
 pub(super) struct Parts {
     /// Largest mode of the normal part (1 − Φ Φᵀ) R (1 − Aᵀ A).
     pub(super) mode: Frame,
-    /// Bound of the norm of a matrix of independent entries like those of the normal part without the
-    /// mode: the largest norm of a row, plus that of a column, plus √(ln N) times the largest entry
-    /// (Bandeira & van Handel 2016).
+    /// Bound of the norm of a matrix of independent entries like those of the normal part without
+    /// the mode: the largest norm of a row, plus that of a column, plus √(ln N) times the largest
+    /// entry (Bandeira & van Handel 2016).
     pub(super) noise: f64,
 }
 

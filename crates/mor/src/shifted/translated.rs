@@ -97,7 +97,8 @@ impl Translated<'_> {
         Ok(Decomposition { history: watch.take(), offsets, ..d })
     }
 
-    /// As many modes as are needed but no more than `most`, roughly fitted, in frames that are where they should be.
+    /// As many modes as are needed but no more than `most`, roughly fitted, in frames that are
+    /// where they should be.
     pub(super) fn search(
         &self,
         start: Option<Vec<Frame>>,

@@ -1,4 +1,5 @@
-//! Fits of frames that only move, as [`HuberDescent`](super::huber_descent::HuberDescent) needs them.
+//! Fits of frames that only move, as [`HuberDescent`](super::huber_descent::HuberDescent) needs
+//! them.
 use super::dense::{product, thin};
 use super::fourier::{Als, Patience, RIDGE, factorise, substitute};
 use super::residual_parts::Parts;
@@ -35,8 +36,8 @@ const REWEIGHTINGS: usize = 100;
 const UNCHANGED: f64 = 1e-3;
 
 impl Translated<'_> {
-    /// Fields of these ranks fitted to `data`, from `start` on, with a weight of Σ_k ‖Q_k‖² against the squared
-    /// error, no less than the default of [`Als`].
+    /// Fields of these ranks fitted to `data`, from `start` on, with a weight of Σ_k ‖Q_k‖² against
+    /// the squared error, no less than the default of [`Als`].
     pub(super) fn fit(
         &self,
         data: MatRef<'_, f64>,
@@ -55,7 +56,8 @@ impl Translated<'_> {
         Ok(Fields { frames: d.frames, offsets, stopped: d.stopped })
     }
 
-    /// Fields whose amplitudes minimise Huber's function at the given modes, with the bound for its level.
+    /// Fields whose amplitudes minimise Huber's function at the given modes, with the bound for its
+    /// level.
     pub(super) fn with_amplitudes(&self, fields: Fields, bound: f64) -> Fields {
         let moved = Motions::beside(self.shifts, &fields.offsets);
         let waves = Waves::new(&self.pod.grid, &moved, self.snapshots.nrows());
@@ -123,9 +125,9 @@ impl Translated<'_> {
     }
 }
 
-/// x that minimises Σ ρ_δ(q − Σ_s x_s b_s) for unit vectors b, by iteratively reweighted least squares
-/// (Holland & Welsch 1977) with δ from the largest entry down to a bound; or the least-squares fit without
-/// the entries beyond δ, once no other exceeds the bound.
+/// x that minimises Σ ρ_δ(q − Σ_s x_s b_s) for unit vectors b, by iteratively reweighted least
+/// squares (Holland & Welsch 1977) with δ from the largest entry down to a bound; or the
+/// least-squares fit without the entries beyond δ, once no other exceeds the bound.
 fn regressed(q: &[f64], b: &[&[f64]], bound: f64) -> Vec<f64> {
     let mut x = vec![0.0; b.len()];
     let mut level = q.iter().fold(0.0_f64, |most, q| most.max(q.abs()));
@@ -178,7 +180,8 @@ fn weighted(q: &[f64], b: &[&[f64]], x: &[f64], weight: impl Fn(f64) -> f64) -> 
 mod tests {
     use super::regressed;
 
-    /// Two unit vectors at an angle of 0.1 rad; 6 of 40 entries are wrong. All others are exact in the end.
+    /// Two unit vectors at an angle of 0.1 rad; 6 of 40 entries are wrong. All others are exact in
+    /// the end.
     #[test]
     fn amplitudes_beside_wrong_entries_are_exact() {
         let unit = |shift: f64| {

@@ -28,7 +28,7 @@ use study::{Part, Run};
 #[derive(Clone, Debug, Parser)]
 #[command(version)]
 struct Cli {
-    /// What is unseen.
+    /// Inputs that are unseen.
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = Kind::value_variants().to_vec())]
     kinds: Vec<Kind>,
     /// Seeds of densities, starting places and networks.
@@ -63,7 +63,7 @@ struct Cli {
     viscosity_range: f64,
 }
 
-/// Which inputs are unseen.
+/// Inputs that are unseen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Kind {
     Ten,

@@ -27,7 +27,7 @@ fn read(path: impl AsRef<Path>) -> Result<Mat<f64>, Box<dyn Error>> {
     Ok(NpyArray::open(path, SnapshotAxis::First)?.to_mat()?)
 }
 
-/// What it returns, CPU and wall seconds.
+/// Result, CPU and wall seconds.
 fn timed<T>(run: impl FnOnce() -> T) -> (T, [f64; 2]) {
     let (cpu, wall) = (ProcessTime::now(), Instant::now());
     let result = run();

@@ -31,7 +31,7 @@ def ours(*arguments):
 
 
 def timed(run):
-    """What it returns, CPU and wall seconds."""
+    """Result, CPU and wall seconds."""
     usage = resource.getrusage(resource.RUSAGE_SELF)
     before, start = usage.ru_utime + usage.ru_stime, time.perf_counter()
     result = run()

@@ -1,5 +1,5 @@
 //! Acceleration of fixed-point iterations.
-use super::dense::{columns, inner};
+use super::dense::{add, columns, inner};
 use monomorphic::Mat;
 use std::collections::VecDeque;
 
@@ -53,13 +53,6 @@ impl Anderson {
         }
         self.last = Some([g, f]);
         next
-    }
-}
-
-/// `to` += factor `x`.
-fn add(to: &mut Mat<f64>, factor: f64, x: &Mat<f64>) {
-    for (to, x) in columns(to).into_iter().zip(x.col_iter()) {
-        to.iter_mut().zip(x.iter()).for_each(|(to, x)| *to += factor * x);
     }
 }
 

@@ -15,6 +15,13 @@ pub(super) fn columns(a: &mut Mat<f64>) -> Vec<&mut [f64]> {
     columns.expect("columns of a matrix are contiguous")
 }
 
+/// `to` += factor `x`.
+pub(super) fn add(to: &mut Mat<f64>, factor: f64, x: &Mat<f64>) {
+    for c in 0..to.ncols() {
+        to.col_as_slice_mut(c).iter_mut().zip(x.col_as_slice(c)).for_each(|(t, x)| *t += factor * x);
+    }
+}
+
 /// A B of stored matrices and views.
 pub(super) fn product(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
     let mut c = Mat::zeros(a.nrows(), b.ncols());

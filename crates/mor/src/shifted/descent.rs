@@ -120,6 +120,12 @@ fn weigh(weights: Option<&Mat<f64>>, field: &mut Mat<f64>) {
 const FORCING: f64 = 0.03;
 const MAX_INNER: usize = 40;
 
+/// ρ_δ(r) of a level δ (Huber 1964): ½ r² up to the level, δ (|r| − ½ δ) beyond.
+pub(super) fn huber(r: f64, level: f64) -> f64 {
+    let r = r.abs();
+    if r <= level { 0.5 * r * r } else { level * (r - 0.5 * level) }
+}
+
 struct LeastSquares<'a> {
     problem: Problem<'a>,
     level: Option<f64>,
@@ -184,8 +190,8 @@ impl LeastSquares<'_> {
     /// ‖R‖, or the root of twice Huber's function.
     fn size(&self, residual: &Mat<f64>) -> f64 {
         let Some(level) = self.level else { return residual.norm_l2() };
-        let part = |r: f64| if r <= level { r * r } else { level * (2.0 * r - level) };
-        residual.col_iter().map(|c| c.iter().map(|r| part(r.abs())).sum::<f64>()).sum::<f64>().sqrt()
+        let twice = residual.col_iter().map(|c| c.iter().map(|&r| 2.0 * huber(r, level)).sum::<f64>());
+        twice.sum::<f64>().sqrt()
     }
 
     /// Derivative of Huber's function over the residual.

@@ -49,7 +49,7 @@ const ALONE: f64 = 0.5;
 /// Share of the snapshots that are left out, at most.
 const FEW: f64 = 0.1;
 
-/// Fields at a level, and what they leave.
+/// Fields at a level, and their residual.
 #[derive(Clone)]
 struct State {
     fields: Fields,
@@ -120,7 +120,7 @@ impl Loss {
         Mat::from_fn(residual.nrows(), residual.ncols(), outlier)
     }
 
-    /// Of a residual with these outliers and this norm of the others.
+    /// Value for a residual with these outliers and this norm of the others.
     fn value(&self, outliers: &Mat<f64>, right: f64) -> f64 {
         match self {
             Self::Huber { level } => 0.5 * right * right + level * outliers.norm_l1(),
@@ -134,18 +134,27 @@ impl<'a> HuberDescent<'a> {
         Self { problem, known: problem.snapshots.to_owned(), left_out: vec![] }
     }
 
-    /// From these frames on, which may be empty.
+    /// Decomposition from these frames on, which may be empty.
     pub(super) fn solve(
         mut self,
         start: Vec<Frame>,
         watch: &mut Watch<'_>,
     ) -> Result<Decomposition, ShiftedError> {
+        let (fields, level) = self.modes(start, watch)?;
+        self.finish(fields, level, watch)
+    }
+
+    /// Fields, zero in snapshots that are left out, and the level of the entries that are right.
+    pub(super) fn modes(
+        &mut self,
+        start: Vec<Frame>,
+        watch: &mut Watch<'_>,
+    ) -> Result<(Fields, f64), ShiftedError> {
         let pod = self.problem.pod;
         let offsets = vec![Vector::zeros(); start.len()];
-        let residual = self.problem.residual(&start, &offsets);
-        let level = residual.norm_max();
         let fields = Fields { frames: start, offsets, stopped: StopReason::Steps };
-        let mut state = State { fields, residual, level };
+        let mut state = self.state(fields, 0.0);
+        state.level = state.residual.norm_max();
         let most = match &pod.ranks {
             Ranks::Given(ranks) => ranks.clone(),
             Ranks::Found => {
@@ -153,8 +162,8 @@ impl<'a> HuberDescent<'a> {
                 state = self.descend(state, &most, pod.rank_tolerance, watch)?;
                 if !state.asked_to_stop() {
                     let right = &self.known - state.beyond(self.bound(&state));
-                    let fields = self.problem.pruned(right.as_ref(), state.fields.clone(), watch)?;
-                    state = self.with_fields(state, fields);
+                    let fields = self.problem.pruned(right.as_ref(), state.fields, watch)?;
+                    state = self.state(fields, state.level);
                 }
                 state.fields.ranks()
             }
@@ -162,13 +171,29 @@ impl<'a> HuberDescent<'a> {
         if !state.asked_to_stop() {
             state = self.descend(state, &most, pod.tolerance, watch)?;
         }
-        state = self.put_back(state);
-        let bound = self.bound(&state);
+        Ok((state.fields, state.level))
+    }
+
+    /// Amplitudes of all snapshots at these modes, then a least-squares fit without the entries that
+    /// are off by more than noise of the level.
+    pub(super) fn finish(
+        mut self,
+        fields: Fields,
+        level: f64,
+        watch: &mut Watch<'_>,
+    ) -> Result<Decomposition, ShiftedError> {
+        self.known = self.problem.snapshots.to_owned();
+        let mut state = self.state(fields, level);
+        let mut bound = self.bound(&state);
         if !state.asked_to_stop() {
-            let (trimmed, kept) = self.trimmed(&state, bound, pod.tolerance, watch)?;
-            state = State { level: kept.norm_max(), ..trimmed };
+            let fields = self.problem.with_amplitudes(state.fields, bound);
+            state = self.state(fields, level);
+            bound = self.bound(&state);
+            let tolerance = self.problem.pod.tolerance;
+            let (trimmed, kept) = self.trimmed(&state, bound, tolerance, watch)?;
+            let reached = kept.norm_l2() <= tolerance * self.explained(&trimmed);
+            state = trimmed;
             if !state.asked_to_stop() {
-                let reached = kept.norm_l2() <= pod.tolerance * self.explained(&state);
                 state.fields.stopped = if reached { StopReason::Tolerance } else { StopReason::Stagnation };
             }
         }
@@ -177,10 +202,10 @@ impl<'a> HuberDescent<'a> {
         Ok(Decomposition { noise, offsets, ..Decomposition::of(frames, vec![], stopped) })
     }
 
-    fn with_fields(&self, state: State, fields: Fields) -> State {
+    fn state(&self, fields: Fields, level: f64) -> State {
         let part = Translated { snapshots: self.known.as_ref(), ..*self.problem };
         let residual = part.residual(&fields.frames, &fields.offsets);
-        State { fields, residual, ..state }
+        State { fields, residual, level }
     }
 
     /// Lowers the level until the entries beyond it hold all wrong ones, or to that of the noise.
@@ -264,7 +289,7 @@ impl<'a> HuberDescent<'a> {
             let start = state.fields.clone();
             let fields = self.problem.fit(data.as_ref(), start, &ranks, ridge, patience, watch)?;
             drop(data);
-            let trial = self.with_fields(state.clone(), fields);
+            let trial = self.state(fields, state.level);
             if trial.asked_to_stop() {
                 return Ok(trial);
             }
@@ -302,22 +327,11 @@ impl<'a> HuberDescent<'a> {
     fn leave_out(&mut self, state: State, j: usize) -> State {
         self.left_out.push(j);
         self.known.col_as_slice_mut(j).fill(0.0);
-        let mut fields = state.fields.clone();
+        let State { mut fields, level, .. } = state;
         for frame in &mut fields.frames {
             (0..frame.rank()).for_each(|i| frame.coefficients[(i, j)] = 0.0);
         }
-        self.with_fields(state, fields)
-    }
-
-    /// Amplitudes of all snapshots at the modes found.
-    fn put_back(&mut self, state: State) -> State {
-        if state.asked_to_stop() || state.fields.ranks().iter().all(|&rank| rank == 0) {
-            return state;
-        }
-        let bound = self.bound(&state);
-        self.known = self.problem.snapshots.to_owned();
-        let fields = self.problem.with_amplitudes(state.fields.clone(), bound);
-        self.with_fields(state, fields)
+        self.state(fields, level)
     }
 
     /// ‖M‖.

@@ -1,5 +1,4 @@
 //! Frames that only move along periodic axes: all in the space of wave vectors.
-use super::dense::columns;
 use super::fourier::{Als, LONG, Spectrum, offsets};
 use super::huber_descent::HuberDescent;
 use super::rank_search::{Found, RankSearch};
@@ -141,7 +140,7 @@ impl Translated<'_> {
         Ok((carried(frames, &|modes| waves.fields(modes)), stopped))
     }
 
-    /// Some entries are wrong. Of many snapshots some tell the modes.
+    /// Decomposition beside wrong entries. If there are many snapshots, some tell the modes.
     fn sparse(
         &self,
         start: Option<Vec<Frame>>,
@@ -156,22 +155,20 @@ impl Translated<'_> {
             let shifts = Thinned { shifts: self.shifts, snapshots: &some };
             let part = Translated { pod: self.pod, shifts: &shifts, snapshots: few.as_ref() };
             let start = start.iter().map(|frame| frame.at(&some)).collect();
-            let d = HuberDescent::new(&part).solve(start, watch)?;
-            let noise = d.noise.as_ref().expect("wrong entries");
-            let bound = (part.residual(&d.frames, &d.offsets) - noise).norm_max();
-            let frames: Vec<_> = d.frames.iter().map(|f| f.between(&some, n)).collect();
-            let fields = Fields { frames, offsets: d.offsets, stopped: d.stopped };
-            let Fields { frames, offsets, stopped } = self.with_amplitudes(fields, bound);
-            let mut noise = self.residual(&frames, &offsets);
-            columns(&mut noise).into_iter().flatten().filter(|r| r.abs() <= bound).for_each(|r| *r = 0.0);
-            Decomposition { noise: Some(noise), offsets, ..Decomposition::of(frames, vec![], stopped) }
+            let (fields, level) = HuberDescent::new(&part).modes(start, watch)?;
+            let frames = fields.frames.iter().map(|frame| frame.between(&some, n)).collect();
+            let mut d = HuberDescent::new(self).finish(Fields { frames, ..fields }, level, watch)?;
+            if d.stopped == StopReason::Tolerance && more_wrong_between(&d, &some) {
+                d.stopped = StopReason::Stagnation;
+            }
+            d
         };
         // The last step has the error of the fit that is returned.
-        let mut left = self.residual(&d.frames, &d.offsets);
-        if let Some(noise) = &d.noise {
-            left -= noise;
-        }
         if d.stopped != StopReason::Asked {
+            let mut left = self.residual(&d.frames, &d.offsets);
+            if let Some(noise) = &d.noise {
+                left -= noise;
+            }
             let error = left.norm_l2() / self.snapshots.norm_l2().max(f64::MIN_POSITIVE);
             let rank = d.frames.iter().map(Frame::rank).sum();
             if watch.see(&Progress { step: 0, error, rank }).is_break() {
@@ -208,6 +205,15 @@ impl Translated<'_> {
         }
         residual
     }
+}
+
+/// A snapshot between those that tell the modes has more wrong entries than any of them, by four
+/// deviations of such a number: it holds a mode that they do not show.
+fn more_wrong_between(d: &Decomposition, some: &[usize]) -> bool {
+    let Some(noise) = &d.noise else { return false };
+    let wrong = |j: usize| noise.col(j).iter().filter(|x| **x != 0.0).count() as f64;
+    let most = some.iter().map(|&j| wrong(j)).fold(0.0, f64::max);
+    (0..noise.ncols()).any(|j| wrong(j) > most + 4.0 * most.sqrt())
 }
 
 /// Snapshots that are put together at a time.

@@ -1,6 +1,7 @@
 //! Fits of frames that only move, as [`HuberDescent`](super::huber_descent::HuberDescent) needs
 //! them.
 use super::dense::{product, thin};
+use super::descent::huber;
 use super::fourier::{Als, Patience, RIDGE, factorise, substitute};
 use super::residual_parts::Parts;
 use super::shifted_pod::Watch;
@@ -79,7 +80,7 @@ impl Translated<'_> {
             let snapshot: Vec<f64> = self.snapshots.col(j).iter().copied().collect();
             let before: Vec<f64> = amplitudes.iter().flat_map(|a| a.col_as_slice(j).to_vec()).collect();
             let found = regressed(&snapshot, &modes, bound);
-            let loss = |x: &[f64]| huber(&snapshot, &modes, x, bound);
+            let loss = |x: &[f64]| residual(&snapshot, &modes, x).map(|r| huber(r, bound)).sum::<f64>();
             if loss(&found) < loss(&before) { found } else { before }
         };
         let found: Vec<_> = (0..n).into_par_iter().map(better).collect();
@@ -132,19 +133,21 @@ fn regressed(q: &[f64], b: &[&[f64]], bound: f64) -> Vec<f64> {
     let mut x = vec![0.0; b.len()];
     let mut level = q.iter().fold(0.0_f64, |most, q| most.max(q.abs()));
     let bound = bound.max(f64::EPSILON * level);
-    let sum = |x: &[f64], i: usize| b.iter().zip(x).map(|(b, x)| b[i] * x).sum::<f64>();
+    let nothing = vec![0.0; q.len()];
     while level > bound {
         for _ in 0..REWEIGHTINGS {
             let change = weighted(q, b, &x, |r| level / level.max(r.abs()));
             x.iter_mut().zip(&change).for_each(|(x, change)| *x += change);
-            if (0..q.len()).all(|i| sum(&change, i).abs() <= UNCHANGED * level) {
+            if residual(&nothing, b, &change).all(|r| r.abs() <= UNCHANGED * level) {
                 break;
             }
         }
-        let right: Vec<usize> = (0..q.len()).filter(|&i| (q[i] - sum(&x, i)).abs() <= level).collect();
         let change = weighted(q, b, &x, |r| if r.abs() <= level { 1.0 } else { 0.0 });
         let trimmed: Vec<f64> = x.iter().zip(&change).map(|(x, change)| x + change).collect();
-        if right.iter().all(|&i| (q[i] - sum(&trimmed, i)).abs() <= bound) {
+        let exact = residual(q, b, &x)
+            .zip(residual(q, b, &trimmed))
+            .all(|(before, after)| before.abs() > level || after.abs() <= bound);
+        if exact {
             return trimmed;
         }
         level *= 0.5;
@@ -152,19 +155,16 @@ fn regressed(q: &[f64], b: &[&[f64]], bound: f64) -> Vec<f64> {
     x
 }
 
-/// Σ ρ_δ(q − Σ_s x_s b_s).
-fn huber(q: &[f64], b: &[&[f64]], x: &[f64], level: f64) -> f64 {
-    let residual = |i: usize| (q[i] - b.iter().zip(x).map(|(b, x)| b[i] * x).sum::<f64>()).abs();
-    let rho = |r: f64| if r <= level { 0.5 * r * r } else { level * (r - 0.5 * level) };
-    (0..q.len()).map(|i| rho(residual(i))).sum()
+/// q − Σ_s x_s b_s.
+fn residual<'a>(q: &'a [f64], b: &'a [&[f64]], x: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+    q.iter().enumerate().map(move |(i, q)| q - b.iter().zip(x).map(|(b, x)| b[i] * x).sum::<f64>())
 }
 
 /// Change of x by weighted least squares.
 fn weighted(q: &[f64], b: &[&[f64]], x: &[f64], weight: impl Fn(f64) -> f64) -> Vec<f64> {
     let rank = b.len();
     let (mut gram, mut change) = (vec![0.0; rank * rank], vec![0.0; rank]);
-    for (i, q) in q.iter().enumerate() {
-        let r = q - b.iter().zip(x).map(|(b, x)| b[i] * x).sum::<f64>();
+    for (i, r) in residual(q, b, x).enumerate() {
         let w = weight(r);
         for s in 0..rank {
             change[s] += w * r * b[s][i];

@@ -1,18 +1,12 @@
 //! The unknowns.
 use crate::Mat;
+pub(super) use crate::shifted::dense::add;
 
 /// Amplitudes a_i^k(t_j): a row per snapshot, a column per mode, those of one frame after those of another.
 #[derive(Clone)]
 pub(super) struct Amplitudes {
     pub(super) ranks: Vec<usize>,
     pub(super) values: Mat<f64>,
-}
-
-/// `to` += factor `x`.
-pub(super) fn add(to: &mut Mat<f64>, factor: f64, x: &Mat<f64>) {
-    for c in 0..to.ncols() {
-        to.col_as_slice_mut(c).iter_mut().zip(x.col_as_slice(c)).for_each(|(t, x)| *t += factor * x);
-    }
 }
 
 impl Amplitudes {

@@ -64,6 +64,40 @@ fn wrong_entries_of_small_sets_are_found_with_the_ranks() {
     }
 }
 
+/// Of 240 snapshots 200 tell the modes. A bump in one of the others is no mode of theirs.
+#[test]
+fn an_event_between_the_snapshots_that_tell_modes_is_no_success() {
+    let (m, n) = (48, 240);
+    let way = |j: usize| 0.9 * j as f64;
+    let pulse = |i: usize, j: usize, place: f64| {
+        let d = i as f64 - place - way(j);
+        (-((d - m as f64 * (d / m as f64).round()) / 4.0).powi(2)).exp()
+    };
+    let numbers = random(m * n, 7);
+    let wrong = |i: usize, j: usize| if numbers[i + m * j] > 0.96 { 1.5 } else { 0.0 };
+    let clean = Mat::from_fn(m, n, |i, j| pulse(i, j, 10.0));
+    let shifts = Motions::along_x(&[(0..n).map(way).collect::<Vec<_>>()]).unwrap();
+    let grid = Grid::new([m], [1.0]).unwrap();
+    let op = GridFrames::new(grid, Interpolation::Spectral, &shifts, m).unwrap();
+    let told: Vec<usize> = (0..200).map(|i| i * (n - 1) / 199).collect();
+    let event = (0..n).find(|j| !told.contains(j)).unwrap();
+    let pod = ShiftedPod::new(grid, Interpolation::Spectral).noise(Noise::Sparse);
+    for (size, stopped) in [(0.0, StopReason::Tolerance), (2.0, StopReason::Stagnation)] {
+        let bump = |i: usize, j: usize| {
+            if j == event { size * (-0.01 * (i as f64 - 30.0).powi(2)).exp() } else { 0.0 }
+        };
+        let data = Mat::from_fn(m, n, |i, j| clean[(i, j)] + wrong(i, j) + bump(i, j));
+        let d = pod.solve(&shifts, data.as_ref(), None, &mut quiet).unwrap();
+        assert_eq!((d.ranks(), d.stopped), (vec![1], stopped));
+        let noise = d.noise.as_ref().unwrap();
+        if size == 0.0 {
+            assert!(d.relative_error(&op, clean.as_ref()) < 1e-8);
+            let found = |i: usize, j: usize| noise[(i, j)] != 0.0;
+            assert!((0..n).all(|j| (0..m).all(|i| found(i, j) == (wrong(i, j) != 0.0))));
+        }
+    }
+}
+
 /// Two of five entries are wrong: that they are not found shows in the reason and in the last error.
 #[test]
 fn too_many_wrong_entries_are_no_success() {

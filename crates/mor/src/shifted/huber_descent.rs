@@ -24,9 +24,9 @@ use monomorphic::Mat;
 /// entries hold all wrong ones. If not, a mode is added that stands out of both residuals limited
 /// to ±δ; if none does, the level is lowered, to no less than 1.345 deviations of the noise.
 ///
-/// A snapshot that hardly tells frames apart would lend them its wrong entries: it is left out
-/// until the modes are known (coherence, Candès & Recht 2009). In the end the amplitudes of all
-/// snapshots are fitted to the modes, which has one minimum only.
+/// A snapshot that hardly tells frames apart would lend them its wrong entries: where they cancel
+/// one another, it is left out until the modes are known. In the end the amplitudes of all snapshots
+/// are fitted to the modes, which has one minimum only.
 pub(super) struct HuberDescent<'a> {
     problem: &'a Translated<'a>,
     /// Q, zero in snapshots that are left out.
@@ -44,8 +44,6 @@ const LOWERED: f64 = 0.1;
 /// Frames cancel one another in a snapshot if the sum of their squares is so many times that of
 /// their sum.
 const CANCELLING: f64 = 2.0;
-/// A snapshot tells a mode alone if it has more than this share of the square of its coefficients.
-const ALONE: f64 = 0.5;
 /// Share of the snapshots that are left out, at most.
 const FEW: f64 = 0.1;
 
@@ -77,23 +75,20 @@ impl State {
         self.fields.stopped == StopReason::Asked
     }
 
-    /// Snapshot that hardly tells frames apart: their fields cancel one another there, or it alone
-    /// tells a mode. The one that exceeds a bound most, by its ratio to the bound.
-    fn doubtful(&self, known: &Mat<f64>, left_out: &[usize]) -> Option<usize> {
-        let excess = |j: usize| {
+    /// Snapshot in which frames cancel one another most, if they do: it hardly tells them apart.
+    fn cancelling(&self, known: &Mat<f64>, left_out: &[usize]) -> Option<usize> {
+        let ratio = |j: usize| {
             let field = (known.col(j) - self.residual.col(j)).squared_norm_l2();
-            let (mut frames, mut share) = (0.0, 0.0_f64);
-            for frame in &self.fields.frames {
-                for (sigma, a) in frame.singular_values.iter().zip(frame.coefficients.col(j).iter()) {
-                    frames += (sigma * a).powi(2);
-                    share = share.max(a * a);
-                }
-            }
-            (share / ALONE).max(if frames > 0.0 { frames / (CANCELLING * field) } else { 0.0 })
+            let square = |f: &Frame| {
+                let terms = f.singular_values.iter().zip(f.coefficients.col(j).iter());
+                terms.map(|(sigma, a)| (sigma * a).powi(2)).sum::<f64>()
+            };
+            let frames: f64 = self.fields.frames.iter().map(square).sum();
+            if frames > 0.0 { frames / field } else { 0.0 }
         };
         let told = (0..known.ncols()).filter(|j| !left_out.contains(j));
-        let (j, most) = told.map(|j| (j, excess(j))).max_by(|a, b| a.1.total_cmp(&b.1))?;
-        (most > 1.0).then_some(j)
+        let (j, most) = told.map(|j| (j, ratio(j))).max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (most > CANCELLING).then_some(j)
     }
 }
 
@@ -223,7 +218,7 @@ impl<'a> HuberDescent<'a> {
                 return Ok(state);
             }
             let many = (self.left_out.len() + 1) as f64 > FEW * self.known.ncols() as f64;
-            if let Some(j) = state.doubtful(&self.known, &self.left_out).filter(|_| !many) {
+            if let Some(j) = state.cancelling(&self.known, &self.left_out).filter(|_| !many) {
                 state = self.leave_out(state, j);
                 continue;
             }

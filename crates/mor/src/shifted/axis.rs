@@ -27,6 +27,14 @@ fn padding(periodic: bool) -> usize {
     if periodic { MARGIN } else { 2 * MARGIN }
 }
 
+/// Where a shifted value comes from.
+enum Place {
+    /// The first or the last node.
+    End(usize),
+    /// Between this node and the next.
+    Behind(usize),
+}
+
 enum Kind {
     Lagrange(Interpolation),
     /// Coefficients of `n` nodes and [`padding`] on either side.
@@ -37,7 +45,9 @@ enum Kind {
 impl Axis {
     pub(super) fn new(n: usize, periodic: bool, interpolation: Interpolation) -> Self {
         let kind = match (interpolation, interpolation.basis()) {
-            (Interpolation::Spectral, _) => Kind::Spectral(fourier_transforms(n)),
+            (Interpolation::Spectral, _) => {
+                Kind::Spectral(fourier_transforms(if periodic { n } else { 2 * n }))
+            }
             (_, Some(basis)) => {
                 Kind::Spline(interpolation, Collocation::new(basis, n + 2 * padding(periodic)))
             }
@@ -73,8 +83,13 @@ impl Axis {
         let s = if self.periodic { s.rem_euclid(self.n as f64) } else { s.clamp(-limit, limit) };
         let whole = s.ceil();
         match &self.kind {
-            Kind::Spectral(transforms) => spectral(transforms, self.n, s, side, inner, data),
+            Kind::Spectral(transforms) if self.periodic => {
+                spectral(transforms, self.n, s, side, inner, data);
+            }
             _ if whole == s => self.sum(&[1.0], -whole as isize, Axis::node, self.n, side, inner, data),
+            Kind::Spectral(transforms) => {
+                self.shift_reflected(transforms, whole, s, side, inner, data);
+            }
             Kind::Lagrange(i) | Kind::Spline(i, _) => {
                 let (weights, reach) = (i.weights(whole - s), i.reach());
                 let weights = &weights[..2 * reach];
@@ -85,6 +100,64 @@ impl Axis {
                 self.sum(weights, first, Axis::coefficient, self.n_coefficients(), side, inner, data);
                 if side == Side::Transpose {
                     self.coefficients_transposed(inner, data);
+                }
+            }
+        }
+    }
+
+    /// Shift of the even reflection of a bounded line about its ends, which has a period of 2n cells;
+    /// constant beyond the first and the last node.
+    fn shift_reflected(
+        &self,
+        transforms: &[Arc<dyn Fft<f64>>; 2],
+        whole: f64,
+        s: f64,
+        side: Side,
+        inner: usize,
+        data: &mut [f64],
+    ) {
+        let n = self.n;
+        // Value i is that at i − whole + (whole − s): between two nodes, or beyond an end.
+        let place = |i: usize| match i as isize - whole as isize {
+            at if at < 0 => Place::End(0),
+            at if at as usize >= n - 1 => Place::End(n - 1),
+            at => Place::Behind(at as usize),
+        };
+        let row = |i: usize| i * inner..(i + 1) * inner;
+        let mut line = vec![0.0; 2 * n * inner];
+        for block in data.chunks_exact_mut(n * inner) {
+            match side {
+                Side::Operator => {
+                    for i in 0..n {
+                        line[row(i)].copy_from_slice(&block[row(i)]);
+                        line[row(2 * n - 1 - i)].copy_from_slice(&block[row(i)]);
+                    }
+                    let ends = [0, n - 1].map(|i| block[row(i)].to_vec());
+                    spectral(transforms, 2 * n, s - whole, side, inner, &mut line);
+                    for i in 0..n {
+                        block[row(i)].copy_from_slice(match place(i) {
+                            Place::End(end) => &ends[usize::from(end > 0)],
+                            Place::Behind(at) => &line[row(at)],
+                        });
+                    }
+                }
+                Side::Transpose => {
+                    line.fill(0.0);
+                    let mut ends = vec![0.0; n * inner];
+                    for i in 0..n {
+                        let to = match place(i) {
+                            Place::End(end) => &mut ends[row(end)],
+                            Place::Behind(at) => &mut line[row(at)],
+                        };
+                        to.iter_mut().zip(&block[row(i)]).for_each(|(to, x)| *to += x);
+                    }
+                    spectral(transforms, 2 * n, s - whole, side, inner, &mut line);
+                    for i in 0..n {
+                        let parts = ends[row(i)].iter().zip(&line[row(i)]).zip(&line[row(2 * n - 1 - i)]);
+                        for (to, ((end, a), b)) in block[row(i)].iter_mut().zip(parts) {
+                            *to = end + a + b;
+                        }
+                    }
                 }
             }
         }

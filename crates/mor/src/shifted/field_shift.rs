@@ -12,7 +12,7 @@ pub struct FieldShift {
 }
 
 impl FieldShift {
-    /// On this grid. On an axis that is not periodic [`Interpolation::Spectral`] takes the ends for neighbours.
+    /// On this grid.
     #[must_use]
     pub fn new(grid: Grid, interpolation: Interpolation) -> Self {
         let axis = |a: usize| Axis::new(grid.cells()[a], grid.periodic()[a], interpolation);

@@ -47,7 +47,8 @@ impl GridFrames {
     ///
     /// # Errors
     /// [`ShiftedError::Empty`], [`ShiftedError::Rows`], [`ShiftedError::Motion`]; [`ShiftedError::OffGrid`] if a frame leaves the
-    /// plane or line; [`ShiftedError::NotPeriodic`] if phases are to shift along a bounded axis.
+    /// plane or line; [`ShiftedError::NotPeriodic`] if a frame turns with [`Interpolation::Spectral`] in a
+    /// plane with a bounded axis.
     pub fn new(
         grid: Grid,
         interpolation: Interpolation,
@@ -209,11 +210,8 @@ fn check(
         if n == 1 && (distance != 0.0 || turn > 1e-12) {
             return Err(ShiftedError::OffGrid { frame, snapshot, axis });
         }
-        if interpolation == Interpolation::Spectral
-            && !grid.periodic()[axis]
-            && (distance != 0.0 || turn != 0.0)
-        {
-            let distance = distance.abs().max(turn * n as f64 * h / 2.0);
+        if interpolation == Interpolation::Spectral && !grid.periodic()[axis] && turn != 0.0 {
+            let distance = turn * n as f64 * h / 2.0;
             return Err(ShiftedError::NotPeriodic { frame, snapshot, axis, distance });
         }
     }

@@ -1,7 +1,7 @@
 //! Some entries are wrong, of snapshots that any operators carry along.
 use super::rank_search::deviation;
 use super::residual::Problem;
-use super::shifted_pod::{Ranks, Watch};
+use super::shifted_pod::{Ranks, Watch, only};
 use super::{
     Decomposition, Frame, FrameOperators, JointDescent, Proximal, ShiftedError, ShiftedPod, StopReason,
 };
@@ -45,13 +45,8 @@ impl ShiftedPod {
             (frames, stopped) = self.fit(operators, snapshots, &wrong, frames, watch)?;
             let same = frames.iter().map(Frame::rank).eq(ranks);
             if same || round == ROUNDS || stopped == StopReason::Asked {
-                let residual = problem.residual(&frames);
-                let mut noise = Mat::zeros(residual.nrows(), residual.ncols());
-                wrong.iter().for_each(|&at| noise[at] = residual[at]);
-                return Ok(Decomposition {
-                    noise: Some(noise),
-                    ..Decomposition::of(frames, watch.take(), stopped)
-                });
+                let noise = Some(only(&problem.residual(&frames), &wrong));
+                return Ok(Decomposition { noise, ..Decomposition::of(frames, watch.take(), stopped) });
             }
         }
         unreachable!("the last round returns")

@@ -1,14 +1,15 @@
 //! The usual way to decompose snapshots.
+use super::dense::columns;
 use super::rank_search::{Fit, Found, RankSearch};
 use super::residual::{Observer, Problem};
 use super::thinning::{MANY, SOME, Thinned, thinned};
 use super::translated::Translated;
 use super::waves::Waves;
 use super::{
-    Decomposition, Frame, FrameOperators, Grid, GridFrames, Interpolation, JointDescent, Progress,
-    ShiftedError, Shifts, StopReason,
+    Decomposition, FieldShift, Frame, FrameOperators, Grid, GridFrames, Interpolation, JointDescent,
+    Progress, ShiftedError, Shifts, StopReason,
 };
-use monomorphic::MatRef;
+use monomorphic::{Mat, MatRef};
 use std::ops::ControlFlow;
 
 /// How many modes each frame has.
@@ -31,10 +32,11 @@ pub enum Noise {
 
 /// Shifted proper orthogonal decomposition, by the algorithms that suit the snapshots.
 ///
-/// Frames that only move along periodic axes, with [`Interpolation::Spectral`], are fitted in the space
+/// Frames that only move along periodic axes are fitted with [`Interpolation::Spectral`] in the space
 /// of wave vectors by [`Als`](super::fourier::Als), first displaced so that their fields are centred on
-/// cells ([`centred`](super::fourier::centred), [`Decomposition::offsets`]). All others are fitted by
-/// [`JointDescent`]. A fit of given ranks that ends above 1e-6 is repeated from other starts
+/// cells ([`centred`](super::fourier::centred), [`Decomposition::offsets`]). With another interpolation
+/// [`JointDescent`] goes on from there with shifts by that. All other frames are fitted by
+/// [`JointDescent`] from nothing. A fit of given ranks that ends above 1e-6 is repeated from other starts
 /// ([`Decomposition::attempts`]).
 ///
 /// [`Ranks::Found`]: modes are added that stand out of the noise, and those that are not needed are
@@ -138,8 +140,11 @@ impl ShiftedPod {
         let start = start.map(|s| problem.start(Some(s))).transpose()?;
         let mut watch = Watch { observer, history: vec![] };
         let waves = Waves::new(&self.grid, shifts, snapshots.nrows());
-        match (waves.filter(|_| self.interpolation == Interpolation::Spectral), self.noise) {
-            (Some(_), _) => Translated { pod: self, shifts, snapshots }.solve(start, &mut watch),
+        match (waves, self.noise) {
+            (Some(_), _) => {
+                let d = Translated { pod: self, shifts, snapshots }.solve(start, &mut watch)?;
+                self.interpolated(&operators, snapshots, d, &mut watch)
+            }
             (None, Noise::Sparse) => self.robust(&operators, snapshots, start, &mut watch),
             (None, Noise::Dense) => self.dense(&operators, shifts, snapshots, start, &mut watch),
         }
@@ -203,6 +208,35 @@ impl ShiftedPod {
         };
         let (frames, stopped) = self.fit(operators, snapshots, &[], frames, watch)?;
         Ok(Decomposition::of(frames, watch.take(), stopped))
+    }
+
+    /// A decomposition by spectral shifts, fitted anew with shifts by the interpolation chosen.
+    fn interpolated(
+        &self,
+        operators: &GridFrames,
+        snapshots: MatRef<'_, f64>,
+        spectral: Decomposition,
+        watch: &mut Watch<'_>,
+    ) -> Result<Decomposition, ShiftedError> {
+        if self.interpolation == Interpolation::Spectral || spectral.stopped == StopReason::Asked {
+            return Ok(spectral);
+        }
+        watch.history = spectral.history;
+        let shift = FieldShift::new(self.grid, Interpolation::Spectral);
+        let mut start = spectral.frames;
+        for (frame, &offset) in start.iter_mut().zip(&spectral.offsets) {
+            for mode in columns(&mut frame.modes) {
+                mode.copy_from_slice(&shift.shift(offset, mode));
+            }
+        }
+        let wrong: Vec<_> = spectral.noise.as_ref().map_or_else(Vec::new, nonzero);
+        let (frames, stopped) = self.fit(operators, snapshots, &wrong, start, watch)?;
+        let noise = spectral.noise.map(|_| {
+            let residual = Problem::new(operators, snapshots).map(|p| p.residual(&frames));
+            residual.map(|residual| only(&residual, &wrong))
+        });
+        let d = Decomposition::of(frames, watch.take(), stopped);
+        Ok(Decomposition { noise: noise.transpose()?, attempts: spectral.attempts, ..d })
     }
 
     /// The modes that are asked for, fitted to all entries but the wrong ones.
@@ -273,6 +307,20 @@ impl ShiftedPod {
         let search = RankSearch { operators, snapshots, ignored, tolerance, ranks: &ranks, all, fit };
         search.search(start.map_or_else(|| problem.start(None), Ok)?, &mut |p| watch.see(p))
     }
+}
+
+/// Row and column of entries that are not zero.
+fn nonzero(field: &Mat<f64>) -> Vec<(usize, usize)> {
+    let rows = 0..field.nrows();
+    let column = |j: usize| rows.clone().filter(move |&i| field[(i, j)] != 0.0).map(move |i| (i, j));
+    (0..field.ncols()).flat_map(column).collect()
+}
+
+/// These entries of a field, zeros elsewhere.
+pub(super) fn only(field: &Mat<f64>, entries: &[(usize, usize)]) -> Mat<f64> {
+    let mut part = Mat::zeros(field.nrows(), field.ncols());
+    entries.iter().for_each(|&at| part[at] = field[at]);
+    part
 }
 
 /// Numbers the steps of several iterations through.

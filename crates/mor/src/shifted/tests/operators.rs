@@ -135,9 +135,11 @@ fn impossible_frames_are_named() {
         new(grid, spectral, &moved(Vector::z()), 48),
         Some(ShiftedError::OffGrid { frame: 0, snapshot: 1, axis: 2 })
     );
+    assert_eq!(new(grid.bounded([0]), spectral, &x, 48), None);
+    let turned = Motions::by(1, 1, |_, _| turning(0.5, Vector::z(), Vector::zeros(), Point::origin()));
     assert_eq!(
-        new(grid.bounded([0]), spectral, &x, 48),
-        Some(ShiftedError::NotPeriodic { frame: 0, snapshot: 1, axis: 0, distance: 1.0 })
+        new(grid.bounded([1]), spectral, &turned, 48),
+        Some(ShiftedError::NotPeriodic { frame: 0, snapshot: 0, axis: 1, distance: 1.5 })
     );
     let nan = moved(Vector::new(f64::NAN, 0.0, 0.0));
     assert_eq!(new(grid, spectral, &nan, 48), Some(ShiftedError::Motion { frame: 0, snapshot: 1 }));
@@ -218,7 +220,7 @@ fn displacements_beyond_double_precision() {
 #[test]
 fn beyond_an_end_a_field_continues_with_the_value_there() {
     let grid = Grid::new([80], [1.0]).unwrap().bounded([0]);
-    for interpolation in Interpolation::ALL.into_iter().filter(|i| *i != Interpolation::Spectral) {
+    for interpolation in ALL {
         let operator = FieldShift::new(grid, interpolation);
         // Past the margin of splines and past the other end.
         for cells in [0.4, 46.7, 50.96, 75.2, 120.7, -50.96, -300.1] {

@@ -7,6 +7,7 @@ mod heat;
 mod ledger;
 mod mesh_files;
 mod models;
+mod mutation;
 mod numbers;
 mod physics;
 mod placement;

@@ -1,7 +1,7 @@
 //! State on disk.
 use interfaces::{Checkpoint, RestartError};
 use std::collections::HashMap;
-use std::io::{self, Read, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// First bytes of every file, with the version of the format.
@@ -82,32 +82,59 @@ pub fn save(path: &Path, of: &impl Checkpoint) -> Result<(), CheckpointError> {
     write().map_err(|source| CheckpointError::Io { path: path.into(), source })
 }
 
+/// A state that [`save`] wrote, in memory.
+#[derive(Clone, Debug)]
+pub struct SavedState {
+    arrays: HashMap<String, Vec<f64>>,
+}
+
+impl SavedState {
+    /// Reads the state in `path`.
+    ///
+    /// # Errors
+    /// [`CheckpointError`] when the file cannot be read or is not whole (it then names the one saved before).
+    pub fn read(path: &Path) -> Result<Self, CheckpointError> {
+        let older = || Some(previous(path)).filter(|older| older.exists());
+        let corrupt = |what| CheckpointError::Corrupt { path: path.into(), what, older: older() };
+        let bytes =
+            std::fs::read(path).map_err(|source| CheckpointError::Io { path: path.into(), source })?;
+        let (body, sum) = bytes.split_last_chunk::<8>().ok_or_else(|| corrupt("too short"))?;
+        if checksum(body) != u64::from_le_bytes(*sum) {
+            return Err(corrupt("wrong checksum"));
+        }
+        let mut rest = body.strip_prefix(MAGIC.as_slice()).ok_or_else(|| corrupt("unknown version"))?;
+        let mut arrays = HashMap::new();
+        while !rest.is_empty() {
+            let mut take = |n: usize| rest.split_off(..n).ok_or_else(|| corrupt("cut off"));
+            let length = |b: &[u8]| b.try_into().map(u64::from_le_bytes).unwrap_or(0) as usize;
+            let n = length(take(8)?);
+            let name = std::str::from_utf8(take(n)?).map_err(|_| corrupt("unreadable name"))?.to_owned();
+            let n = length(take(8)?);
+            let values = take(n.checked_mul(8).ok_or_else(|| corrupt("cut off"))?)?;
+            let values: Vec<f64> = values.as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b)).collect();
+            arrays.insert(name, values);
+        }
+        Ok(Self { arrays })
+    }
+
+    /// The array of this name.
+    pub fn get(&self, name: &str) -> Option<&[f64]> {
+        self.arrays.get(name).map(Vec::as_slice)
+    }
+
+    /// Restores `into`.
+    ///
+    /// # Errors
+    /// [`RestartError`] when the state belongs to another set-up.
+    pub fn restore(&self, into: &mut impl Checkpoint) -> Result<(), RestartError> {
+        into.restore(&|name| self.get(name))
+    }
+}
+
 /// Reads the state that [`save`] wrote.
 ///
 /// # Errors
 /// [`CheckpointError`] when the file cannot be read, is not whole (it then names the one saved before), or belongs to another set-up.
 pub fn load(path: &Path, into: &mut impl Checkpoint) -> Result<(), CheckpointError> {
-    let older = || Some(previous(path)).filter(|older| older.exists());
-    let corrupt = |what| CheckpointError::Corrupt { path: path.into(), what, older: older() };
-    let mut bytes = Vec::new();
-    std::fs::File::open(path)
-        .and_then(|mut f| f.read_to_end(&mut bytes))
-        .map_err(|source| CheckpointError::Io { path: path.into(), source })?;
-    let (body, sum) = bytes.split_last_chunk::<8>().ok_or_else(|| corrupt("too short"))?;
-    if checksum(body) != u64::from_le_bytes(*sum) {
-        return Err(corrupt("wrong checksum"));
-    }
-    let mut rest = body.strip_prefix(MAGIC.as_slice()).ok_or_else(|| corrupt("unknown version"))?;
-    let mut arrays = HashMap::new();
-    while !rest.is_empty() {
-        let mut take = |n: usize| rest.split_off(..n).ok_or_else(|| corrupt("cut off"));
-        let length = |b: &[u8]| b.try_into().map(u64::from_le_bytes).unwrap_or(0) as usize;
-        let n = length(take(8)?);
-        let name = std::str::from_utf8(take(n)?).map_err(|_| corrupt("unreadable name"))?.to_owned();
-        let n = length(take(8)?);
-        let values = take(n.checked_mul(8).ok_or_else(|| corrupt("cut off"))?)?;
-        let values: Vec<f64> = values.as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b)).collect();
-        arrays.insert(name, values);
-    }
-    Ok(into.restore(&|name| arrays.get(name).map(Vec::as_slice))?)
+    Ok(SavedState::read(path)?.restore(into)?)
 }

@@ -50,7 +50,7 @@ mod walled;
 mod with_scalars;
 
 pub use accounts::{Account, Accounts};
-pub use checkpoint::{CheckpointError, load, previous, save};
+pub use checkpoint::{CheckpointError, SavedState, load, previous, save};
 pub use error::{CouplingError, Escape};
 pub use flow_solver::FlowSolver;
 pub use grains::Grains;

@@ -4,7 +4,7 @@
 //! cargo run --release --example scene -- scenes/cavity.toml
 //! cargo run --release --example scene -- scenes/cavity.toml --check
 //! cargo run --release --example scene -- scenes/two_discs.toml --set fluid.nu=2e-6 --set time.end=0.1 --threads 2
-//! cargo run --release --example scene -- scenes/two_discs.toml --resume
+//! cargo run --release --example scene -- scenes/two_discs.toml --resume              # or --overwrite, after Ctrl-C
 //! cargo run --release --example scene -- scenes/*.toml --quiet         # all of them, with a table at the end
 //! ```
 //!
@@ -35,6 +35,12 @@ struct Cli {
     /// Goes on from the state that an interrupted run of this scene saved.
     #[arg(long, conflicts_with = "check")]
     resume: bool,
+    /// Goes on from the state saved before that one, which is dropped: for a last state that is damaged or went wrong.
+    #[arg(long, conflicts_with_all = ["check", "resume"])]
+    resume_previous: bool,
+    /// Begins anew where an interrupted run has left its state, which is deleted.
+    #[arg(long, conflicts_with_all = ["check", "resume", "resume_previous"])]
+    overwrite: bool,
     /// Threads.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: u16,
@@ -108,7 +114,14 @@ fn one(cli: &Cli, path: &Path, several: bool, table: &mut String, stop: &AtomicB
         Some(name) if several => out.join(name),
         _ => out.clone(),
     });
-    let options = Options { threads: cli.threads.into(), resume: cli.resume, quiet: cli.quiet, out };
+    let options = Options {
+        threads: cli.threads.into(),
+        resume: cli.resume,
+        resume_previous: cli.resume_previous,
+        overwrite: cli.overwrite,
+        quiet: cli.quiet,
+        out,
+    };
     let result = scene.run(&options, stop).map_err(|e| (1, e.into()))?;
     if cli.json {
         let both = json!({ "result": result.result, "timings": result.timings });

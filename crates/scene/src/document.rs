@@ -91,6 +91,34 @@ impl fmt::Display for Value {
     }
 }
 
+/// Whether `path` is one of `keys` or below one.
+pub(crate) fn is_under(path: &str, keys: &[&str]) -> bool {
+    let below =
+        |key: &&str| path.strip_prefix(*key).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
+    keys.iter().any(below)
+}
+
+/// 64-bit FNV-1a hash.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fnv(u64);
+
+impl Default for Fnv {
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Fnv {
+    /// Hash of what was hashed so far, followed by `bytes`.
+    pub(crate) fn with(self, bytes: &[u8]) -> Self {
+        let next = |h: u64, b: &u8| (h ^ u64::from(*b)).wrapping_mul(0x0100_0000_01b3);
+        Self(bytes.iter().fold(self.0, next))
+    }
+    pub(crate) fn value(self) -> u64 {
+        self.0
+    }
+}
+
 /// A scene file with the overrides of the command line.
 #[derive(Clone, Debug)]
 pub(crate) struct Document {
@@ -152,13 +180,9 @@ impl Document {
     pub(crate) fn fingerprint(&self, loose: &[&str]) -> u64 {
         let mut lines = Vec::new();
         self.root.lines("", &mut lines);
-        lines.retain(|line| {
-            !loose.iter().any(|key| line.strip_prefix(key).is_some_and(|rest| rest.starts_with(['.', '='])))
-        });
+        lines.retain(|line| !is_under(line.split('=').next().unwrap_or_default(), loose));
         lines.sort_unstable();
-        // 64-bit FNV-1a.
-        let bytes = lines.iter().flat_map(|line| line.bytes().chain([b'\n']));
-        bytes.fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
+        lines.iter().fold(Fnv::default(), |hash, line| hash.with(line.as_bytes()).with(b"\n")).value()
     }
 
     fn set(&mut self, number: usize, text: &str) -> Result<(), String> {

@@ -37,6 +37,8 @@ mod deepest;
 mod document;
 mod dry;
 mod expression;
+mod folder_lock;
+mod identity;
 mod log;
 mod look;
 mod options;
@@ -65,6 +67,7 @@ pub use run::RunError;
 pub use schema::{json_schema, manual};
 
 use document::Document;
+use identity::Identity;
 use setup::Setup;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -73,7 +76,7 @@ use std::sync::atomic::AtomicBool;
 pub struct Scene {
     document: Document,
     setup: Setup,
-    fingerprint: u64,
+    identity: Identity,
 }
 
 /// Why a scene could not be read.
@@ -91,19 +94,6 @@ pub enum SceneError {
     #[error(transparent)]
     Problems(#[from] Problems),
 }
-
-/// Keys that may change when a run goes on.
-const LOOSE: [&str; 9] = [
-    "title",
-    "about",
-    "output",
-    "checkpoint",
-    "references",
-    "time.end",
-    "time.steps",
-    "flow.tolerance",
-    "flow.iterations",
-];
 
 impl Scene {
     /// Reads the file at `path`, with the values that `overrides` set (`fluid.nu=2e-6`).
@@ -124,7 +114,10 @@ impl Scene {
     pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Self, Problems> {
         let document = Document::parse(name, text, overrides)?;
         let setup = Setup::new(&document, Path::new(name))?;
-        Ok(Self { fingerprint: document.fingerprint(&LOOSE), setup, document })
+        let folder = Path::new(name).parent().unwrap_or(Path::new(""));
+        let identity = Identity::new(&document, &setup.files, folder)
+            .map_err(|problem| document.problems(vec![problem]))?;
+        Ok(Self { document, setup, identity })
     }
 
     /// What running it would mean. Puts it together, which finds what only the libraries know to be wrong.
@@ -146,7 +139,7 @@ impl Scene {
     /// [`RunError`]; states saved before it are whole.
     pub fn run(&self, options: &Options, stop: &AtomicBool) -> Result<RunResult, RunError> {
         let plan = self.plan()?;
-        self.setup.run(options, self.fingerprint, &plan.warnings, stop).map_err(|error| {
+        self.setup.run(options, &self.identity, &plan.warnings, stop).map_err(|error| {
             if let Some(problems) = self.unset_formula() {
                 return BuildError::Scene(Box::new(problems)).into();
             }

@@ -1,5 +1,6 @@
 //! The observer of the time loop, and what is saved.
 use crate::deepest::Deepest;
+use crate::identity::Identity;
 use crate::log::{Log, warn};
 use crate::setup::Setup;
 use crate::view::{Flow, Guests, Seen, View};
@@ -70,7 +71,7 @@ pub(crate) struct Whole<'a, S, K> {
     pub(crate) simulation: &'a mut S,
     pub(crate) books: &'a mut K,
     pub(crate) extremes: &'a mut Extremes,
-    pub(crate) fingerprint: u64,
+    pub(crate) identity: &'a Identity,
     /// Absent while a state is loaded: files go on from the time that has to be known first.
     pub(crate) audience: Option<&'a Audience>,
 }
@@ -82,7 +83,7 @@ pub(crate) fn halves(n: u64) -> [f64; 2] {
 
 impl<S: Checkpoint, K: Checkpoint> Checkpoint for Whole<'_, S, K> {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
-        sink("scene", &halves(self.fingerprint));
+        self.identity.save(sink);
         sink("extremes", &self.extremes.steps);
         self.extremes.deepest.save(sink);
         self.simulation.save(sink);
@@ -92,9 +93,6 @@ impl<S: Checkpoint, K: Checkpoint> Checkpoint for Whole<'_, S, K> {
         }
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
-        if RestartError::take(source, "scene", 2)? != halves(self.fingerprint) {
-            return Err(RestartError::Differs("the scene".into()));
-        }
         RestartError::fill(source, "extremes", &mut self.extremes.steps)?;
         self.extremes.deepest = Deepest::restore(source)?;
         self.simulation.restore(source)?;
@@ -121,7 +119,7 @@ pub(crate) struct Look<'a, K> {
     pub(crate) progress: Option<Progress>,
     pub(crate) log: Log,
     pub(crate) state: PathBuf,
-    pub(crate) fingerprint: u64,
+    pub(crate) identity: &'a Identity,
     pub(crate) save_every: Duration,
     pub(crate) saved: Instant,
     /// No snapshot but the last.
@@ -143,7 +141,7 @@ impl<K: Checkpoint> Look<'_, K> {
             simulation,
             books: &mut self.books,
             extremes: &mut self.extremes,
-            fingerprint: self.fingerprint,
+            identity: self.identity,
             audience: Some(&self.audience),
         };
         coupling::save(&self.state, &whole)

@@ -1,6 +1,8 @@
 //! Runs a scene.
 use crate::build_error::BuildError;
 use crate::cast::Cast;
+use crate::folder_lock::FolderLock;
+use crate::identity::Identity;
 use crate::log::{Log, warn};
 use crate::look::{Books, Extremes, Kept, Look, Show, Whole};
 use crate::options::Options;
@@ -14,13 +16,15 @@ use crate::watch::{
 };
 use coupling::{
     CheckpointError, CouplingError, Exchange, Explicit, FlowSolver, Grains, Immersed, Iterated, Ledger,
-    Particles, Schedule, Simulation, Strategy,
+    Particles, SavedState, Schedule, Simulation, Strategy,
 };
 use dem::{ContactLaw, Population, Rolling};
 use example_support::cpu::Stopwatch;
 use example_support::progress::Progress;
 use ibm::Forcing;
 use interfaces::{Checkpoint, RestartError};
+use std::fs::File;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -35,14 +39,51 @@ pub enum RunError {
     #[error(transparent)]
     Coupling(#[from] CouplingError),
     /// The saved state.
-    #[error("{0}; without an interrupted run of this scene in the folder, leave out --resume")]
+    #[error("{}; {}", .0, remedy(.0))]
     Resume(CheckpointError),
     /// Another scene was saved there.
-    #[error("the state in {} was saved by another scene, or by this one with other values than time.end and output; run it without --resume", .0.display())]
+    #[error("the state in {} was saved by another scene, or by this one with other values than time.end and output; begin anew with --overwrite, which deletes it, or in another folder (--out)", .0.display())]
     OtherScene(PathBuf),
+    /// A file that the scene names is not the one with which the state was saved.
+    #[error("{} ({key}) has changed since the state in {} was saved: the hash of its contents is {found:016x}, and {saved:016x} was expected; put the file back as it was, begin anew with --overwrite, which deletes the state, or in another folder (--out)", file.display(), state.display())]
+    ChangedFile {
+        /// The file.
+        file: PathBuf,
+        /// The first key that names it.
+        key: String,
+        /// The state.
+        state: PathBuf,
+        /// Hash (64-bit FNV-1a) of its contents when the state was saved.
+        saved: u64,
+        /// The hash now.
+        found: u64,
+    },
+    /// The folder holds the state of a run that is not at its end.
+    #[error("{} holds the state of a run that was stopped, killed or not converged; --resume goes on from it, --overwrite deletes it and begins anew, and --out gives another folder", .0.display())]
+    Unfinished(PathBuf),
+    /// Another run writes to the folder.
+    #[error("the folder {} is in use by another run ({}); wait for its end or stop it, or give another folder (--out)", folder.display(), if process.is_empty() { "of an unknown process".to_owned() } else { format!("process {process}") })]
+    InUse {
+        /// The folder.
+        folder: PathBuf,
+        /// Number of the process, empty if it is unknown.
+        process: String,
+    },
     /// Threads.
     #[error("the threads could not be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+/// Remedy for a state that cannot be loaded.
+fn remedy(error: &CheckpointError) -> &'static str {
+    match error {
+        CheckpointError::Corrupt { older: Some(_), .. } => "--resume-previous goes on from it",
+        CheckpointError::Corrupt { .. } => "--overwrite does so",
+        CheckpointError::Io { .. } => {
+            "without an interrupted run of this scene in the folder, leave out --resume and --resume-previous"
+        }
+        CheckpointError::Mismatch(_) => "--overwrite begins anew and deletes the state",
+    }
 }
 
 impl Setup {
@@ -50,11 +91,11 @@ impl Setup {
     pub(crate) fn run(
         &self,
         options: &Options,
-        fingerprint: u64,
+        identity: &Identity,
         warnings: &[String],
         stop: &AtomicBool,
     ) -> Result<RunResult, RunError> {
-        let stage = Stage { setup: self, options, fingerprint, warnings, stop };
+        let stage = Stage { setup: self, options, identity, warnings, stop };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
         pool.install(|| match self.dim() {
             2 => self.run_in::<2>(&stage),
@@ -168,11 +209,13 @@ impl Setup {
 pub(crate) struct Stage<'a> {
     pub(crate) setup: &'a Setup,
     pub(crate) options: &'a Options,
-    pub(crate) fingerprint: u64,
+    pub(crate) identity: &'a Identity,
     warnings: &'a [String],
     pub(crate) stop: &'a AtomicBool,
 }
 
+/// Names of the results in the folder; the first tells whether the run came to its end.
+const RESULTS: [&str; 2] = ["result.json", "timings.json"];
 /// Name of the saved state in the folder.
 pub(crate) const STATE: &str = "state.bin";
 
@@ -230,14 +273,58 @@ impl Stage<'_> {
         Ok(Audience::new(watches))
     }
 
-    pub(crate) fn make_folder(&self) -> Result<(), CouplingError> {
+    /// Whether the run goes on from a saved state.
+    pub(crate) fn resumes(&self) -> bool {
+        self.options.resume || self.options.resume_previous
+    }
+
+    /// Makes the folder, locks it, and removes what an earlier run left if this one begins anew.
+    ///
+    /// # Errors
+    /// [`RunError::InUse`]; [`RunError::Unfinished`] if a state would be lost that no flag gives up.
+    pub(crate) fn take_folder(&self) -> Result<FolderLock, RunError> {
         let folder = self.folder();
         std::fs::create_dir_all(folder).map_err(output("making the folder", folder))?;
-        if !self.options.resume {
-            // What an earlier run left is not this run's.
-            for old in [STATE, "state.bin.previous", "result.json", "timings.json", "residuals.csv"] {
-                let _ = std::fs::remove_file(folder.join(old));
-            }
+        let lock = FolderLock::take(folder)?;
+        if self.resumes() {
+            return Ok(lock);
+        }
+        let state = folder.join(STATE);
+        let older = coupling::previous(&state);
+        if !self.options.overwrite && (state.exists() || older.exists()) && !is_complete(folder) {
+            return Err(RunError::Unfinished(folder.into()));
+        }
+        let others = RESULTS.into_iter().chain(["residuals.csv"]).map(|name| folder.join(name));
+        for old in others.chain([state, older]) {
+            let _ = std::fs::remove_file(old);
+        }
+        Ok(lock)
+    }
+
+    /// The state from which the run goes on, if it does, after the check that it is this scene's.
+    pub(crate) fn saved_state(&self) -> Result<Option<SavedState>, RunError> {
+        if !self.resumes() {
+            return Ok(None);
+        }
+        let mut path = self.folder().join(STATE);
+        if self.options.resume_previous {
+            path = coupling::previous(&path);
+        }
+        let state = SavedState::read(&path).map_err(RunError::Resume)?;
+        self.identity.check(&state, &path)?;
+        Ok(Some(state))
+    }
+
+    /// Makes the folder that of an unfinished run whose last state is the one that was loaded.
+    pub(crate) fn reopen(&self) -> Result<(), RunError> {
+        let folder = self.folder();
+        if self.options.resume_previous {
+            let state = folder.join(STATE);
+            std::fs::rename(coupling::previous(&state), &state)
+                .map_err(output("replacing the state in", &state))?;
+        }
+        for old in RESULTS {
+            let _ = std::fs::remove_file(folder.join(old));
         }
         Ok(())
     }
@@ -254,27 +341,29 @@ impl Stage<'_> {
     fn march<S: Show, K: Books<S>>(&self, mut simulation: S, mut books: K) -> Result<RunResult, RunError> {
         let watch = Stopwatch::start();
         let setup = self.setup;
-        self.make_folder()?;
+        let _lock = self.take_folder()?;
         let state = self.folder().join(STATE);
         let mut extremes = Extremes::default();
         // Of the flow at rest: a run that goes on has the same.
         let first = setup.first_step() / simulation.stable_dt(setup.courant).min(setup.end);
         let mut resume = None;
-        if self.options.resume {
+        let saved = self.saved_state()?;
+        if let Some(saved) = &saved {
             // First the simulation and its time; then what the observers have kept, in files that go on from that time.
             let mut whole = Whole {
                 simulation: &mut simulation,
                 books: &mut books,
                 extremes: &mut extremes,
-                fingerprint: self.fingerprint,
+                identity: self.identity,
                 audience: None,
             };
-            coupling::load(&state, &mut whole).map_err(|e| self.not_resumed(e, &state))?;
+            saved.restore(&mut whole).map_err(|e| self.not_resumed(e))?;
+            self.reopen()?;
             resume = Some(simulation.time());
         }
         let mut audience = self.audience(resume)?;
-        if resume.is_some() {
-            coupling::load(&state, &mut Kept(&mut audience)).map_err(RunError::Resume)?;
+        if let Some(saved) = saved {
+            saved.restore(&mut Kept(&mut audience)).map_err(|e| self.not_resumed(e))?;
         }
         let schedule = Schedule {
             end: setup.end,
@@ -288,7 +377,7 @@ impl Stage<'_> {
             },
         };
         schedule.check()?;
-        let mut log = Log::open(self.folder(), self.options.resume)?;
+        let mut log = Log::open(self.folder(), self.resumes())?;
         let begin = simulation.time();
         log.line(&format!(
             "{} {} from t = {begin:.6e} s, step {}, to {} s: {} cells, {} bodies",
@@ -308,7 +397,7 @@ impl Stage<'_> {
             progress: (!self.options.quiet).then(|| Progress::new(begin, setup.end)),
             log,
             state: state.clone(),
-            fingerprint: self.fingerprint,
+            identity: self.identity,
             save_every: Duration::try_from_secs_f64(setup.save_every).unwrap_or(Duration::MAX),
             saved: Instant::now(),
             only_end: setup.output.snapshots == 0,
@@ -351,10 +440,19 @@ impl Stage<'_> {
         Ok(result.with_timings(watch.elapsed(), self.options.threads, seconds, &seen).write()?)
     }
 
-    pub(crate) fn not_resumed(&self, error: CheckpointError, state: &Path) -> RunError {
+    /// The error of a state that does not fit.
+    pub(crate) fn not_resumed(&self, error: RestartError) -> RunError {
         match error {
-            CheckpointError::Mismatch(RestartError::Differs(_)) => RunError::OtherScene(state.into()),
-            error => RunError::Resume(error),
+            RestartError::Differs(_) => RunError::OtherScene(self.folder().join(STATE)),
+            error => RunError::Resume(error.into()),
         }
     }
+}
+
+/// Whether the results in `folder` are those of a run that came to its end. Reads line by line: results of many bodies are long.
+fn is_complete(folder: &Path) -> bool {
+    let Ok(file) = File::open(folder.join(RESULTS[0])) else { return false };
+    let key = "  \"complete\": ";
+    let lines = BufReader::new(file).lines().map_while(Result::ok);
+    lines.filter_map(|line| Some(line.strip_prefix(key)? == "true,")).next().unwrap_or(false)
 }

@@ -11,7 +11,7 @@ mod models;
 mod physics;
 mod run;
 
-pub(crate) use check::{check, number};
+pub(crate) use check::{FileKey, check, number};
 pub use json::json_schema;
 pub use manual::manual;
 
@@ -331,9 +331,9 @@ mod tests {
             let document = crate::document::Document::parse(path, &text, &[]);
             let document = document.unwrap_or_else(|e| panic!("{path}: {e}"));
             let item = document.root.get("value").unwrap();
-            let mut problems = Vec::new();
-            check::check_item(item, &key.kind, path, &mut problems);
-            assert!(problems.is_empty(), "{path}: {}", document.problems(problems));
+            let mut found = check::Findings::default();
+            check::check_item(item, &key.kind, path, &mut found);
+            assert!(found.problems.is_empty(), "{path}: {}", document.problems(found.problems));
             seen += 1;
         });
         assert!(seen > 150, "{seen}");

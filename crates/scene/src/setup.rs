@@ -29,7 +29,7 @@ use crate::document::{Document, Place};
 use crate::expression::Expression;
 use crate::problem::{Problem, Problems};
 use crate::reader::{Formula, Formulas, Reader};
-use crate::schema;
+use crate::schema::{self, FileKey};
 use coupling::WeightBalance;
 use fv_mesh::{Axis, Fluid, Side, Sides};
 use interfaces::{Lattice, Point, Vector};
@@ -77,6 +77,8 @@ pub(crate) struct Setup {
     pub(crate) mended: Vec<String>,
     /// All formulas of the file, to be asked whether they had a finite value wherever they were needed.
     pub(crate) formulas: Vec<Formula>,
+    /// Keys of the file whose values are paths.
+    pub(crate) files: Vec<FileKey>,
 }
 
 /// Where the scene is being read.
@@ -104,13 +106,13 @@ impl Context<'_> {
 impl Setup {
     /// Reads a document that has not been checked yet; `path` is its file's.
     pub(crate) fn new(document: &Document, path: &Path) -> Result<Self, Problems> {
-        schema::check(document)?;
+        let files = schema::check(document)?;
         let formulas = Formulas::default();
         let root = Reader::new(&document.root, Place::File(0..0), "", &formulas);
         let folder = path.parent().unwrap_or(Path::new(""));
         let name = path.file_stem().map_or("scene".into(), |stem| stem.to_string_lossy().into_owned());
         let setup = Self::read(&root, folder, name).map_err(|problem| document.problems(vec![problem]))?;
-        Ok(Self { formulas: formulas.take(), ..setup })
+        Ok(Self { formulas: formulas.take(), files, ..setup })
     }
 
     fn read(root: &Reader<'_>, folder: &Path, name: String) -> Result<Self, Problem> {
@@ -171,6 +173,7 @@ impl Setup {
             doubtful_inlets: Vec::new(),
             mended: Vec::new(),
             formulas: Vec::new(),
+            files: Vec::new(),
             axes,
             sides,
             flow,

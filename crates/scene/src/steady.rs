@@ -1,7 +1,8 @@
 //! Steady flow.
 use crate::build_error::BuildError;
+use crate::identity::Identity;
 use crate::log::Log;
-use crate::look::{Extremes, halves};
+use crate::look::Extremes;
 use crate::physics::{Lift, Model, Scalars};
 use crate::result::{Ending, RunResult, number};
 use crate::run::{RunError, STATE, Stage};
@@ -116,12 +117,12 @@ impl Setup {
 struct Saved<'a, const D: usize> {
     flow: &'a mut Steady<D>,
     residual: &'a mut f64,
-    fingerprint: u64,
+    identity: &'a Identity,
 }
 
 impl<const D: usize> Checkpoint for Saved<'_, D> {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
-        sink("scene", &halves(self.fingerprint));
+        self.identity.save(sink);
         sink("residual", &[*self.residual]);
         self.flow.flow.save(&mut |name, values| sink(&format!("flow.{name}"), values));
         self.flow.scalars.save(&mut |name, values| sink(&format!("scalars.{name}"), values));
@@ -130,9 +131,6 @@ impl<const D: usize> Checkpoint for Saved<'_, D> {
         }
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
-        if RestartError::take(source, "scene", 2)? != halves(self.fingerprint) {
-            return Err(RestartError::Differs("the scene".into()));
-        }
         *self.residual = RestartError::take(source, "residual", 1)?[0];
         self.flow.flow.restore(&|name| source(&format!("flow.{name}")))?;
         self.flow.scalars.restore(&|name| source(&format!("scalars.{name}")))?;
@@ -151,19 +149,20 @@ impl Stage<'_> {
     pub(crate) fn steady<const D: usize>(&self, mut flow: Steady<D>) -> Result<RunResult, RunError> {
         let watch = Stopwatch::start();
         let setup = self.setup;
-        self.make_folder()?;
+        let _lock = self.take_folder()?;
         let state = self.folder().join(STATE);
         let mut residual = f64::INFINITY;
-        if self.options.resume {
+        if let Some(saved) = self.saved_state()? {
             let (flow, residual) = (&mut flow, &mut residual);
-            let mut saved = Saved { flow, residual, fingerprint: self.fingerprint };
-            coupling::load(&state, &mut saved).map_err(|e| self.not_resumed(e, &state))?;
+            let mut whole = Saved { flow, residual, identity: self.identity };
+            saved.restore(&mut whole).map_err(|e| self.not_resumed(e))?;
+            self.reopen()?;
         }
         let begin = flow.flow.iterations();
-        let resume = self.options.resume.then_some(begin as f64);
+        let resume = self.resumes().then_some(begin as f64);
         let mut audience = self.audience(None)?;
         let mut table = Table::open(&self.folder().join("residuals.csv"), RESIDUALS, resume)?;
-        let mut log = Log::open(self.folder(), self.options.resume)?;
+        let mut log = Log::open(self.folder(), self.resumes())?;
         let (tolerance, allowed) = (setup.flow.tolerance, setup.flow.iterations);
         let cells = setup.cells();
         log.line(&match resume {
@@ -179,7 +178,7 @@ impl Stage<'_> {
         let mut saved = Instant::now();
         let save = |flow: &mut Steady<D>, mut residual: f64, table: &mut Table| {
             table.flush()?;
-            let whole = Saved { flow, residual: &mut residual, fingerprint: self.fingerprint };
+            let whole = Saved { flow, residual: &mut residual, identity: self.identity };
             coupling::save(&state, &whole)
                 .map_err(|e| output("saving the state in", &state)(io::Error::other(e)))
         };

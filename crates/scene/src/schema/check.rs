@@ -4,14 +4,31 @@ use crate::document::{Document, Item, Place, Section, Value};
 use crate::expression::Expression;
 use crate::problem::{Problem, Problems, shown};
 
-/// Checks every key of `document`: unknown ones, missing ones, kinds, ranges, formulas.
+/// Results of checking a document.
+#[derive(Debug, Default)]
+pub(crate) struct Findings {
+    pub(crate) problems: Vec<Problem>,
+    pub(crate) files: Vec<FileKey>,
+}
+
+/// A key whose value is the path of a file.
+#[derive(Clone, Debug)]
+pub(crate) struct FileKey {
+    /// The key, from the top: `bodies.2.shape.file`.
+    pub(crate) key: String,
+    pub(crate) place: Place,
+    /// The path, as written in the scene.
+    pub(crate) path: String,
+}
+
+/// Checks every key of `document`: unknown ones, missing ones, kinds, ranges, formulas. Returns its paths of files.
 ///
 /// # Errors
 /// All problems at once.
-pub(crate) fn check(document: &Document) -> Result<(), Problems> {
-    let mut problems = Vec::new();
-    check_section(&document.root, &super::SCENE, None, "", &Place::File(0..0), &mut problems);
-    if problems.is_empty() { Ok(()) } else { Err(document.problems(problems)) }
+pub(crate) fn check(document: &Document) -> Result<Vec<FileKey>, Problems> {
+    let mut found = Findings::default();
+    check_section(&document.root, &super::SCENE, None, "", &Place::File(0..0), &mut found);
+    if found.problems.is_empty() { Ok(found.files) } else { Err(document.problems(found.problems)) }
 }
 
 fn join(path: &str, key: &str) -> String {
@@ -24,18 +41,18 @@ fn check_section(
     tag: Option<&str>,
     path: &str,
     place: &Place,
-    problems: &mut Vec<Problem>,
+    found: &mut Findings,
 ) {
     for (name, key_place, item) in &section.0 {
         if tag == Some(name) {
             continue;
         }
         match table.keys.iter().find(|key| key.name == name) {
-            Some(key) => check_item(item, &key.kind, &join(path, name), problems),
+            Some(key) => check_item(item, &key.kind, &join(path, name), found),
             None => {
                 let known: Vec<_> = tag.into_iter().chain(table.keys.iter().map(|key| key.name)).collect();
                 let message = format!("there is no key \"{name}\" here; {}", instead(name, &known));
-                problems.push(Problem::new(path.into(), key_place.clone(), message));
+                found.problems.push(Problem::new(path.into(), key_place.clone(), message));
             }
         }
     }
@@ -43,7 +60,7 @@ fn check_section(
         if *need == Need::Required && section.get(name).is_none() {
             let message =
                 format!("the key \"{name}\" is missing. {about} Write, for example, {name} = {example}");
-            problems.push(Problem::new(path.into(), place.clone(), message));
+            found.problems.push(Problem::new(path.into(), place.clone(), message));
         }
     }
 }
@@ -67,14 +84,17 @@ fn instead(word: &str, known: &[&str]) -> String {
 }
 
 /// Checks what stands at `path`.
-pub(crate) fn check_item(item: &Item, kind: &Kind, path: &str, problems: &mut Vec<Problem>) {
-    let mut problem = |message: String| problems.push(Problem::new(path.into(), item.place.clone(), message));
+pub(crate) fn check_item(item: &Item, kind: &Kind, path: &str, found: &mut Findings) {
+    let mut problem =
+        |message: String| found.problems.push(Problem::new(path.into(), item.place.clone(), message));
     let wanted = |what: &str| format!("{} stands here; give {what}", item.value);
     match (kind, &item.value) {
         (Kind::Flag, Value::Flag(_)) | (Kind::Text, Value::Text(_)) => {}
         (Kind::Flag, _) => problem(wanted("true or false")),
         (Kind::Text, _) => problem(wanted("a text in quotes")),
-        (Kind::File, Value::Text(text)) if !text.is_empty() => {}
+        (Kind::File, Value::Text(text)) if !text.is_empty() => {
+            found.files.push(FileKey { key: path.into(), place: item.place.clone(), path: text.clone() });
+        }
         (Kind::File, _) => problem(wanted("the path of a file in quotes")),
         (Kind::Number(range, unit), value) => match number(value) {
             Some(x) if range.holds(x) => {}
@@ -113,26 +133,26 @@ pub(crate) fn check_item(item: &Item, kind: &Kind, path: &str, problems: &mut Ve
                 problem(format!("the list has {} entries; give {how_many}", items.len()));
             }
             for (i, item) in items.iter().enumerate() {
-                check_item(item, of, &join(path, &i.to_string()), problems);
+                check_item(item, of, &join(path, &i.to_string()), found);
             }
         }
         (Kind::List(..), _) => problem(wanted("a list in square brackets")),
         (Kind::Table(table), Value::Table(section)) => {
-            check_section(section, table, None, path, &item.place, problems);
+            check_section(section, table, None, path, &item.place, found);
         }
         (Kind::Named(table), Value::Table(section)) => {
             for (name, _, item) in &section.0 {
-                check_item(item, &Kind::Table(table), &join(path, name), problems);
+                check_item(item, &Kind::Table(table), &join(path, name), found);
             }
         }
         (Kind::Table(_) | Kind::Named(_), _) => {
             problem(wanted("a table in braces, or under a heading of its own"))
         }
-        (Kind::Choice(tag, tables), value) => check_choice(item, value, (tag, tables), path, problems),
+        (Kind::Choice(tag, tables), value) => check_choice(item, value, (tag, tables), path, found),
         (Kind::Either(kinds), value) => {
             // The kind that fits the value's form tells what is wrong with it.
             match kinds.iter().find(|kind| fits(kind, value)) {
-                Some(kind) => check_item(item, kind, path, problems),
+                Some(kind) => check_item(item, kind, path, found),
                 None => {
                     let forms: Vec<_> = kinds.iter().map(form).collect();
                     problem(wanted(&forms.join(" or ")));
@@ -147,11 +167,12 @@ fn check_choice(
     value: &Value,
     (tag, tables): (&str, &[(&str, &'static Table)]),
     path: &str,
-    problems: &mut Vec<Problem>,
+    found: &mut Findings,
 ) {
     let known: Vec<_> = tables.iter().map(|(name, _)| *name).collect();
-    let mut problem =
-        |place: &Place, message: String| problems.push(Problem::new(path.into(), place.clone(), message));
+    let mut problem = |place: &Place, message: String| {
+        found.problems.push(Problem::new(path.into(), place.clone(), message))
+    };
     let unknown = |word: &str| format!("\"{word}\" is not known here; {}", instead(word, &known));
     let empty = Section::default();
     let (word, place, section) = match value {
@@ -178,7 +199,7 @@ fn check_choice(
         }
     };
     match tables.iter().find(|(name, _)| name == word) {
-        Some((_, table)) => check_section(section, table, Some(tag), path, &item.place, problems),
+        Some((_, table)) => check_section(section, table, Some(tag), path, &item.place, found),
         None => problem(place, unknown(word)),
     }
 }

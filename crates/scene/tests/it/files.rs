@@ -94,7 +94,8 @@ fn a_run_that_was_stopped_is_told_in_the_table() {
     let set = ["grid.cells=[8, 8]", "time.end=1", "output.images=false", "output.snapshots=2"];
     let scene = Scene::load(&root().join("scenes/cavity.toml"), &set.map(String::from)).unwrap();
     let stopped = scene.run(&quiet(&out), &AtomicBool::new(true)).unwrap();
-    let whole = scene.run(&quiet(&out), &AtomicBool::new(false)).unwrap();
+    let anew = Options { overwrite: true, ..quiet(&out) };
+    let whole = scene.run(&anew, &AtomicBool::new(false)).unwrap();
     std::fs::remove_dir_all(&out).unwrap();
     assert_eq!(stopped.ending, Ending::Stopped);
     assert!(stopped.row().contains("**stopped** at 0.0000 s of 1 s"), "{}", stopped.row());

@@ -11,6 +11,7 @@ mod mutation;
 mod numbers;
 mod physics;
 mod placement;
+mod resume;
 mod spoilt;
 mod steady;
 mod surfaces;

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 /// A disc in a channel.
-const CHANNEL: &str = r#"
+pub(crate) const CHANNEL: &str = r#"
 [grid]
 cells = [48, 24]
 size = [2.0, 1.0]

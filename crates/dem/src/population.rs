@@ -137,26 +137,36 @@ impl<L: ContactLaw> Population<L> {
 
     /// Lets in who is due through an inflow, as far as there is room.
     fn let_in(&mut self, inflow: usize, time: f64) -> Result<(), PlacingError> {
+        // Bodies within this distance of the zone, sought anew for larger entrants only.
+        let (mut reach, mut near) = (f64::NEG_INFINITY, Vec::new());
         while self.waiting(inflow, time) > 0 {
             let Self { bodies, inflows, entered, .. } = &*self;
             let serial = entered[inflow];
-            let entrant = (inflows[inflow].recipe)(serial);
-            let others = bodies.ids().map(|b| (bodies.shape(b), bodies.pose(b)));
             let zone = &inflows[inflow];
+            let entrant = (zone.recipe)(serial);
+            let wanted = zone.reach(&*entrant.shape);
+            if wanted > reach {
+                reach = wanted;
+                let is_near = |b: &BodyId| {
+                    zone.is_near(bodies.shape(*b), bodies.pose(*b).position, reach, &bodies.periods())
+                };
+                near = bodies.ids().filter(is_near).collect();
+            }
+            let others = near.iter().map(|&b| (bodies.shape(b), bodies.pose(b)));
             let place =
                 zone.place(&*entrant.shape, (serial, time), others, bodies.walls(), &bodies.periods())?;
             let Some(pose) = place else { return Ok(()) };
-            self.add(entrant, pose, Origin::Inflow { inflow, serial })?;
+            near.push(self.add(entrant, pose, Origin::Inflow { inflow, serial })?);
             self.entered[inflow] += 1;
         }
         Ok(())
     }
 
-    fn add(&mut self, entrant: Entrant, pose: Pose, origin: Origin) -> Result<(), DemError> {
+    fn add(&mut self, entrant: Entrant, pose: Pose, origin: Origin) -> Result<BodyId, DemError> {
         let Entrant { shape, material, twist, freedom } = entrant;
-        self.bodies.add(shape, material, pose, twist, freedom)?;
+        let body = self.bodies.add(shape, material, pose, twist, freedom)?;
         self.origins.push(origin);
-        Ok(())
+        Ok(body)
     }
 }
 

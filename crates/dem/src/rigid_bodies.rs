@@ -55,6 +55,7 @@ pub struct RigidBodies<L: ContactLaw = Chen> {
     contact: Vec<Wrench>,
     impulse: Vec<Wrench>,
     walls: Vec<Wall>,
+    /// All of one density, on which contacts do not depend.
     materials: Vec<Material>,
     /// Of every pair of materials.
     properties: Vec<PairProperties>,
@@ -78,6 +79,8 @@ pub struct RigidBodies<L: ContactLaw = Chen> {
     any_slides: bool,
     /// One per body, or none at all.
     tethers: Vec<Option<Tether>>,
+    /// Number of bodies with a tether.
+    tied: usize,
     contact_time: f64,
     overlap_calls: u64,
     /// Kept, because every advance asks for it.
@@ -173,6 +176,7 @@ impl<L: ContactLaw> RigidBodies<L> {
             surfaces: Surfaces::default(),
             any_slides: false,
             tethers: Vec::new(),
+            tied: 0,
             contact_time: 0.0,
             overlap_calls: 0,
             stable_dt: f64::INFINITY,
@@ -272,12 +276,14 @@ impl<L: ContactLaw> RigidBodies<L> {
         self.wake_all();
         self.walls.push(Wall { plane, material });
         self.listed.iter_mut().for_each(|l| *l = Listed::not_yet());
-        self.stable_dt = self.least_stable_dt();
+        self.stable_dt = self.least_stable_dt(0.0);
         Ok(())
     }
 
-    /// The number of a material, a new one if it was not there; properties of pairs are brought up to date.
+    /// The number of a material, a new one if it was not there; properties of pairs are brought up to date. Materials that
+    /// differ in density only have one number.
     fn number_of(&mut self, material: Material) -> u32 {
+        let material = Material { density: Material::default().density, ..material };
         if let Some(known) = self.materials.iter().position(|m| *m == material) {
             return known as u32;
         }

@@ -9,7 +9,7 @@ pub trait ContactLaw: Clone + Debug + Send + Sync {
     /// What is kept per patch from one sub-step to the next.
     type Memory: Memory;
 
-    /// The properties of a pair of materials.
+    /// The properties of a pair of materials, which depend on all but their densities.
     fn properties(&self, a: &crate::Material, b: &crate::Material) -> PairProperties {
         PairProperties::new(a, b)
     }

@@ -112,6 +112,30 @@ impl Inflow {
         ((whole + 1.0) as u64).min(self.number)
     }
 
+    /// How far from the zone other bodies matter to an entrant \[m\].
+    pub(super) fn reach(&self, shape: &dyn Shape) -> f64 {
+        2.0 * shape.bounding_radius() + self.gap
+    }
+
+    /// The box in which the centre of `other` is within `reach` of the zone, and more.
+    fn near(&self, other: &dyn Shape, reach: f64) -> Aabb {
+        self.region.bounds().grown(reach + other.bounding_radius())
+    }
+
+    /// Whether a body at `centre`, or an image of it, is within `reach` of the zone.
+    pub(super) fn is_near(&self, other: &dyn Shape, centre: Point, reach: f64, periods: &Periods) -> bool {
+        let near = self.near(other, reach);
+        let axes = if self.region.is_plane() { 2 } else { 3 };
+        (0..axes).all(|axis| {
+            let (low, high) = (near.min[axis] - centre[axis], near.max[axis] - centre[axis]);
+            match periods.along(axis) {
+                Some(_) if self.region.periodic()[axis] => true,
+                Some(period) => (low / period).ceil() <= (high / period).floor(),
+                None => low <= 0.0 && high >= 0.0,
+            }
+        })
+    }
+
     /// A place for the body with the number `serial` among `bodies` and `walls`, if there is one at this `time`.
     pub(super) fn place<'b>(
         &self,
@@ -121,13 +145,13 @@ impl Inflow {
         walls: impl Iterator<Item = &'b HalfSpace>,
         periods: &Periods,
     ) -> Result<Option<Pose>, PlacingError> {
-        let reach = 2.0 * shape.bounding_radius() + self.gap;
+        let reach = self.reach(shape);
         let mut adding = RandomAddition::new(self.region.clone())
             .with_gap(self.gap)?
             .with_attempts(ATTEMPTS)
             .with_orientations(self.orientations);
         for (other, at) in bodies {
-            let near = self.region.bounds().grown(reach + other.bounding_radius());
+            let near = self.near(other, reach);
             for away in self.images(&near, at.position, periods) {
                 adding = adding.with_obstacle(other, Pose { position: at.position + away, ..at });
             }

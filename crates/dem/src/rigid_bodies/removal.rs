@@ -22,22 +22,21 @@ impl<L: ContactLaw> RigidBodies<L> {
         if numbers.left() == n {
             return Ok(numbers);
         }
-        for b in gone {
-            self.wake(self.sleepers.island[b.0]);
-        }
+        self.wake_islands(gone.iter().map(|b| self.sleepers.island[b.0]).collect());
         self.forget_pairs(&numbers);
         numbers.apply(&mut self.bodies);
         numbers.apply(&mut self.constants);
         numbers.apply(&mut self.contact);
         numbers.apply(&mut self.impulse);
         numbers.apply(&mut self.tethers);
+        self.tied = self.tethers.iter().flatten().count();
         self.surfaces.renumber(&numbers);
         self.loads.renumber(&numbers);
         self.sleepers.renumber(&numbers);
         self.listed.clear();
         self.listed.resize_with(self.bodies.len(), Listed::not_yet);
         self.all_round = self.constants.iter().all(super::Constants::is_round);
-        self.stable_dt = self.least_stable_dt();
+        self.stable_dt = self.least_stable_dt(self.stable_dt);
         Ok(numbers)
     }
 

@@ -140,27 +140,41 @@ impl<L: ContactLaw> RigidBodies<L> {
 
     pub(super) fn wake_all(&mut self) {
         if self.sleepers.n > 0 {
-            (1..=self.bodies.len() as u32).for_each(|island| self.wake(island));
+            self.wake_where(|_| true);
         }
     }
 
-    /// Wakes all that sleep together; pairs have to be listed anew.
+    /// Wakes all that sleep in an island (0 is none); pairs have to be listed anew.
     pub(super) fn wake(&mut self, island: u32) {
-        let s = &mut self.sleepers;
-        if island == 0 || !s.island.contains(&island) {
-            return;
+        if island != 0 {
+            self.wake_where(|i| i == island);
         }
-        let woken = &mut s.woken;
-        let all = &s.island;
+    }
+
+    /// Wakes all that sleep in these islands, in one pass.
+    pub(super) fn wake_islands(&mut self, mut islands: Vec<u32>) {
+        islands.retain(|island| *island != 0);
+        islands.sort_unstable();
+        islands.dedup();
+        if !islands.is_empty() {
+            self.wake_where(|island| islands.binary_search(&island).is_ok());
+        }
+    }
+
+    /// Wakes all that sleep in islands for which `wakes` holds.
+    fn wake_where(&mut self, wakes: impl Fn(u32) -> bool) {
+        let s = &mut self.sleepers;
+        let (woken, all) = (&mut s.woken, &s.island);
         s.patches.retain(|(pair, patch)| {
-            let own = [pair.a, pair.b].iter().any(|b| all.get(*b as usize) == Some(&island));
+            let island = |b: u32| all.get(b as usize).copied().unwrap_or(0);
+            let own = [pair.a, pair.b].map(island).into_iter().any(|i| i != 0 && wakes(i));
             if own {
                 woken.push((*pair, *patch));
             }
             !own
         });
         for b in 0..s.island.len() {
-            if s.island[b] == island {
+            if s.island[b] != 0 && wakes(s.island[b]) {
                 (s.island[b], s.slow[b]) = (0, 0.0);
                 s.n -= 1;
                 self.listed[b] = Listed::not_yet();
@@ -184,7 +198,7 @@ impl<L: ContactLaw> RigidBodies<L> {
         }
         let used = self.near.len().div_ceil(CHUNK);
         self.chunks[..used].iter_mut().for_each(Chunk::undo);
-        touched.into_iter().for_each(|island| self.wake(island));
+        self.wake_islands(touched);
         true
     }
 

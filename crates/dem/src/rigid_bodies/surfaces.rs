@@ -169,7 +169,8 @@ impl<L: ContactLaw> RigidBodies<L> {
             return Err(DemError::NoSuchBody { body: b, bodies });
         }
         *at(&mut self.surfaces.bodies, b.0) = Some(Arc::new(velocity));
-        self.surfaces_changed();
+        self.any_slides = true;
+        self.wake_all();
         Ok(())
     }
 

@@ -70,13 +70,22 @@ impl<L: ContactLaw> RigidBodies<L> {
         if let Some(Tether { stiffness, damping, .. }) = tether.filter(|t| !t.is_sensible()) {
             return Err(DemError::Tether { body: b, stiffness, damping });
         }
+        let before = self.tether(b).copied();
+        if before == tether {
+            return Ok(());
+        }
         self.wake_all();
         self.tethers.resize(self.bodies.len(), None);
+        let longest = self.stable_dt;
         self.tethers[b.0] = tether;
-        if self.tethers.iter().all(Option::is_none) {
+        self.tied = self.tied + usize::from(tether.is_some()) - usize::from(before.is_some());
+        if self.tied == 0 {
             self.tethers.clear();
         }
-        self.stable_dt = self.least_stable_dt();
+        self.stable_dt = match before {
+            None => longest.min(self.stable_dt_of_tether(b.0)),
+            Some(_) => self.least_stable_dt(0.0),
+        };
         Ok(())
     }
 

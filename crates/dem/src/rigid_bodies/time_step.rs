@@ -20,11 +20,16 @@ const MOST_TRAVEL: f64 = 0.1;
 const MOST: f64 = 1e8;
 
 impl<L: ContactLaw> RigidBodies<L> {
-    /// The longest stable step, over all bodies.
-    pub(super) fn least_stable_dt(&self) -> f64 {
-        (0..self.bodies.len())
-            .map(|b| self.stable_dt_of(b).min(self.stable_dt_of_tether(b)))
-            .fold(f64::INFINITY, f64::min)
+    /// The longest stable step, over all bodies; none is less than `bound`, at which the search ends.
+    pub(super) fn least_stable_dt(&self, bound: f64) -> f64 {
+        let mut least = f64::INFINITY;
+        for b in 0..self.bodies.len() {
+            least = least.min(self.stable_dt_of(b)).min(self.stable_dt_of_tether(b));
+            if least <= bound {
+                break;
+            }
+        }
+        least
     }
 
     /// The longest stable step for `b` against its own kind and against the walls.

@@ -17,6 +17,7 @@ mod repulsion;
 mod rocking;
 mod rotation;
 mod sleep;
+mod start;
 mod state;
 mod stress;
 mod tether;

@@ -1,0 +1,60 @@
+//! Costs of putting many bodies together, and the step that comes of it.
+use super::*;
+use dem::{HalfSpace, Tether};
+use interfaces::{Dynamics, Point};
+use std::time::{Duration, Instant};
+
+fn tether(stiffness: f64) -> Tether {
+    Tether { on_body: Point::origin(), anchor: Point::origin(), stiffness, damping: 0.0 }
+}
+
+/// Every body with a density of its own, every second on a spring, every third held with a surface that moves: the cost per body
+/// does not grow with their number. Sums over all bodies (or pairs of materials) for each would take minutes (or more memory than there is).
+#[test]
+fn many_bodies_are_added_one_by_one() {
+    let n = 40_000;
+    let start = Instant::now();
+    let mut bodies = RigidBodies::new(Periods::default());
+    bodies.add_wall(HalfSpace::new(Point::origin(), Vector::y()).unwrap(), Material::default()).unwrap();
+    let ball: Arc<dyn Shape> = Arc::new(Sphere::new(R).unwrap());
+    for i in 0..n {
+        let material = Material { density: 1000.0 + i as f64, ..Material::default() };
+        let at = Pose::at([(i % 200) as f64 * 3.0 * R, ((i / 200) as f64 + 0.5) * 3.0 * R, 0.0]);
+        let freedom = if i % 3 == 0 { Freedom::NONE } else { Freedom::FREE };
+        let b = bodies.add(ball.clone(), material, at, Twist::default(), freedom).unwrap();
+        bodies.set_tether(b, (i % 2 == 0).then(|| tether(1.0 + i as f64))).unwrap();
+        if i % 3 == 0 {
+            bodies.set_surface_motion(b, |_, _| Vector::x()).unwrap();
+        }
+    }
+    bodies.check_overlaps().unwrap();
+    assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
+}
+
+/// The stable step is that of the bodies and tethers there are, in whatever order they came and went.
+#[test]
+fn the_step_follows_tethers_and_removals() {
+    let mut bodies = RigidBodies::new(Periods::default());
+    for i in 0..4 {
+        let at = Pose::at([f64::from(i) * 3.0 * R, 0.0, 0.0]);
+        bodies.add(sphere().shape(), elastic(), at, Twist::default(), Freedom::FREE).unwrap();
+    }
+    let free = bodies.stable_dt();
+    // Stiffer springs than contacts: steps go as 1/√k.
+    let [stiff, stiffer] = [1e9, 4e9].map(tether);
+    bodies.set_tether(BodyId(1), Some(stiff)).unwrap();
+    let one = bodies.stable_dt();
+    assert!(one < free);
+    bodies.set_tether(BodyId(2), Some(stiffer)).unwrap();
+    assert!((2.0 * bodies.stable_dt() / one - 1.0).abs() < 1e-12);
+    bodies.set_tether(BodyId(2), Some(stiff)).unwrap();
+    assert_eq!(bodies.stable_dt(), one);
+    bodies.set_tether(BodyId(3), Some(stiffer)).unwrap();
+    let _ = bodies.remove(&[BodyId(3)]).unwrap();
+    assert_eq!(bodies.stable_dt(), one);
+    bodies.set_tether(BodyId(1), None).unwrap();
+    assert_eq!(bodies.stable_dt(), one);
+    let _ = bodies.remove(&[BodyId(2)]).unwrap();
+    assert_eq!(bodies.stable_dt(), free);
+    assert!(bodies.ids().all(|b| bodies.tether(b).is_none()));
+}

@@ -11,7 +11,7 @@
 //! Ctrl-C stops a run with whole files and a saved state. Exit codes: 0 done, 1 an error of the run, 2 an error of the scene or the command line, 3 not converged,
 //! 130 stopped.
 use clap::Parser;
-use scene::{Ending, Options, Scene, TABLE_HEAD, empty_row};
+use scene::{Ending, Options, RunError, Scene, TABLE_HEAD, empty_row};
 use serde_json::json;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -122,7 +122,7 @@ fn one(cli: &Cli, path: &Path, several: bool, table: &mut String, stop: &AtomicB
         quiet: cli.quiet,
         out,
     };
-    let result = scene.run(&options, stop).map_err(|e| (1, e.into()))?;
+    let result = scene.run(&options, stop).map_err(|e| (code_of_error(&e), e.into()))?;
     if cli.json {
         let both = json!({ "result": result.result, "timings": result.timings });
         print(&format!("{both:#}\n"))?;
@@ -135,6 +135,11 @@ fn one(cli: &Cli, path: &Path, several: bool, table: &mut String, stop: &AtomicB
         Ending::NotConverged => 3,
         Ending::Stopped => 130,
     })
+}
+
+/// Exit code of an error of a run: what a check finds has that of a check.
+fn code_of_error(error: &RunError) -> u8 {
+    if matches!(error, RunError::Build(_)) { 2 } else { 1 }
 }
 
 fn fail(code: u8, error: &dyn std::error::Error) -> ExitCode {

@@ -11,7 +11,7 @@ use fv_mesh::{
     Axis, CartesianGrid, Convection, Diffusion, FlowError, Piso, PisoParams, Projection, Side, TimeScheme,
 };
 use ibm::{Hfdib, IbmError, SmoothFilm, SmoothForcing, cut_walls};
-use interfaces::{BodyId, Freedom, Kinematics, Periods, Point, Twist};
+use interfaces::{BodyId, Freedom, Kinematics, Periods, Point, ThinPart, Twist};
 
 /// A number of which one digit counts.
 fn about(x: f64) -> String {
@@ -75,16 +75,21 @@ impl Setup {
             std::array::from_fn(|c| u[c].at(&x))
         };
         for index in 0..grid.n_cells() {
-            let x = grid.centre(grid.cell(index));
-            let velocity: [f64; D] = value(x);
-            if let Some(value) = velocity.into_iter().find(|u| !u.is_finite()) {
-                let at = std::array::from_fn(|a| x.get(a).copied().unwrap_or(0.0));
-                return Err(BuildError::Formula {
-                    what: "the initial velocity",
-                    key: "initial.velocity",
-                    value,
-                    at,
-                });
+            let cell = grid.cell(index);
+            let centre = grid.centre(cell);
+            // Components are needed at the faces across their axes.
+            for c in 0..D {
+                let axis = grid.axis(c);
+                for &face in &axis.faces()[cell[c]..=cell[c] + 1] {
+                    let mut x = centre;
+                    x[c] = face;
+                    let value: f64 = value(x)[c];
+                    if !value.is_finite() {
+                        let at = std::array::from_fn(|a| x.get(a).copied().unwrap_or(0.0));
+                        let (what, key) = ("the initial velocity", "initial.velocity");
+                        return Err(BuildError::Formula { what, key, value, at });
+                    }
+                }
             }
         }
         Ok(Some(value))
@@ -126,17 +131,19 @@ impl Setup {
         Ok(())
     }
 
+    /// Treatment of the viscous terms: explicit with bodies, unless given.
+    pub(crate) fn diffusion(&self) -> Diffusion {
+        let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
+        self.flow.diffusion.unwrap_or(if bodies { Diffusion::Explicit } else { Diffusion::Auto })
+    }
+
     /// The projection algorithm, without bodies or anything that acts on it.
     pub(crate) fn projection<const D: usize>(&self) -> Result<Projection<D>, BuildError> {
         self.check_memory()?;
         let grid = self.grid()?;
-        // Bodies want explicit diffusion.
-        let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
-        let diffusion =
-            self.flow.diffusion.unwrap_or(if bodies { Diffusion::Explicit } else { Diffusion::Auto });
         let mut flow = Projection::new(grid.clone(), self.all_sides(), self.fluid())?
             .with_convection(self.flow.convection)
-            .with_diffusion(diffusion)
+            .with_diffusion(self.diffusion())
             .with_pressure_solver(self.flow.pressure)?;
         if let Some(u) = self.initial(&grid)? {
             flow.set_velocity(u);
@@ -145,14 +152,16 @@ impl Setup {
     }
 
     /// The projection algorithm with bodies at rest as walls.
-    pub(crate) fn walled<const D: usize>(&self) -> Result<(Physics<D>, Still), BuildError> {
+    pub(crate) fn walled<const D: usize>(&self) -> Result<(Physics<D>, Still, Vec<ThinPart>), BuildError> {
         let mut flow = self.projection()?;
         let still = self.still();
+        let mut thin = Vec::new();
         if still.n_bodies() > 0 {
             let walls = cut_walls(flow.velocity(), &still)?;
+            thin.clone_from(&walls.thin);
             flow.set_walls(Some(walls))?;
         }
-        Ok((self.physics(flow)?, Still(still)))
+        Ok((self.physics(flow)?, Still(still), thin))
     }
 
     /// PISO by Euler's scheme in time, as the paper has it.

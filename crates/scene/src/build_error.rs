@@ -33,6 +33,9 @@ pub enum BuildError {
     /// Both together.
     #[error(transparent)]
     Coupling(#[from] CouplingError),
+    /// Anything that is no matter of the scene.
+    #[error(transparent)]
+    Run(Box<crate::RunError>),
     /// The grid is too large for this machine.
     #[error("{cells:.2e} cells need about {:.1} GB of memory, and {:.1} GB are free; take fewer cells", needed / 1e9, free / 1e9)]
     Memory {
@@ -42,6 +45,32 @@ pub enum BuildError {
         needed: f64,
         /// What is there \[bytes\].
         free: f64,
+    },
+    /// A reference to what the results do not have.
+    #[error("the results have no number at {pointer}: {found}; give the pointer of a number in result.json")]
+    Reference {
+        /// Number of the reference.
+        number: usize,
+        /// Its JSON pointer.
+        pointer: String,
+        /// What there is.
+        found: String,
+    },
+    /// A body that its formulas move to where it cannot be.
+    #[error("its formulas move body {body} at t = {time:.4e} s {}", place(*axis, *at, place_of))]
+    Path {
+        /// Name of the body.
+        body: String,
+        /// Key of the body.
+        key: String,
+        /// When \[s\].
+        time: f64,
+        /// Axis, from 0.
+        axis: usize,
+        /// Place of its centre along the axis \[m\].
+        at: f64,
+        /// What is wrong there.
+        place_of: PathProblem,
     },
     /// A formula without a value.
     #[error("{what} is {value} at ({}); the formula needs a finite value all over the box", at.map(|x| format!("{x:.6}")).join(", "))]
@@ -72,7 +101,9 @@ impl BuildError {
                 IbmError::TooCoarse { body: b, .. }
                 | IbmError::TooLarge { body: b, .. }
                 | IbmError::Outside { body: b, .. }
-                | IbmError::Unseen { body: b, .. } => body(b),
+                | IbmError::Unseen { body: b, .. }
+                | IbmError::NoSurface { body: b, .. } => body(b),
+                IbmError::Stretched { .. } => Some("coupling.forcing".into()),
                 IbmError::Thin { part } => body(&BodyId(part.body)),
                 _ => None,
             },
@@ -88,6 +119,8 @@ impl BuildError {
             },
             Self::Turbulence(_) => Some("turbulence".into()),
             Self::Memory { .. } => Some("grid".into()),
+            Self::Reference { number, .. } => Some(format!("references.{number}.pointer")),
+            Self::Path { key, .. } => Some(key.clone()),
             Self::Formula { key, .. } => Some((*key).into()),
             Self::Flow(error) | Self::Coupling(CouplingError::Flow(error)) => match error {
                 FlowError::Boundary { .. } | FlowError::MassBalance { .. } => Some("sides".into()),
@@ -120,17 +153,61 @@ impl BuildError {
     /// The same with its place in the file, if a key has to do with it.
     pub(crate) fn placed(self, setup: &Setup, document: &Document) -> Self {
         if let Some((key, speed)) = self.too_fast_at().and_then(|time| setup.rush(time)) {
-            let message = format!("{self}; what enters or moves here has come to {speed:.3e} m/s by then");
+            let message =
+                in_keys(format!("{self}; what enters or moves here has come to {speed:.3e} m/s by then"));
             return Self::Scene(Box::new(document.problem(&key, message)));
         }
         match self.key(setup) {
             Some(key) => {
                 let doubt = setup.unit_doubt(&key).map(|doubt| format!("; {doubt}")).unwrap_or_default();
-                Self::Scene(Box::new(document.problem(&key, format!("{self}{doubt}"))))
+                Self::Scene(Box::new(document.problem(&key, in_keys(format!("{self}{doubt}")))))
             }
             None => self,
         }
     }
+}
+
+impl From<crate::RunError> for BuildError {
+    fn from(error: crate::RunError) -> Self {
+        match error {
+            crate::RunError::Build(error) => error,
+            crate::RunError::Coupling(error) => error.into(),
+            other => Self::Run(Box::new(other)),
+        }
+    }
+}
+
+/// Why a body cannot be where its formulas move it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PathProblem {
+    /// Its centre is beyond a wall; the box reaches from and to \[m\].
+    Outside([f64; 2]),
+    /// Cells around it are of different widths: least and largest \[m\].
+    Stretched([f64; 2]),
+}
+
+fn place(axis: usize, at: f64, problem: &PathProblem) -> String {
+    let axis = ["x", "y", "z"][axis.min(2)];
+    match problem {
+        PathProblem::Outside([from, to]) => format!(
+            "to {axis} = {at:.6e} m, beyond the box from {from:.6e} to {to:.6e} m; change the formulas, end the run earlier, or take a larger box"
+        ),
+        PathProblem::Stretched([least, most]) => format!(
+            "to {axis} = {at:.6e} m, where cells are {least:.6e} to {most:.6e} m wide along {axis}, but the smooth forcing needs equal cells around a body; make the grid uniform wherever the body goes, or take coupling.forcing = \"hfdib\""
+        ),
+    }
+}
+
+/// Remedies in terms of a scene's keys for those in terms of the libraries.
+const REMEDIES: [(&str, &str); 3] = [
+    ("or use `Hfdib`", "or take coupling.forcing = \"hfdib\""),
+    ("a virtual mass (`Particles::with_virtual_mass`)", "coupling.virtual_mass"),
+    ("`SmoothForcing`", "coupling.forcing = \"smooth\""),
+];
+
+/// A message of the libraries in terms of a scene's keys.
+fn in_keys(message: String) -> String {
+    REMEDIES.iter().fold(message, |text, (library, key)| text.replace(library, key))
 }
 
 /// The body that an error is about.

@@ -30,6 +30,7 @@
 //! ```
 #![deny(missing_docs)]
 
+mod assembly;
 mod build;
 mod build_error;
 mod cast;
@@ -54,10 +55,11 @@ mod schema;
 mod setup;
 mod steady;
 mod still;
+mod trial;
 mod view;
 mod watch;
 
-pub use build_error::BuildError;
+pub use build_error::{BuildError, PathProblem};
 pub use options::Options;
 pub use plan::Plan;
 pub use problem::Problems;
@@ -149,6 +151,7 @@ impl Scene {
                 // What no key has to do with stays as it is.
                 RunError::Coupling(error) => match placed(error.into()) {
                     BuildError::Coupling(error) => error.into(),
+                    BuildError::Scene(problems) => RunError::Step(problems),
                     told => told.into(),
                 },
                 error => error,

@@ -1,10 +1,11 @@
 //! What a scene would do.
 use crate::build_error::BuildError;
+use crate::run::RunError;
 use crate::setup::{Algorithm, ContactLawChoice, ForcingChoice, Setup};
-use crate::steady::Steady;
-use coupling::{Evolving, Grains, check_places};
-use fv_mesh::Axis;
-use ibm::cut_walls;
+use crate::trial::{Trial, Tried};
+use coupling::check_places;
+use fv_mesh::{Axis, CartesianGrid, Projection, Side};
+use interfaces::Dynamics;
 use std::fmt;
 
 /// What running a scene would mean: told before it is run.
@@ -44,6 +45,12 @@ const MANY_STEPS: f64 = 1e8;
 /// CPU seconds per cell and iteration of the steady algorithm.
 const COST_OF_ITERATION: f64 = 4e-7;
 
+/// Memory \[bytes\] and bodies of scenes too large for first steps in a check.
+const LARGE: f64 = 5e8;
+const MANY_BODIES: usize = 100_000;
+/// Cells along each axis of the grid that stands for a large one.
+const WINDOW: usize = 16;
+
 impl Setup {
     /// Puts the scene together, without running it, and tells what a run would mean.
     pub(crate) fn plan(&self) -> Result<Plan, BuildError> {
@@ -53,10 +60,32 @@ impl Setup {
         }
     }
 
+    /// Findings about a scene that is too large to be tried: those of as few of its narrowest cells.
+    fn untried<const D: usize>(&self) -> Result<Tried, BuildError> {
+        let pressure = "chosen at the start of the run: the scene is too large to be tried by a check";
+        let dt = match self.flow.algorithm {
+            _ if self.fluid.is_none() => Some(self.cast(self.chen())?.stable_dt()),
+            Algorithm::Simple => None,
+            Algorithm::Piso => Some(f64::INFINITY),
+            Algorithm::Projection => {
+                let window = |a: usize| {
+                    let width = self.axes[a].narrowest();
+                    Axis::uniform(WINDOW.min(self.axes[a].cells()), 0.0, width * WINDOW as f64)
+                };
+                let axes: Vec<_> = (0..D).map(window).collect::<Result<_, _>>()?;
+                let grid = CartesianGrid::<D>::from_axes(std::array::from_fn(|a| axes[a].clone()))?;
+                let walls = std::array::from_fn(|_| [Side::Wall([0.0; 3]), Side::Wall([0.0; 3])]);
+                let flow = Projection::new(grid, walls, self.fluid())?.with_diffusion(self.diffusion());
+                Some(flow.stable_dt(self.courant))
+            }
+        };
+        Ok(Tried { dt, pressure: pressure.into(), thin: Vec::new(), step: None })
+    }
+
     fn plan_in<const D: usize>(&self) -> Result<Plan, BuildError> {
         let cells = self.cells() as f64;
         let moved = self.bodies.any_moves();
-        let mut thin = Vec::new();
+        self.check_memory()?;
         // Bodies are put together without a flow, which they do not need for that.
         if self.is_forced() {
             let (grid, periodic) = (self.grid::<D>()?, |a| self.periodic(a));
@@ -71,30 +100,19 @@ impl Setup {
                 self.check_sizes()?;
             }
         }
-        let (dt, pressure) = match self.flow.algorithm {
-            _ if self.fluid.is_none() => {
-                let contact = Grains::new(self.cast(self.chen())?).longest_dt();
-                (Some(self.dt.unwrap_or(contact).min(self.end)), "no fluid".to_owned())
-            }
-            Algorithm::Simple => {
-                let steady: Steady<D> = self.steady()?;
-                thin = steady.thin;
-                (None, "multigrid".to_owned())
-            }
-            Algorithm::Piso => (self.dt, "multigrid".to_owned()),
-            Algorithm::Projection => {
-                let flow = self.projection::<D>()?;
-                if !self.is_forced() {
-                    thin = cut_walls(flow.velocity(), &self.still())?.thin;
-                }
-                let flow = self.physics(flow)?;
-                let speed = self.speed();
-                let rate: f64 = self.axes.iter().map(|axis| speed / axis.narrowest()).sum();
-                let stable = flow.stable_dt(self.courant);
-                let dt = self.dt.unwrap_or(if rate > 0.0 { stable.min(self.courant / rate) } else { stable });
-                (Some(dt.min(self.end)), flow.flow.pressure_solver().to_owned())
+        self.check_paths()?;
+        let large = self.memory() > LARGE || self.bodies.list.len() > MANY_BODIES;
+        let Tried { dt, pressure, thin, step } = match large {
+            true => self.untried::<D>()?,
+            false => {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(RunError::from);
+                pool.and_then(|pool| pool.install(|| self.execute(&Trial::new(self))))?
             }
         };
+        let speed = self.speed();
+        let rate: f64 = self.axes.iter().map(|axis| speed / axis.narrowest()).sum();
+        let convective = if rate > 0.0 && self.fluid.is_some() { self.courant / rate } else { f64::INFINITY };
+        let dt = dt.map(|stable| self.dt.unwrap_or(stable.min(convective)).min(self.end));
         let steps = match dt {
             Some(dt) => (self.end / dt).ceil(),
             None => self.flow.iterations as f64,
@@ -104,6 +122,7 @@ impl Setup {
         let model = self.turbulence.as_ref().map_or(0.0, |t| COST_OF_MODEL[usize::from(t.model.averages())]);
         let cpu = steps
             * match self.flow.algorithm {
+                _ if step.is_some() => step.unwrap_or(0.0),
                 _ if self.fluid.is_none() => {
                     let cost = |b: &crate::setup::BodySetup| {
                         COST_OF_BODY[usize::from(b.shape.polyhedron().is_some())]

@@ -1,28 +1,23 @@
 //! Runs a scene.
+use crate::assembly::Execution;
 use crate::build_error::BuildError;
-use crate::cast::Cast;
 use crate::folder_lock::FolderLock;
 use crate::identity::Identity;
 use crate::log::{Log, warn};
 use crate::look::{Books, Extremes, Kept, Look, Show, Whole};
 use crate::options::Options;
-use crate::physics::Physics;
+use crate::problem::Problems;
 use crate::result::{Ending, RunResult};
-use crate::setup::{Algorithm, ContactLawChoice, ForcingChoice, Setup, StrategyChoice};
-use crate::still::Still;
+use crate::setup::Setup;
+use crate::steady::Steady;
 use crate::watch::{
     Audience, AveragesWatch, FieldsWatch, ForcesWatch, ImagesWatch, ModelsWatch, ProbesWatch,
     TrajectoriesWatch, Watch, output,
 };
-use coupling::{
-    CheckpointError, CouplingError, Exchange, Explicit, FlowSolver, Grains, Immersed, Iterated, Ledger,
-    Particles, SavedState, Schedule, Simulation, Strategy,
-};
-use dem::{ContactLaw, Population, Rolling};
+use coupling::{CheckpointError, CouplingError, SavedState};
 use example_support::cpu::Stopwatch;
 use example_support::progress::Progress;
-use ibm::Forcing;
-use interfaces::{Checkpoint, RestartError};
+use interfaces::RestartError;
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -38,6 +33,9 @@ pub enum RunError {
     /// A step or a file could not be made.
     #[error(transparent)]
     Coupling(#[from] CouplingError),
+    /// A step could not be made because of what a key of the scene says.
+    #[error(transparent)]
+    Step(Box<Problems>),
     /// The saved state.
     #[error("{}; {}", .0, remedy(.0))]
     Resume(CheckpointError),
@@ -97,111 +95,7 @@ impl Setup {
     ) -> Result<RunResult, RunError> {
         let stage = Stage { setup: self, options, identity, warnings, stop };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
-        pool.install(|| match self.dim() {
-            2 => self.run_in::<2>(&stage),
-            _ => self.run_in::<3>(&stage),
-        })
-    }
-
-    /// The one choice of types, before the time loop.
-    fn run_in<const D: usize>(&self, stage: &Stage<'_>) -> Result<RunResult, RunError> {
-        if self.fluid.is_none() {
-            return self.grains(stage);
-        }
-        let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
-        match self.flow.algorithm {
-            Algorithm::Simple => return stage.steady(self.steady::<D>()?),
-            Algorithm::Piso if bodies => {
-                let particles = self.particles(self.hfdib(), self.cast(self.chen())?).with_strategy(Explicit);
-                return stage.march(self.simulation(self.piso::<D>()?, particles)?, self.books());
-            }
-            Algorithm::Piso => {
-                return stage.march(self.simulation(self.piso::<D>()?, Still::default())?, ());
-            }
-            Algorithm::Projection => {}
-        }
-        if !self.is_forced() {
-            let (flow, still) = self.walled::<D>()?;
-            return stage.march(self.simulation(flow, still)?, ());
-        }
-        match self.bodies.forcing() {
-            ForcingChoice::Hfdib => self.bodies_by::<D, _>(stage, self.hfdib()),
-            _ => self.bodies_by::<D, _>(stage, self.smooth()),
-        }
-    }
-
-    /// Bodies without a fluid.
-    fn grains(&self, stage: &Stage<'_>) -> Result<RunResult, RunError> {
-        if let Some(repulsion) = self.bodies.repulsion {
-            return stage.march(Grains::new(self.cast(self.repulsive(repulsion)?)?), ());
-        }
-        match self.bodies.law {
-            ContactLawChoice::Chen => stage.march(Grains::new(self.cast(self.chen())?), ()),
-            ContactLawChoice::Potential => stage.march(Grains::new(self.cast(self.potential())?), ()),
-            ContactLawChoice::Rolling => stage.march(Grains::new(self.cast(Rolling(self.chen()))?), ()),
-            ContactLawChoice::None => stage.march(Grains::new(self.cast(())?), ()),
-        }
-    }
-
-    fn bodies_by<const D: usize, F: Forcing>(
-        &self,
-        stage: &Stage<'_>,
-        forcing: F,
-    ) -> Result<RunResult, RunError> {
-        let flow = self.physics(self.projection::<D>()?)?;
-        if let Some(repulsion) = self.bodies.repulsion {
-            return stage.bodies(flow, self.particles(forcing, self.cast(self.repulsive(repulsion)?)?));
-        }
-        match (self.bodies.law, self.bodies.coupling.strategy, self.bodies.lubrication) {
-            (ContactLawChoice::Chen, StrategyChoice::OneSolve, Some(roughness)) => {
-                stage.bodies(flow, self.particles(forcing, self.cast(self.lubricated(roughness)?)?))
-            }
-            (ContactLawChoice::Chen, StrategyChoice::Iterated, _) => stage.bodies(
-                flow,
-                self.particles(forcing, self.cast(self.chen())?).with_strategy(Iterated::default()),
-            ),
-            (ContactLawChoice::Chen, StrategyChoice::Explicit, _) => {
-                stage.bodies(flow, self.particles(forcing, self.cast(self.chen())?).with_strategy(Explicit))
-            }
-            (ContactLawChoice::Chen, ..) => {
-                stage.bodies(flow, self.particles(forcing, self.cast(self.chen())?))
-            }
-            (ContactLawChoice::Potential, ..) => {
-                stage.bodies(flow, self.particles(forcing, self.cast(self.potential())?))
-            }
-            (ContactLawChoice::Rolling, ..) => {
-                stage.bodies(flow, self.particles(forcing, self.cast(Rolling(self.chen()))?))
-            }
-            (ContactLawChoice::None, ..) => stage.bodies(flow, self.particles(forcing, self.cast(())?)),
-        }
-    }
-
-    /// The books, if they are kept.
-    fn books(&self) -> Option<Ledger> {
-        self.why_no_books().is_none().then(Ledger::new)
-    }
-
-    fn particles<F: Forcing, L: ContactLaw>(&self, forcing: F, cast: Cast<L>) -> Particles<F, Cast<L>>
-    where
-        Population<L>: Checkpoint,
-    {
-        let particles = Particles::new(cast, forcing, self.fluid().density, self.gravity);
-        match self.bodies.coupling.virtual_mass {
-            Some(factor) => particles.with_virtual_mass(factor),
-            None => particles,
-        }
-    }
-
-    fn simulation<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>>(
-        &self,
-        flow: A,
-        particles: P,
-    ) -> Result<Simulation<D, P, A>, CouplingError> {
-        let simulation = Simulation::new(flow, particles, self.balance)?;
-        Ok(match self.force.clone() {
-            Some(force) => simulation.with_force(move |t| force.each_ref().map(|f| f.needed(&[t])).into()),
-            None => simulation,
-        })
+        pool.install(|| self.execute(&stage))
     }
 }
 
@@ -220,20 +114,6 @@ const RESULTS: [&str; 2] = ["result.json", "timings.json"];
 pub(crate) const STATE: &str = "state.bin";
 
 impl Stage<'_> {
-    fn bodies<const D: usize, F, L, S>(
-        &self,
-        flow: Physics<D>,
-        particles: Particles<F, Cast<L>, S>,
-    ) -> Result<RunResult, RunError>
-    where
-        F: Forcing,
-        L: ContactLaw,
-        S: Strategy + Exchange<D, Physics<D>>,
-        Population<L>: Checkpoint,
-    {
-        self.march(self.setup.simulation(flow, particles)?, self.setup.books())
-    }
-
     pub(crate) fn folder(&self) -> &Path {
         self.options.out.as_deref().unwrap_or(&self.setup.output.folder)
     }
@@ -337,6 +217,25 @@ impl Stage<'_> {
         Ok(())
     }
 
+    pub(crate) fn not_resumed(&self, error: RestartError) -> RunError {
+        match error {
+            RestartError::Differs(_) => RunError::OtherScene(self.folder().join(STATE)),
+            error => RunError::Resume(error.into()),
+        }
+    }
+}
+
+/// Whether the results in `folder` are those of a run that came to its end. Reads line by line: results of many bodies are long.
+fn is_complete(folder: &Path) -> bool {
+    let Ok(file) = File::open(folder.join(RESULTS[0])) else { return false };
+    let key = "  \"complete\": ";
+    let lines = BufReader::new(file).lines().map_while(Result::ok);
+    lines.filter_map(|line| Some(line.strip_prefix(key)? == "true,")).next().unwrap_or(false)
+}
+
+impl Execution for Stage<'_> {
+    type Output = RunResult;
+
     /// Steps to the end of the run, or until it is stopped.
     fn march<S: Show, K: Books<S>>(&self, mut simulation: S, mut books: K) -> Result<RunResult, RunError> {
         let watch = Stopwatch::start();
@@ -344,8 +243,9 @@ impl Stage<'_> {
         let _lock = self.take_folder()?;
         let state = self.folder().join(STATE);
         let mut extremes = Extremes::default();
-        // Of the flow at rest: a run that goes on has the same.
-        let first = setup.first_step() / simulation.stable_dt(setup.courant).min(setup.end);
+        // That of the flow at its start, also of a run that goes on.
+        let schedule = setup.schedule(&simulation);
+        schedule.check()?;
         let mut resume = None;
         let saved = self.saved_state()?;
         if let Some(saved) = &saved {
@@ -365,18 +265,6 @@ impl Stage<'_> {
         if let Some(saved) = saved {
             saved.restore(&mut Kept(&mut audience)).map_err(|e| self.not_resumed(e))?;
         }
-        let schedule = Schedule {
-            end: setup.end,
-            intervals: setup.output.snapshots.max(1),
-            dt: setup.dt,
-            courant: setup.courant,
-            ramp: match Schedule::default().ramp {
-                [share, growth] if setup.ramp => [share.min(first), growth],
-                [_, growth] if setup.dt.is_none() && first < 1.0 => [first, growth],
-                _ => [1.0, 2.0],
-            },
-        };
-        schedule.check()?;
         let mut log = Log::open(self.folder(), self.resumes())?;
         let begin = simulation.time();
         log.line(&format!(
@@ -441,18 +329,8 @@ impl Stage<'_> {
     }
 
     /// The error of a state that does not fit.
-    pub(crate) fn not_resumed(&self, error: RestartError) -> RunError {
-        match error {
-            RestartError::Differs(_) => RunError::OtherScene(self.folder().join(STATE)),
-            error => RunError::Resume(error.into()),
-        }
-    }
-}
 
-/// Whether the results in `folder` are those of a run that came to its end. Reads line by line: results of many bodies are long.
-fn is_complete(folder: &Path) -> bool {
-    let Ok(file) = File::open(folder.join(RESULTS[0])) else { return false };
-    let key = "  \"complete\": ";
-    let lines = BufReader::new(file).lines().map_while(Result::ok);
-    lines.filter_map(|line| Some(line.strip_prefix(key)? == "true,")).next().unwrap_or(false)
+    fn converge<const D: usize>(&self, steady: Steady<D>) -> Result<RunResult, RunError> {
+        self.steady(steady)
+    }
 }

@@ -2,6 +2,8 @@
 mod blockage;
 mod contacts;
 mod exits;
+mod paths;
+mod references;
 mod units;
 
 use crate::setup::{Algorithm, BodySetup, Setup, SurfaceVelocity, is_open};

@@ -72,6 +72,10 @@ pub(crate) trait View {
     fn pressure_iterations(&self) -> usize {
         0
     }
+    /// Pressure solver, and why it is taken.
+    fn pressure_solver(&self) -> String {
+        "no fluid".into()
+    }
     /// Writes λ, velocity and pressure for ParaView; the name's extension is [`extension`](Self::extension).
     fn write_fields(&self, lambda: &[f64], out: &mut dyn Write) -> Result<(), OutputError> {
         let _ = (lambda, out);
@@ -133,6 +137,10 @@ pub(crate) trait Flow<const D: usize> {
     fn time(&self) -> f64;
     fn steps(&self) -> u64;
     fn pressure_iterations(&self) -> usize;
+    /// Pressure solver, and why it is taken.
+    fn pressure_solver(&self) -> String {
+        "multigrid".into()
+    }
     /// Impulses on walls inside the box in the last step; of a steady flow loads.
     fn wall_impulses(&self) -> &[Wrench];
     /// Fields besides velocity and pressure.
@@ -179,6 +187,9 @@ impl<const D: usize> Flow<D> for Physics<D> {
     }
     fn pressure_iterations(&self) -> usize {
         self.flow.pressure_info().iterations
+    }
+    fn pressure_solver(&self) -> String {
+        self.flow.pressure_solver().to_owned()
     }
     fn wall_impulses(&self) -> &[Wrench] {
         self.flow.wall_impulses()
@@ -382,6 +393,9 @@ impl<const D: usize, A: Flow<D>, P: Guests> View for Seen<'_, D, A, P> {
     }
     fn pressure_iterations(&self) -> usize {
         self.flow.pressure_iterations()
+    }
+    fn pressure_solver(&self) -> String {
+        self.flow.pressure_solver()
     }
     fn write_fields(&self, lambda: &[f64], mut out: &mut dyn Write) -> Result<(), OutputError> {
         let writer = CellWriter::new(self.flow.grid())

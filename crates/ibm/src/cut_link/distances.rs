@@ -122,7 +122,11 @@ impl Distances {
             let (pose, solid, bounds) =
                 (bodies.pose(BodyId(b)), bodies.solid(BodyId(b)), bodies.aabb(BodyId(b)));
             let columns = [0, 1, 2].map(|a| match a < dim {
-                true => axes[a].within(bounds.min[a] - band, bounds.max[a] + band),
+                true => {
+                    // Beyond half a period another image of the body is nearer.
+                    let reach = axes[a].period.map_or(band, |period| band.min(0.5 * period));
+                    axes[a].within(bounds.min[a] - reach, bounds.max[a] + reach)
+                }
                 false => vec![(0, pose.position[a])],
             });
             if columns.iter().any(Vec::is_empty) {

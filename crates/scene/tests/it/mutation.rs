@@ -14,17 +14,36 @@ use toml::de::{DeTable, DeValue};
 
 /// Values of any kind, many of the wrong one.
 const OTHERS: [&str; 24] = [
-    "0", "-1", "1", "2", "1e300", "1e-300", "nan", "inf", "-inf", "\"\"", "\"x\"", "[]", "[1, 2, 3, 4]", "{}",
-    "true", "1979-05-27", "\"sin(\"", "\"1/t\"", "\"x\"", "\"1e3*t\"", "[[1]]", "\"periodic\"",
-    "{ type = \"wall\" }", "99999999999999999999",
+    "0",
+    "-1",
+    "1",
+    "2",
+    "1e300",
+    "1e-300",
+    "nan",
+    "inf",
+    "-inf",
+    "\"\"",
+    "\"x\"",
+    "[]",
+    "[1, 2, 3, 4]",
+    "{}",
+    "true",
+    "1979-05-27",
+    "\"sin(\"",
+    "\"1/t\"",
+    "\"x\"",
+    "\"1e3*t\"",
+    "[[1]]",
+    "\"periodic\"",
+    "{ type = \"wall\" }",
+    "99999999999999999999",
 ];
 /// Factors of a slip in units or in digits.
-const FACTORS: [f64; 14] =
-    [-1.0, 0.0, 1e-9, 1e-6, 1e-3, 1e-2, 0.1, 0.5, 2.0, 10.0, 100.0, 1e3, 1e6, 1e9];
+const FACTORS: [f64; 14] = [-1.0, 0.0, 1e-9, 1e-6, 1e-3, 1e-2, 0.1, 0.5, 2.0, 10.0, 100.0, 1e3, 1e6, 1e9];
 /// Formulas of place and time that may go where a number goes.
-const FORMULAS: [&str; 10] = [
-    "sin(t)", "1/t", "1/x", "log(y)", "sqrt(-x)", "exp(1e3*t)", "x*y", "1e6*sin(1e4*t)", "x/0", "0*t",
-];
+const FORMULAS: [&str; 10] =
+    ["sin(t)", "1/t", "1/x", "log(y)", "sqrt(-x)", "exp(1e3*t)", "x*y", "1e6*sin(1e4*t)", "x/0", "0*t"];
 /// Paths that lead nowhere, or to something else.
 const PATHS: [&str; 5] = ["nowhere.stl", "/dev/null", "README.md", "../scenes", "cavity.toml"];
 
@@ -52,7 +71,8 @@ fn mutated(text: &str, rng: &mut Pcg64) -> (String, String) {
     if let Ok(table) = DeTable::parse(text) {
         table.get_ref().iter().for_each(|(_, v)| leaves(v.get_ref(), v.span(), &mut all));
     }
-    let keys: Vec<_> = text.lines().enumerate().filter(|(_, l)| l.contains('=') && !l.starts_with('#')).collect();
+    let keys: Vec<_> =
+        text.lines().enumerate().filter(|(_, l)| l.contains('=') && !l.starts_with('#')).collect();
     let kind = rng.random_range(0..10);
     if kind >= 2
         && let Some(leaf) = all.choose(rng)
@@ -67,7 +87,8 @@ fn mutated(text: &str, rng: &mut Pcg64) -> (String, String) {
             (4..7, _, Some(text)) if text.contains('.') => {
                 format!("\"{}\"", PATHS.choose(rng).unwrap_or(&""))
             }
-            (.., Some(_)) => match all.iter().filter_map(|l| l.text.as_ref()).collect::<Vec<_>>().choose(rng) {
+            (.., Some(_)) => match all.iter().filter_map(|l| l.text.as_ref()).collect::<Vec<_>>().choose(rng)
+            {
                 Some(other) => format!("{other:?}"),
                 None => "\"\"".into(),
             },
@@ -114,6 +135,7 @@ fn fate(all: &[(std::path::PathBuf, String)], seed: u64, run: Option<Duration>) 
     }
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let told = |fate, why: &str| (fate, format!("{name}, {what}\n    {}", why.replace('\n', "\n    ")));
+    println!("{name}, {what}");
     let start = Instant::now();
     let name = path.display().to_string();
     let scene = match Scene::parse(&name, &text, &[]) {

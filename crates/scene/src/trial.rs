@@ -1,0 +1,133 @@
+//! First steps of a scene, without files.
+use crate::assembly::Execution;
+use crate::build_error::BuildError;
+use crate::look::{Books, Extremes, Show};
+use crate::result::{Ending, RunResult};
+use crate::run::RunError;
+use crate::setup::Setup;
+use crate::steady::Steady;
+use crate::still::Still;
+use crate::view::{Seen, View};
+use crate::watch::Audience;
+use coupling::{CouplingError, Observer, StepInfo};
+use interfaces::ThinPart;
+use std::cell::RefCell;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Execution of the first steps.
+pub(crate) struct Trial<'a> {
+    setup: &'a Setup,
+    thin: RefCell<Vec<ThinPart>>,
+}
+
+/// Findings of a trial.
+pub(crate) struct Tried {
+    /// Longest stable step of the start \[s\]; none for a steady flow.
+    pub(crate) dt: Option<f64>,
+    /// Pressure solver, and why it is taken.
+    pub(crate) pressure: String,
+    /// Parts of bodies that are too thin for the grid.
+    pub(crate) thin: Vec<ThinPart>,
+    /// Wall time of a step or an iteration \[s\]; none without one.
+    pub(crate) step: Option<f64>,
+}
+
+/// Steps of a trial, at most, and the time after which none begins.
+const STEPS: u32 = 4;
+const TIME: Duration = Duration::from_millis(250);
+
+impl<'a> Trial<'a> {
+    pub(crate) fn new(setup: &'a Setup) -> Self {
+        Self { setup, thin: RefCell::default() }
+    }
+
+    /// Requires that references point to what a result has.
+    fn check_references(&self, view: &mut dyn View) -> Result<(), BuildError> {
+        if self.setup.references.is_empty() {
+            return Ok(());
+        }
+        let (extremes, audience) = (Extremes::default(), Audience::new(Vec::new()));
+        let result =
+            RunResult::new(self.setup, view, &extremes, None, &audience, Ending::Stopped, Path::new(""));
+        self.setup.check_references(&result.result)
+    }
+}
+
+/// Observer that times steps and stops after some.
+struct FirstSteps<'a> {
+    stop: &'a AtomicBool,
+    begin: Instant,
+    last: Instant,
+    steps: u32,
+    shortest: Option<f64>,
+}
+
+impl<'a> FirstSteps<'a> {
+    fn new(stop: &'a AtomicBool) -> Self {
+        let now = Instant::now();
+        Self { stop, begin: now, last: now, steps: 0, shortest: None }
+    }
+
+    /// Notes a step; returns whether another may begin.
+    fn note(&mut self) -> bool {
+        let time = self.last.elapsed().as_secs_f64();
+        self.last = Instant::now();
+        self.shortest = Some(self.shortest.map_or(time, |shortest| shortest.min(time)));
+        self.steps += 1;
+        self.steps < STEPS && self.begin.elapsed() < TIME
+    }
+}
+
+impl<S> Observer<S> for FirstSteps<'_> {
+    fn begin(&mut self, _: &mut S) {
+        self.begin = Instant::now();
+        self.last = self.begin;
+    }
+    fn step(&mut self, _: &mut S, _: &StepInfo) -> Result<(), CouplingError> {
+        if !self.note() {
+            self.stop.store(true, Ordering::Relaxed);
+        }
+        Ok(())
+    }
+}
+
+impl Execution for Trial<'_> {
+    type Output = Tried;
+
+    fn march<S: Show, K: Books<S>>(&self, mut simulation: S, _: K) -> Result<Tried, RunError> {
+        let setup = self.setup;
+        let schedule = setup.schedule(&simulation);
+        let dt = simulation.stable_dt(setup.courant).min(setup.end);
+        let stop = AtomicBool::new(false);
+        let mut first = FirstSteps::new(&stop);
+        coupling::run(&mut simulation, &schedule, &mut first, &stop)?;
+        let step = first.shortest;
+        let mut view = simulation.see(setup);
+        self.check_references(&mut view)?;
+        let pressure = view.pressure_solver();
+        drop(view);
+        Ok(Tried { dt: Some(dt), pressure, thin: self.thin.take(), step })
+    }
+
+    fn converge<const D: usize>(&self, mut steady: Steady<D>) -> Result<Tried, RunError> {
+        let stop = AtomicBool::new(false);
+        let mut first = FirstSteps::new(&stop);
+        loop {
+            steady.iterate().map_err(BuildError::from)?;
+            if !first.note() {
+                break;
+            }
+        }
+        let thin = std::mem::take(&mut steady.thin);
+        let still = Still(self.setup.still());
+        let mut view = Seen { flow: &mut steady, guests: &still, timings: coupling::Timings::default() };
+        self.check_references(&mut view)?;
+        Ok(Tried { dt: None, pressure: view.pressure_solver(), thin, step: first.shortest })
+    }
+
+    fn thin(&self, parts: Vec<ThinPart>) {
+        self.thin.replace(parts);
+    }
+}

@@ -11,6 +11,7 @@ use interfaces::{
 pub(crate) struct Cast<L: ContactLaw> {
     bodies: Population<L>,
     inflows: usize,
+    /// In the order of their numbers.
     scripts: Vec<Script>,
     /// Where they are in the list now.
     places: Vec<Option<BodyId>>,
@@ -28,7 +29,7 @@ pub(crate) struct Script {
 }
 
 impl<L: ContactLaw> Cast<L> {
-    /// Bodies with so many inflows, of whom some (by their number at the start) move by formulas.
+    /// Bodies with so many inflows, of whom some (by their number at the start, in this order) move by formulas.
     pub(crate) fn new(bodies: Population<L>, inflows: usize, scripts: Vec<Script>) -> Self {
         let places = vec![None; scripts.len()];
         let mut cast = Self { bodies, inflows, scripts, places, time: 0.0 };
@@ -48,7 +49,7 @@ impl<L: ContactLaw> Cast<L> {
         self.places.fill(None);
         for b in self.bodies.ids() {
             if let Origin::Start(start) = self.bodies.origin(b)
-                && let Some(place) = self.scripts.iter().position(|script| script.number == start)
+                && let Ok(place) = self.scripts.binary_search_by_key(&start, |script| script.number)
             {
                 self.places[place] = Some(b);
             }

@@ -34,35 +34,44 @@ impl Problems {
     }
     /// Of each, in the order of the file: line (from 1; 0 for an override of the command line), key and message.
     pub fn iter(&self) -> impl Iterator<Item = (usize, &str, &str)> {
-        self.list.iter().map(|p| {
+        let starts = self.line_starts();
+        self.list.iter().map(move |p| {
             let line = match &p.place {
-                Place::File(range) => self.line(range.start).0,
+                Place::File(range) => self.line(&starts, range.start).0,
                 Place::Override(_) => 0,
             };
             (line, p.path.as_str(), p.message.as_str())
         })
     }
 
+    /// Bytes at which lines begin.
+    fn line_starts(&self) -> Vec<usize> {
+        std::iter::once(0).chain(self.text.match_indices('\n').map(|(i, _)| i + 1)).collect()
+    }
+
     /// Line and column, from 1, of byte `at`, and the line's text.
-    fn line(&self, at: usize) -> (usize, usize, &str) {
+    fn line(&self, starts: &[usize], at: usize) -> (usize, usize, &str) {
         let mut at = at.min(self.text.len());
         // Errors at the end of the file are behind its last line's end.
         while !self.text.is_char_boundary(at) {
             at -= 1;
         }
-        let before = &self.text[..at];
-        let start = before.rfind('\n').map_or(0, |i| i + 1);
-        let end = self.text[at..].find('\n').map_or(self.text.len(), |i| at + i);
-        (before.matches('\n').count() + 1, before[start..].chars().count() + 1, &self.text[start..end])
+        let line = starts.partition_point(|start| *start <= at);
+        let start = starts[line - 1];
+        let end = starts.get(line).map_or(self.text.len(), |next| next - 1);
+        (line, self.text[start..at].chars().count() + 1, &self.text[start..end])
     }
 }
 
 /// So many characters of a line are shown.
 const SHOWN: usize = 120;
+/// So many problems are shown; all are counted.
+const MOST: usize = 50;
 
 impl fmt::Display for Problems {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, problem) in self.list.iter().enumerate() {
+        let starts = self.line_starts();
+        for (i, problem) in self.list.iter().take(MOST).enumerate() {
             if i > 0 {
                 writeln!(f)?;
             }
@@ -73,7 +82,7 @@ impl fmt::Display for Problems {
                     write_message(f, problem)?;
                 }
                 Place::File(range) => {
-                    let (line, column, text) = self.line(range.start);
+                    let (line, column, text) = self.line(&starts, range.start);
                     write!(f, "{}:{line}:{column}: ", self.name)?;
                     write_message(f, problem)?;
                     // Long lines are shown around the place.
@@ -96,7 +105,10 @@ impl fmt::Display for Problems {
                 }
             }
         }
-        Ok(())
+        match self.list.len().saturating_sub(MOST) {
+            0 => Ok(()),
+            more => write!(f, "\n{more} more problems are not shown; correct these and check the file again"),
+        }
     }
 }
 
@@ -105,6 +117,14 @@ pub(crate) fn shown(text: &str) -> String {
     match text.char_indices().nth(SHOWN) {
         Some((end, _)) => format!("{:?} …", &text[..end]),
         None => format!("{text:?}"),
+    }
+}
+
+/// The beginning of a text without quotes.
+pub(crate) fn clipped(text: &str) -> String {
+    match text.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{} …", &text[..end]),
+        None => text.into(),
     }
 }
 

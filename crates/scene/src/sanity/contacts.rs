@@ -3,6 +3,7 @@ use crate::setup::{BodySetup, ContactLawChoice, Motion, Setup, WallSetup};
 use dem::{ContactLaw, DEEP, PairProperties, RestingDepth, Rolling, resting_depth};
 use fv_mesh::Side;
 use interfaces::Vector;
+use std::sync::Arc;
 
 /// Share of the space that a pile of bodies fills: loose packings of spheres have 0.55 to 0.64.
 const PACKING: f64 = 0.6;
@@ -85,12 +86,21 @@ impl Setup {
     }
 
     fn rest_by<L: ContactLaw>(&self, law: &L) -> Option<Rest<'_>> {
-        let rests = self.bodies.list.iter().filter_map(|body| self.rest_of(law, body));
+        let heaps = self.heaps();
+        let mut last = None;
+        let rests = self.bodies.list.iter().filter_map(|body| self.rest_of(law, body, &heaps, &mut last));
         let ratio = |r: &Rest<'_>| r.depth.depth / r.depth.radius;
         rests.max_by(|a, b| ratio(a).total_cmp(&ratio(b)))
     }
 
-    fn rest_of<'a, L: ContactLaw>(&'a self, law: &L, body: &'a BodySetup) -> Option<Rest<'a>> {
+    /// How deep `body` will rest; `last` is the last body so computed, whose depth one alike shares.
+    fn rest_of<'a, L: ContactLaw>(
+        &'a self,
+        law: &L,
+        body: &'a BodySetup,
+        heaps: &[f64; 2],
+        last: &mut Option<(&'a BodySetup, f64, RestingDepth)>,
+    ) -> Option<Rest<'a>> {
         let Motion::Free(freedom) = &body.motion else { return None };
         let net = self.net_weight(body);
         let free = |a: usize| freedom.linear[a] || net[a] == 0.0;
@@ -104,9 +114,23 @@ impl Setup {
         if load <= 1e-6 * net.norm() {
             return None;
         }
-        let layers = self.layers(body, &net);
-        let material = &self.bodies.wall_material;
-        let depth = resting_depth(law, body.shape.clone(), &body.material, material, load * layers)?;
+        let layers = self.layers(body, &net, heaps);
+        let force = load * layers;
+        let depth = match last {
+            Some((other, same, depth))
+                if Arc::ptr_eq(&other.shape, &body.shape)
+                    && other.material == body.material
+                    && *same == force =>
+            {
+                *depth
+            }
+            _ => {
+                let material = &self.bodies.wall_material;
+                let depth = resting_depth(law, body.shape.clone(), &body.material, material, force)?;
+                *last = Some((body, force, depth));
+                depth
+            }
+        };
         Some(Rest { body, wall, layers, depth })
     }
 
@@ -117,13 +141,24 @@ impl Setup {
         self.gravity * (inertia.mass - displaced)
     }
 
+    /// Volumes \[m³\] of all free bodies that sink and of those that rise.
+    fn heaps(&self) -> [f64; 2] {
+        let mut heaps = [0.0; 2];
+        for body in self.bodies.list.iter().filter(|b| matches!(b.motion, Motion::Free(_))) {
+            let along = self.net_weight(body).dot(&self.gravity);
+            if along != 0.0 {
+                heaps[usize::from(along < 0.0)] += body.shape.inertia(1.0).volume;
+            }
+        }
+        heaps
+    }
+
     /// Number of layers if all bodies that are pressed the same way lie in a heap over the whole box.
-    fn layers(&self, body: &BodySetup, net: &Vector) -> f64 {
+    fn layers(&self, body: &BodySetup, net: &Vector, heaps: &[f64; 2]) -> f64 {
         let down = net.iamax();
         let across: f64 =
             self.axes.iter().enumerate().filter(|(a, _)| *a != down).map(|(_, axis)| axis.length()).product();
-        let along = |b: &&BodySetup| matches!(b.motion, Motion::Free(_)) && self.net_weight(b).dot(net) > 0.0;
-        let volume: f64 = self.bodies.list.iter().filter(along).map(|b| b.shape.inertia(1.0).volume).sum();
+        let volume = heaps[usize::from(net.dot(&self.gravity) < 0.0)];
         let own = body.shape.inertia(1.0).volume;
         let size = if self.dim() == 2 { own.sqrt() } else { own.cbrt() };
         (volume / (PACKING * across * size)).max(1.0)

@@ -3,6 +3,7 @@ use crate::setup::Setup;
 use dem::Shape;
 use fv_mesh::Axis;
 use interfaces::{Pose, is_longer};
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// Usual units of length of files \[m\]: metre, foot, inch, centimetre, millimetre and micrometre.
@@ -13,39 +14,45 @@ impl Setup {
     /// Meshes that are longer than the diagonal of the box, so that they do not fit into it however
     /// they are turned, or shorter than a cell.
     pub(super) fn doubt_units(&self, out: &mut Vec<String>) {
-        let mut keys: Vec<&str> = self.meshes().map(|mesh| mesh.origin).collect();
-        keys.dedup();
-        out.extend(
-            keys.into_iter().filter_map(|key| Some(format!("{key}.shape.unit: {}", self.unit_doubt(key)?))),
-        );
+        let mut known = HashSet::new();
+        for mesh in self.meshes() {
+            if !known.contains(mesh.origin)
+                && let Some(doubt) = self.doubt_of(&mesh)
+            {
+                known.insert(mesh.origin);
+                out.push(format!("{}.shape.unit: {doubt}", mesh.origin));
+            }
+        }
     }
 
     /// Why the unit of the mesh that this key makes looks wrong, and the likely one.
     pub(crate) fn unit_doubt(&self, key: &str) -> Option<String> {
-        self.meshes().filter(|mesh| mesh.origin == key).find_map(|mesh| {
-            let edges: Vec<f64> = self.axes.iter().map(Axis::length).collect();
-            let (diagonal, cell) = (edges.iter().map(|l| l * l).sum::<f64>().sqrt(), self.narrowest());
-            let extent = mesh.shape.aabb().posed(&mesh.pose).extent();
-            let size = extent.max();
-            if !is_longer(size, diagonal) && (self.fluid.is_none() || size >= cell) {
-                return None;
-            }
-            let likely = UNITS.into_iter().find(|(unit, _)| {
-                let factor = unit / mesh.unit;
-                let fits = edges.iter().enumerate().all(|(a, edge)| !is_longer(factor * extent[a], *edge));
-                fits && factor * size >= cell
-            });
-            let likely = match likely {
-                Some((_, unit)) => format!("did you mean unit = {unit}?"),
-                None => "give the length that one unit of the file stands for".into(),
-            };
-            let edges: Vec<String> = edges.iter().map(|l| format!("{l:.3e}")).collect();
-            Some(format!(
-                "with unit = {:e} the mesh is {size:.3e} m long in a box of {} m with cells of {cell:.3e} m; {likely}",
-                mesh.unit,
-                edges.join(" × ")
-            ))
-        })
+        self.meshes().filter(|mesh| mesh.origin == key).find_map(|mesh| self.doubt_of(&mesh))
+    }
+
+    fn doubt_of(&self, mesh: &Mesh<'_>) -> Option<String> {
+        let edges: Vec<f64> = self.axes.iter().map(Axis::length).collect();
+        let (diagonal, cell) = (edges.iter().map(|l| l * l).sum::<f64>().sqrt(), self.narrowest());
+        let extent = mesh.shape.aabb().posed(&mesh.pose).extent();
+        let size = extent.max();
+        if !is_longer(size, diagonal) && (self.fluid.is_none() || size >= cell) {
+            return None;
+        }
+        let likely = UNITS.into_iter().find(|(unit, _)| {
+            let factor = unit / mesh.unit;
+            let fits = edges.iter().enumerate().all(|(a, edge)| !is_longer(factor * extent[a], *edge));
+            fits && factor * size >= cell
+        });
+        let likely = match likely {
+            Some((_, unit)) => format!("did you mean unit = {unit}?"),
+            None => "give the length that one unit of the file stands for".into(),
+        };
+        let edges: Vec<String> = edges.iter().map(|l| format!("{l:.3e}")).collect();
+        Some(format!(
+            "with unit = {:e} the mesh is {size:.3e} m long in a box of {} m with cells of {cell:.3e} m; {likely}",
+            mesh.unit,
+            edges.join(" × ")
+        ))
     }
 
     fn meshes(&self) -> impl Iterator<Item = Mesh<'_>> {

@@ -2,7 +2,7 @@
 use super::{Key, Kind, Need, Table};
 use crate::document::{Document, Item, Place, Section, Value};
 use crate::expression::Expression;
-use crate::problem::{Problem, Problems, shown};
+use crate::problem::{Problem, Problems, clipped, shown};
 
 /// Results of checking a document.
 #[derive(Debug, Default)]
@@ -87,7 +87,7 @@ fn instead(word: &str, known: &[&str]) -> String {
 pub(crate) fn check_item(item: &Item, kind: &Kind, path: &str, found: &mut Findings) {
     let mut problem =
         |message: String| found.problems.push(Problem::new(path.into(), item.place.clone(), message));
-    let wanted = |what: &str| format!("{} stands here; give {what}", item.value);
+    let wanted = |what: &str| format!("{} stands here; give {what}", clipped(&item.value.to_string()));
     match (kind, &item.value) {
         (Kind::Flag, Value::Flag(_)) | (Kind::Text, Value::Text(_)) => {}
         (Kind::Flag, _) => problem(wanted("true or false")),
@@ -192,7 +192,8 @@ fn check_choice(
         },
         other => {
             let message = format!(
-                "{other} stands here; give a table with the key \"{tag}\", one of {}",
+                "{} stands here; give a table with the key \"{tag}\", one of {}",
+                clipped(&other.to_string()),
                 known.join(", ")
             );
             return problem(&item.place, message);

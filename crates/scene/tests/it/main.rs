@@ -5,6 +5,7 @@ mod exits;
 mod files;
 mod heat;
 mod ledger;
+mod many;
 mod mesh_files;
 mod models;
 mod mutation;

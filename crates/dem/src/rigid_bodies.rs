@@ -57,7 +57,7 @@ pub struct RigidBodies<L: ContactLaw = Chen> {
     walls: Vec<Wall>,
     /// All of one density, on which contacts do not depend.
     materials: Vec<Material>,
-    /// Of every pair of materials.
+    /// Of every pair of materials, by [`pair_index`].
     properties: Vec<PairProperties>,
     /// Where bodies were when pairs were listed, and the boxes that came of it.
     listed: Vec<Listed>,
@@ -95,6 +95,14 @@ pub struct RigidBodies<L: ContactLaw = Chen> {
     last_step: f64,
     /// Time \[s\].
     time: f64,
+}
+
+/// Place of the properties of a pair of materials: those of material m and the ones before it follow the pairs of these.
+#[inline]
+fn pair_index(a: u32, b: u32) -> usize {
+    let (a, b) = (a as usize, b as usize);
+    let m = a.max(b);
+    m * m + if a == m { b } else { m + 1 + a }
 }
 
 /// Depth of overlaps at the start that count as round-off, over the radius around the smaller body.
@@ -287,16 +295,17 @@ impl<L: ContactLaw> RigidBodies<L> {
         if let Some(known) = self.materials.iter().position(|m| *m == material) {
             return known as u32;
         }
+        let number = self.materials.len();
         self.materials.push(material);
-        self.properties.clear();
-        for a in &self.materials {
-            self.properties.extend(self.materials.iter().map(|b| self.law.properties(a, b)));
-        }
-        (self.materials.len() - 1) as u32
+        // In the order of `pair_index`.
+        let (law, all) = (&self.law, &self.materials);
+        self.properties.extend(all.iter().map(|b| law.properties(&material, b)));
+        self.properties.extend(all[..number].iter().map(|a| law.properties(a, &material)));
+        number as u32
     }
 
     fn pair_properties(&self, a: u32, b: u32) -> &PairProperties {
-        &self.properties[a as usize * self.materials.len() + b as usize]
+        &self.properties[pair_index(a, b)]
     }
 
     /// Are all bodies clear of one another and of the walls? Bodies that cannot be moved are not compared with one another.

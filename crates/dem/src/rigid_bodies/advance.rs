@@ -18,7 +18,6 @@ impl<L: ContactLaw> RigidBodies<L> {
             walls: &self.walls,
             near: &self.near,
             properties: &self.properties,
-            n_materials: self.materials.len(),
             periods: self.periods,
             last_step: self.last_step,
             time: self.time,

@@ -110,7 +110,6 @@ pub(super) struct View<'a, L> {
     pub(super) walls: &'a [Wall],
     pub(super) near: &'a [NearPair],
     pub(super) properties: &'a [PairProperties],
-    pub(super) n_materials: usize,
     pub(super) periods: Periods,
     /// Length of the last sub-step \[s\].
     pub(super) last_step: f64,

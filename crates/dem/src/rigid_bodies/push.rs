@@ -2,6 +2,7 @@
 use super::body::{Body, Constants};
 use super::contacts::{Patch, Record, View};
 use super::meeting::{Meeting, Other};
+use super::pair_index;
 use crate::contact::{ContactLaw, Pivot, Push, Touch};
 use crate::overlap::closed::Lens;
 use crate::{DemError, Overlap, OverlapSolver};
@@ -205,8 +206,8 @@ impl<L: ContactLaw> View<'_, L> {
         before: Option<&Patch<L::Memory>>,
     ) -> (Push, L::Memory) {
         let mut memory = before.map_or_else(L::Memory::default, |p| p.memory);
-        let [a, b] = materials.map(|m| m as usize);
-        let mut push = self.law.push(&self.properties[a * self.n_materials + b], touch, &mut memory);
+        let [a, b] = materials;
+        let mut push = self.law.push(&self.properties[pair_index(a, b)], touch, &mut memory);
         push.stiffness *= if L::MOBILITY && touch.area > 0.0 {
             touch.mobility / (touch.area * touch.area)
         } else {

@@ -31,6 +31,39 @@ fn many_bodies_are_added_one_by_one() {
     assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
 }
 
+/// Each pair of many materials has its own properties, whichever of both a body is of and whichever came first; 1500 materials
+/// make 2e6 pairs, which are computed once.
+#[test]
+fn many_materials_are_paired() {
+    let start = Instant::now();
+    let soft = |i: usize| Material { youngs_modulus: 1e5 * (1.0 + i as f64), ..elastic() };
+    let n = 1500;
+    let mut bodies = RigidBodies::new(Periods::default());
+    // Neighbours overlap by a tenth of R: 0 and n − 1, 1 and n − 2 …
+    let order: Vec<usize> = (0..n / 2).flat_map(|i| [i, n - 1 - i]).collect();
+    for i in 0..n {
+        let material = soft(i);
+        let place = order.iter().position(|k| *k == i).unwrap();
+        let at = Pose::at([1.9 * R * (place % 2) as f64, 4.0 * R * (place / 2) as f64, 0.0]);
+        bodies.add(sphere().shape(), material, at, Twist::default(), Freedom::FREE).unwrap();
+    }
+    assert!(start.elapsed() < Duration::from_secs(10), "{:?}", start.elapsed());
+    bodies.advance(1e-9).unwrap();
+    let forces: Vec<f64> = bodies.contacts().map(|c| c.force.norm()).collect();
+    assert_eq!(forces.len(), n / 2);
+    // Alone, in the other order.
+    for (i, force) in forces.iter().enumerate().step_by(50) {
+        let mut pair = RigidBodies::new(Periods::default());
+        for (k, x) in [(n - 1 - i, 1.9 * R), (i, 0.0)] {
+            let at = Pose::at([x, 0.0, 0.0]);
+            pair.add(sphere().shape(), soft(k), at, Twist::default(), Freedom::FREE).unwrap();
+        }
+        pair.advance(1e-9).unwrap();
+        let alone = pair.contacts().next().unwrap().force.norm();
+        assert!((force / alone - 1.0).abs() < 1e-9, "{i}: {force} {alone}");
+    }
+}
+
 /// The stable step is that of the bodies and tethers there are, in whatever order they came and went.
 #[test]
 fn the_step_follows_tethers_and_removals() {

@@ -4,9 +4,15 @@ use crate::watch::output;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{ErrorKind, Write};
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 /// Name of the locked file in the folder. It stays there, empty, when no run has the folder.
 const LOCK: &str = "run.lock";
+
+/// A process that was killed just now still has its lock: so long a run waits for it.
+const PATIENCE: Duration = Duration::from_secs(1);
+/// Interval between attempts.
+const INTERVAL: Duration = Duration::from_millis(20);
 
 /// The lock of a folder while a run writes to it. The system frees it when the process ends, however it ends.
 #[derive(Debug)]
@@ -24,7 +30,13 @@ impl FolderLock {
         // Not truncated: the number in it is that of the run that has the lock.
         let file = OpenOptions::new().create(true).write(true).truncate(false).open(&path);
         let mut file = file.map_err(output("making", &path))?;
-        match file.try_lock() {
+        let start = Instant::now();
+        let mut locked = file.try_lock();
+        while matches!(locked, Err(TryLockError::WouldBlock)) && start.elapsed() < PATIENCE {
+            std::thread::sleep(INTERVAL);
+            locked = file.try_lock();
+        }
+        match locked {
             Ok(()) => {}
             // A file system without locks.
             Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {}

@@ -228,9 +228,8 @@ impl Stage<'_> {
 /// Whether the results in `folder` are those of a run that came to its end. Reads line by line: results of many bodies are long.
 fn is_complete(folder: &Path) -> bool {
     let Ok(file) = File::open(folder.join(RESULTS[0])) else { return false };
-    let key = "  \"complete\": ";
-    let lines = BufReader::new(file).lines().map_while(Result::ok);
-    lines.filter_map(|line| Some(line.strip_prefix(key)? == "true,")).next().unwrap_or(false)
+    let mut lines = BufReader::new(file).lines().map_while(Result::ok);
+    lines.find_map(|line| Some(line.strip_prefix("  \"complete\": ")?.starts_with("true"))).unwrap_or(false)
 }
 
 impl Execution for Stage<'_> {

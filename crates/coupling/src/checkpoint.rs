@@ -92,7 +92,8 @@ impl SavedState {
     /// Reads the state in `path`.
     ///
     /// # Errors
-    /// [`CheckpointError`] when the file cannot be read or is not whole (it then names the one saved before).
+    /// [`CheckpointError`] when the file cannot be read or is not whole (it then names the one
+    /// saved before).
     pub fn read(path: &Path) -> Result<Self, CheckpointError> {
         let older = || Some(previous(path)).filter(|older| older.exists());
         let corrupt = |what| CheckpointError::Corrupt { path: path.into(), what, older: older() };

@@ -55,7 +55,7 @@ pub struct RigidBodies<L: ContactLaw = Chen> {
     contact: Vec<Wrench>,
     impulse: Vec<Wrench>,
     walls: Vec<Wall>,
-    /// All of one density, on which contacts do not depend.
+    /// Materials of one density: contacts do not depend on it.
     materials: Vec<Material>,
     /// Of every pair of materials, by [`pair_index`].
     properties: Vec<PairProperties>,
@@ -97,7 +97,8 @@ pub struct RigidBodies<L: ContactLaw = Chen> {
     time: f64,
 }
 
-/// Place of the properties of a pair of materials: those of material m and the ones before it follow the pairs of these.
+/// Place of the properties of a pair of materials: those of material m and the ones before it
+/// follow the pairs of these.
 #[inline]
 fn pair_index(a: u32, b: u32) -> usize {
     let (a, b) = (a as usize, b as usize);
@@ -288,8 +289,8 @@ impl<L: ContactLaw> RigidBodies<L> {
         Ok(())
     }
 
-    /// The number of a material, a new one if it was not there; properties of pairs are brought up to date. Materials that
-    /// differ in density only have one number.
+    /// The number of a material, a new one if it was not there; properties of its pairs are
+    /// appended. Materials that differ in density only have one number.
     fn number_of(&mut self, material: Material) -> u32 {
         let material = Material { density: Material::default().density, ..material };
         if let Some(known) = self.materials.iter().position(|m| *m == material) {
@@ -297,7 +298,7 @@ impl<L: ContactLaw> RigidBodies<L> {
         }
         let number = self.materials.len();
         self.materials.push(material);
-        // In the order of `pair_index`.
+        // Pairs in the order of `pair_index`.
         let (law, all) = (&self.law, &self.materials);
         self.properties.extend(all.iter().map(|b| law.properties(&material, b)));
         self.properties.extend(all[..number].iter().map(|a| law.properties(a, &material)));

@@ -29,7 +29,8 @@ pub(crate) struct Script {
 }
 
 impl<L: ContactLaw> Cast<L> {
-    /// Bodies with so many inflows, of whom some (by their number at the start, in this order) move by formulas.
+    /// Bodies with so many inflows, of whom some (by their number at the start, in this order) move
+    /// by formulas.
     pub(crate) fn new(bodies: Population<L>, inflows: usize, scripts: Vec<Script>) -> Self {
         let places = vec![None; scripts.len()];
         let mut cast = Self { bodies, inflows, scripts, places, time: 0.0 };

@@ -9,12 +9,13 @@ use std::time::{Duration, Instant};
 /// Name of the locked file in the folder. It stays there, empty, when no run has the folder.
 const LOCK: &str = "run.lock";
 
-/// A process that was killed just now still has its lock: so long a run waits for it.
+/// Time that a run waits for a lock: a process that was killed just now still has its own.
 const PATIENCE: Duration = Duration::from_secs(1);
 /// Interval between attempts.
 const INTERVAL: Duration = Duration::from_millis(20);
 
-/// The lock of a folder while a run writes to it. The system frees it when the process ends, however it ends.
+/// The lock of a folder while a run writes to it. The system frees it when the process ends,
+/// however it ends.
 #[derive(Debug)]
 pub(crate) struct FolderLock {
     file: File,
@@ -27,7 +28,7 @@ impl FolderLock {
     /// [`RunError::InUse`] if another run has it.
     pub(crate) fn take(folder: &Path) -> Result<Self, RunError> {
         let path = folder.join(LOCK);
-        // Not truncated: the number in it is that of the run that has the lock.
+        // The number in it is that of the run that has the lock: it is not truncated.
         let file = OpenOptions::new().create(true).write(true).truncate(false).open(&path);
         let mut file = file.map_err(output("making", &path))?;
         let start = Instant::now();
@@ -38,7 +39,7 @@ impl FolderLock {
         }
         match locked {
             Ok(()) => {}
-            // A file system without locks.
+            // File systems without locks.
             Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {}
             Err(TryLockError::Error(error)) => return Err(output("locking", &path)(error).into()),
             Err(TryLockError::WouldBlock) => {

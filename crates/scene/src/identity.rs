@@ -36,7 +36,7 @@ pub(crate) struct Identity {
 struct NamedFile {
     /// The first key that names it.
     key: String,
-    /// As written in the scene.
+    /// Path as written in the scene.
     written: String,
     path: PathBuf,
     hash: u64,
@@ -56,7 +56,7 @@ impl Identity {
     /// A file that cannot be read.
     pub(crate) fn new(document: &Document, files: &[FileKey], folder: &Path) -> Result<Self, Problem> {
         let mut bound: Vec<&FileKey> = files.iter().filter(|file| !is_under(&file.key, &LOOSE)).collect();
-        // Stable: the first key of each path is kept.
+        // A stable sort: the first key of each path is kept.
         bound.sort_by(|a, b| a.path.cmp(&b.path));
         bound.dedup_by(|b, a| a.path == b.path);
         let named = |file: &FileKey| {
@@ -83,7 +83,8 @@ impl Identity {
     /// Whether `state`, read from `path`, was saved by this scene with these files.
     ///
     /// # Errors
-    /// [`RunError::OtherScene`], [`RunError::ChangedFile`], or [`RunError::Resume`] of a state without these entries.
+    /// [`RunError::OtherScene`], [`RunError::ChangedFile`], or [`RunError::Resume`] of a state
+    /// without these entries.
     pub(crate) fn check(&self, state: &SavedState, path: &Path) -> Result<(), RunError> {
         let source = |name: &str| state.get(name);
         let saved = |name: &str| {

@@ -10,7 +10,8 @@ pub struct Options {
     pub resume: bool,
     /// Whether it goes on from the state saved before that one, which is dropped.
     pub resume_previous: bool,
-    /// Whether the state of an unfinished run in the folder may be deleted, when the run begins anew.
+    /// Whether the state of an unfinished run in the folder may be deleted, when the run begins
+    /// anew.
     pub overwrite: bool,
     /// No progress.
     pub quiet: bool,

@@ -65,7 +65,7 @@ impl Problems {
 
 /// So many characters of a line are shown.
 const SHOWN: usize = 120;
-/// So many problems are shown; all are counted.
+/// Number of problems that are shown; all are counted.
 const MOST: usize = 50;
 
 impl fmt::Display for Problems {

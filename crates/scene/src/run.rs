@@ -161,7 +161,8 @@ impl Stage<'_> {
     /// Makes the folder, locks it, and removes what an earlier run left if this one begins anew.
     ///
     /// # Errors
-    /// [`RunError::InUse`]; [`RunError::Unfinished`] if a state would be lost that no flag gives up.
+    /// [`RunError::InUse`]; [`RunError::Unfinished`] if a state would be lost that no flag gives
+    /// up.
     pub(crate) fn take_folder(&self) -> Result<FolderLock, RunError> {
         let folder = self.folder();
         std::fs::create_dir_all(folder).map_err(output("making the folder", folder))?;
@@ -225,7 +226,8 @@ impl Stage<'_> {
     }
 }
 
-/// Whether the results in `folder` are those of a run that came to its end. Reads line by line: results of many bodies are long.
+/// Whether the results in `folder` are those of a run that came to its end. Reads line by line: results
+/// of many bodies are long.
 fn is_complete(folder: &Path) -> bool {
     let Ok(file) = File::open(folder.join(RESULTS[0])) else { return false };
     let mut lines = BufReader::new(file).lines().map_while(Result::ok);

@@ -20,7 +20,8 @@ const MOST_TRAVEL: f64 = 0.1;
 const MOST: f64 = 1e8;
 
 impl<L: ContactLaw> RigidBodies<L> {
-    /// The longest stable step, over all bodies; none is less than `bound`, at which the search ends.
+    /// The longest stable step, over all bodies; none is less than `bound`, at which the search
+    /// ends.
     pub(super) fn least_stable_dt(&self, bound: f64) -> f64 {
         let mut least = f64::INFINITY;
         for b in 0..self.bodies.len() {

@@ -93,7 +93,8 @@ impl Setup {
         rests.max_by(|a, b| ratio(a).total_cmp(&ratio(b)))
     }
 
-    /// How deep `body` will rest; `last` is the last body so computed, whose depth one alike shares.
+    /// Depth at which `body` will rest, shared with `last`, the last body so computed, if both are
+    /// alike.
     fn rest_of<'a, L: ContactLaw>(
         &'a self,
         law: &L,

@@ -21,7 +21,8 @@ pub(crate) struct FileKey {
     pub(crate) path: String,
 }
 
-/// Checks every key of `document`: unknown ones, missing ones, kinds, ranges, formulas. Returns its paths of files.
+/// Checks every key of `document`: unknown ones, missing ones, kinds, ranges, formulas. Returns its
+/// paths of files.
 ///
 /// # Errors
 /// All problems at once.

@@ -1,5 +1,5 @@
-//! Scenes of many bodies and files with many problems: what reading, checking and starting them costs.
-use crate::{folder, quiet};
+//! Costs of reading, checking and starting scenes of many bodies, and of files with many problems.
+use crate::{folder, problems, quiet};
 use example_support::cpu::Stopwatch;
 use scene::{Ending, Scene};
 use std::fmt::Write;
@@ -78,4 +78,14 @@ fn many_problems_are_told_in_short() {
     assert!(taken < 5.0, "{taken}");
     assert!(told.contains("many.toml:1:1: there is no key \"key_0\"") && told.len() < 100_000);
     assert!(told.ends_with("29952 more problems are not shown; correct these and check the file again"));
+}
+
+/// A long list where a number is wanted is shown in part.
+#[test]
+fn long_values_are_shown_in_part() {
+    let list = vec!["1.0"; 10_000].join(", ");
+    let told = problems("", &format!("fluid.density=[{list}]"));
+    let line = told.lines().find(|line| line.contains("stands here")).unwrap_or_default();
+    let message = line.split("fluid.density: ").last().unwrap_or_default();
+    assert!(message.starts_with("[1.0, 1.0") && message.len() < 300, "{message}");
 }

@@ -1,4 +1,4 @@
-//! States from which runs go on: whose they are, and which flags give them up.
+//! States from which runs go on: the scenes that they belong to, and the flags that give them up.
 use crate::{folder, quiet, root, run};
 use scene::{Ending, Options, RunError, RunResult, Scene};
 use std::fs;
@@ -90,7 +90,8 @@ fn changed_files_are_refused() {
         assert!(told.contains(name) && told.contains(key) && told.contains("--overwrite"), "{told}");
         fs::write(&file, kept).unwrap();
     }
-    // As they were, the run goes on; a file that is written anew with the same contents is the same.
+    // The run goes on with the files as they were; one that is written anew with the same contents
+    // is the same.
     assert_eq!(go(&load(&longer), &resume, false).unwrap().result["time"], 2e-3);
     fs::remove_dir_all(&base).unwrap();
 }
@@ -134,7 +135,8 @@ fn the_lock_of_a_dead_process_is_free() {
     fs::remove_dir_all(&out).unwrap();
 }
 
-/// The state of a run that is not at its end is lost with `overwrite` only; that of a finished run at once.
+/// The state of a run that is not at its end is lost with `overwrite` only; that of a finished run
+/// at once.
 #[test]
 fn unfinished_states_are_kept() {
     let out = folder("unfinished");
@@ -151,12 +153,12 @@ fn unfinished_states_are_kept() {
     refused();
     let resume = Options { resume: true, ..quiet(&out) };
     assert_eq!(go(&small(&[]), &resume, false).unwrap().ending, Ending::Done);
-    // Done: the folder is free.
+    // The run is done and the folder free.
     let all = go(&small(&[]), &quiet(&out), false).unwrap();
     // A longer run from there that is stopped is unfinished again, whatever results were there.
     assert_eq!(go(&small(&["time.end=2"]), &resume, true).unwrap().ending, Ending::Stopped);
     refused();
-    // One that is killed has no results at all.
+    // A run that is killed has no results at all.
     fs::remove_file(out.join("result.json")).unwrap();
     refused();
     let anew = go(&small(&[]), &Options { overwrite: true, ..quiet(&out) }, false).unwrap();
@@ -164,7 +166,8 @@ fn unfinished_states_are_kept() {
     fs::remove_dir_all(&out).unwrap();
 }
 
-/// A damaged state is told with the flag that goes on from the one before it, with the same results.
+/// The error of a damaged state names the flag that goes on from the one before it, with the same
+/// results.
 #[test]
 fn a_run_goes_on_from_the_state_before_the_last() {
     let [out, whole] = ["previous", "previous-whole"].map(folder);
@@ -182,7 +185,7 @@ fn a_run_goes_on_from_the_state_before_the_last() {
     let from_previous = Options { resume_previous: true, ..quiet(&out) };
     let stopped = go(&small(&["time.end=3"]), &from_previous, true).unwrap();
     assert_eq!((stopped.ending, &stopped.result["time"]), (Ending::Stopped, &1.0.into()));
-    // It has taken the place of the damaged one.
+    // The older state has taken the place of the damaged one.
     assert!(fs::read(&previous).unwrap() == older);
     let rest = go(&small(&["time.end=3"]), &resume, false).unwrap().result;
     assert_eq!(rest, all);
@@ -191,7 +194,8 @@ fn a_run_goes_on_from_the_state_before_the_last() {
     }
 }
 
-/// A steady run saves states while it iterates, from which it goes on bit for bit after it was killed.
+/// A steady run saves states while it iterates, from which it goes on bit for bit after it was
+/// killed.
 #[test]
 fn a_steady_run_that_is_killed_goes_on() {
     let [whole, first, pieces] = ["steady-whole", "steady-first", "steady-pieces"].map(folder);

@@ -3,6 +3,7 @@ mod contacts;
 mod dry;
 mod exits;
 mod files;
+mod first_steps;
 mod heat;
 mod ledger;
 mod many;
@@ -111,15 +112,15 @@ fn the_manual_and_the_schema_are_those_of_the_code() {
 }
 
 #[test]
-fn every_scene_is_checked_in_a_second() {
+fn every_scene_is_checked_in_seconds() {
     let all = scenes();
     assert!(all.len() >= 3);
     for (path, _) in all {
         let start = Instant::now();
         let scene = Scene::load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
         let plan = scene.plan().unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-        // Ten seconds where other tests run beside it; a second is what it takes alone.
-        assert!(start.elapsed() < Duration::from_secs(10), "{}: {:?}", path.display(), start.elapsed());
+        // 3.5 s alone, the first pressure solution of `sphere_les`; other tests run at the same time.
+        assert!(start.elapsed() < Duration::from_secs(40), "{}: {:?}", path.display(), start.elapsed());
         assert!(plan.steps > 0.0 && plan.cpu > 0.0, "{plan}");
     }
 }

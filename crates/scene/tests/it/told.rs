@@ -104,7 +104,7 @@ fn what_looks_doubtful_is_told() {
     let fine = "grid.cells=[160, 160]";
     for (more, part) in [
         (&["time.end=1e30"][..], "years on one core"),
-        (&["time.dt=0.1"], "Courant number"),
+        (&["time.dt=0.05"], "Courant number"),
         (&["fluid.nu=1e-6"], "Reynolds number of a cell"),
         (&[fine, &disc(0.2, 0.5)], "a body blocks 40 %"),
         (&[fine, &disc(0.05, 0.1)], "the inlet at x_min is 0.5 sizes"),
@@ -131,6 +131,9 @@ fn what_looks_doubtful_is_told() {
         let told = warnings(more);
         assert!(told.contains(part), "{more:?}: {told}");
     }
+    // What the first step refuses the plan refuses.
+    let told = scene(STREAM, &["time.dt=0.1"]).plan().unwrap_err().to_string();
+    assert!(told.contains("time.dt: the flow moved 1.687e0 cells in a step"), "{told}");
     let periodic = ["sides.y=\"periodic\"", fine, &disc(0.2, 0.5)];
     assert!(warnings(&periodic).contains("along y the period is 2.5 times"), "{}", warnings(&periodic));
     assert!(problems(STREAM, "sides.x_min.velocity=[1.0]").contains("sides.x_min.velocity"));

@@ -1,0 +1,99 @@
+//! Errors of the first steps, found by a check.
+use crate::{folder, problems, quiet};
+use scene::Scene;
+use std::sync::atomic::AtomicBool;
+
+const BOX: &str = r#"
+[grid]
+cells = [32, 32]
+size = [1.0, 1.0]
+[sides]
+x = "wall"
+y = "wall"
+[fluid]
+density = 1000.0
+nu = 1e-3
+[time]
+end = 1.0
+[output]
+images = false
+fields = false
+"#;
+
+/// Error of a check, which is that of the run.
+fn refused(text: &str) -> String {
+    let scene = Scene::parse("a.toml", text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let out = folder("first-steps");
+    let run = scene.run(&quiet(&out), &AtomicBool::new(false)).unwrap_err();
+    assert!(matches!(run, scene::RunError::Build(_)), "{run}");
+    let _ = std::fs::remove_dir_all(&out);
+    let check = scene.plan().unwrap_err().to_string();
+    assert_eq!(check, run.to_string());
+    check
+}
+
+fn disc(position: &str, motion: &str) -> String {
+    format!(
+        "[[bodies]]\nname = \"disc\"\nshape = {{ type = \"disc\", radius = 0.1 }}\ndensity = 2000.0\nposition = {position}\nmotion = {motion}\n"
+    )
+}
+
+#[test]
+fn formulas_that_move_a_body_out_of_the_box_are_refused() {
+    let shift = "{ type = \"prescribed\", shift = [\"t\", 0.0] }";
+    let found = refused(&format!("{BOX}{}", disc("[0.5, 0.5]", shift)));
+    assert!(found.contains("bodies.0: its formulas move body disc at t = 5.0"), "{found}");
+    assert!(found.contains("beyond the box from 0.000000e0 to 1.000000e0 m"), "{found}");
+}
+
+#[test]
+fn the_key_that_helps_on_a_stretched_grid_is_named() {
+    let axis = "{ spacing = \"geometric\", cells = 40, to = 1.0, ratio = 1.02 }";
+    let grid = format!("[grid]\nx = {axis}\ny = {axis}\n");
+    let text = BOX.replace("[grid]\ncells = [32, 32]\nsize = [1.0, 1.0]\n", &grid);
+    let still = "{ type = \"prescribed\", shift = [\"0.01*sin(t)\", 0.0] }";
+    let message = problems(&format!("{text}{}", disc("[0.5, 0.5]", still)), "time.end=1.0");
+    assert!(message.is_empty(), "{message}");
+    let found = refused(&format!("{text}{}", disc("[0.5, 0.5]", still)));
+    assert!(found.contains("coupling.forcing = \"hfdib\"") && !found.contains("`Hfdib`"), "{found}");
+}
+
+#[test]
+fn references_point_to_numbers_of_the_results() {
+    let reference = |pointer: &str| {
+        format!("{BOX}[[references]]\nname = \"a\"\npointer = \"{pointer}\"\nvalue = 1.0\nsource = \"b\"\n")
+    };
+    for (pointer, part) in [
+        ("/flow/kinetic", "at the top there are"),
+        ("/flow", "there is no number but a list"),
+        ("/probes/0/points/0/pressure", "at the top there are"),
+    ] {
+        let found = refused(&reference(pointer));
+        assert!(found.contains("references.0.pointer: ") && found.contains(part), "{found}");
+    }
+    let probes = "[[probes]]\nname = \"p\"\npoints = [[0.5, 0.5]]\n";
+    let found = refused(&format!("{}{probes}", reference("/probes/1/points/0/pressure")));
+    assert!(found.contains("\"probes\" has 1 entries"), "{found}");
+    for pointer in ["/flow/kinetic_energy", "/step/longest", "/probes/0/points/0/pressure"] {
+        let text = format!("{}{probes}", reference(pointer));
+        let plan = Scene::parse("a.toml", &text, &[]).unwrap_or_else(|e| panic!("{e}")).plan();
+        plan.unwrap_or_else(|e| panic!("{e}"));
+    }
+}
+
+/// The velocity is needed at faces, not at centres.
+#[test]
+fn an_initial_velocity_without_a_value_at_a_face_is_refused() {
+    let found = refused(&format!("{BOX}[initial]\nvelocity = [\"0/(x - 0.5)\", 0.0]\n"));
+    assert!(found.contains("initial.velocity"), "{found}");
+}
+
+/// A large scene is checked without its fields.
+#[test]
+fn a_large_scene_is_not_tried() {
+    let text = BOX.replace("[32, 32]", "[2000, 2000]");
+    let plan = Scene::parse("a.toml", &text, &[]).unwrap_or_else(|e| panic!("{e}")).plan().unwrap();
+    assert!(plan.memory > 5e8 && plan.pressure.contains("too large to be tried"), "{plan}");
+    // Explicit or not, the step is that of a grid with as narrow cells.
+    assert!(plan.dt.is_some_and(|dt| dt > 0.0));
+}

@@ -32,8 +32,7 @@ pub enum CouplingError {
     },
     /// A body does not fit into the box.
     #[error(
-        "body {} is {size:.3e} m long along axis {axis}, the box only {length:.3e} m (of a periodic axis, a cell more is possible): make the body smaller or the box larger", body.0
-    )]
+        "body {} is {size:.3e} m long along axis {axis}, the box only {length:.3e} m (of a periodic axis, a cell more is possible): make the body smaller or the box larger", body.0)]
     TooLarge {
         /// The body.
         body: BodyId,
@@ -56,8 +55,7 @@ pub enum CouplingError {
     },
     /// A body stands outside the box.
     #[error(
-        "the centre of body {} is at {centre:.3e} m along axis {axis}, outside the box from {:.3e} to {:.3e} m: move it inside; a body that an inflow puts beyond an open side has to move inwards", body.0, box_[0], box_[1]
-    )]
+        "the centre of body {} is at {centre:.3e} m along axis {axis}, outside the box from {:.3e} to {:.3e} m: move it inside; a body that an inflow puts beyond an open side has to move inwards", body.0, box_[0], box_[1])]
     Outside {
         /// The body.
         body: BodyId,
@@ -70,8 +68,7 @@ pub enum CouplingError {
     },
     /// A body went out through a bounded side.
     #[error(
-        "body {} went out of the box along axis {axis} at {speed:.3e} m/s, up to t = {time:.6} s: its centre is at {centre:.3e} m, and the box reaches from {:.3e} to {:.3e} m; {by}", body.0, box_[0], box_[1]
-    )]
+        "body {} went out of the box along axis {axis} at {speed:.3e} m/s, up to t = {time:.6} s: its centre is at {centre:.3e} m, and the box reaches from {:.3e} to {:.3e} m; {by}", body.0, box_[0], box_[1])]
     Escaped {
         /// The body.
         body: BodyId,
@@ -110,7 +107,7 @@ pub enum CouplingError {
     },
     /// The velocity has grown so much that time stands still.
     #[error(
-        "a Courant number of {courant} allows no more than dt = {dt:.3e} s at t = {time:.6} s: the run is diverging; start again with a smaller Courant number or time step; if that ends even earlier, the step is not the cause: take a finer grid, and for bodies much lighter than the fluid a virtual mass (`Particles::with_virtual_mass`)"
+        "at t = {time:.6} s the flow has become so fast that a Courant number of {courant} allows steps of no more than {dt:.3e} s: the run is diverging, or something in it is that fast"
     )]
     Collapsed {
         /// The step \[s\].
@@ -122,7 +119,7 @@ pub enum CouplingError {
     },
     /// The flow moves too far in a step.
     #[error(
-        "the flow moved {courant:.3e} cells in a step of {dt:.3e} s, up to t = {time:.6} s; take a smaller time step; if that ends even earlier, the step is not the cause: take a finer grid, or another forcing for the bodies"
+        "the flow moved {courant:.3e} cells in a step of {dt:.3e} s, up to t = {time:.6} s; take a smaller time step; a run that then ends even earlier diverges for another reason"
     )]
     Courant {
         /// The Courant number.

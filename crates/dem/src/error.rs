@@ -2,6 +2,36 @@
 use crate::{Partner, Refinement, Route};
 use interfaces::BodyId;
 
+/// Cause of the longest sub-step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SubStepLimit {
+    /// The tether of a body.
+    Tether(BodyId),
+    /// Contacts of a body with its like or a wall.
+    Material(BodyId),
+    /// The stiffest contact at present.
+    Contact,
+    /// The speed at which bodies approach.
+    Speed,
+}
+
+impl std::fmt::Display for SubStepLimit {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Tether(b) => {
+                write!(f, "the tether of body {}; give it less stiffness or damping", b.0)
+            }
+            Self::Material(b) => write!(
+                f,
+                "contacts of body {}; give its material a smaller Young's modulus, a Poisson's ratio well above -1 or less damping",
+                b.0
+            ),
+            Self::Contact => f.write_str("the stiffest contact; give softer materials"),
+            Self::Speed => f.write_str("bodies as fast as these; give slower ones"),
+        }
+    }
+}
+
 /// Why a shape, a body or a step could not be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DemError {
@@ -147,9 +177,11 @@ pub enum DemError {
     Pairs(#[from] crate::PairListError),
     /// A step would take too many sub-steps.
     #[error(
-        "a step of {dt:.3e} s would take more than 1e8 sub-steps of {longest:.3e} s: give a shorter one, softer materials or slower bodies"
+        "a step of {dt:.3e} s would take more than 1e8 sub-steps: no more than {longest:.3e} s is stable for {limit}"
     )]
     SubSteps {
+        /// Cause.
+        limit: SubStepLimit,
         /// The step \[s\].
         dt: f64,
         /// The longest sub-step \[s\].
@@ -157,8 +189,7 @@ pub enum DemError {
     },
     /// A body is longer than a period by more than [`interfaces::LENGTH_PRECISION`] of it.
     #[error(
-        "body {} is {size:.3e} m long along axis {axis}, more than the period of {period:.3e} m, so it would overlap itself: take a smaller body or a longer period", body.0
-    )]
+        "body {} is {size:.3e} m long along axis {axis}, more than the period of {period:.3e} m, so it would overlap itself: take a smaller body or a longer period", body.0)]
     Period {
         /// The body.
         body: BodyId,

@@ -45,7 +45,7 @@ pub use contact::{
     Chen, ContactLaw, FilmForce, Gap, Lubricated, Means, Memory, PairProperties, Pivot, Potential, Push,
     Repulsive, Rolling, Springs, Touch, WholeFilm,
 };
-pub use error::DemError;
+pub use error::{DemError, SubStepLimit};
 pub use material::Material;
 #[cfg(feature = "mesh")]
 pub use overlap::FacetIndex;

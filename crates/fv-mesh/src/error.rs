@@ -18,8 +18,10 @@ pub enum FlowError {
     },
     /// What enters the box cannot leave it.
     #[error(
-        "the sides let {net:.6e} m³/s more out than in ({inflow:.6e} m³/s enters) and no outlet can make up for it; \
-         give an outlet or inlets that balance"
+        "the sides let {:.6e} m³/s more {} ({inflow:.6e} m³/s enters) and no outlet can make up for it; \
+         give an outlet or inlets that balance",
+        net.abs(),
+        if *net > 0.0 { "out than in" } else { "in than out" }
     )]
     MassBalance {
         /// Net outflow \[m³/s\] (plane: m²/s).
@@ -66,8 +68,9 @@ pub enum FlowError {
     },
     /// The velocity is no longer finite, or grew beyond what a step can carry.
     #[error(
-        "the velocity diverged in step {step} (t = {time} s, dt = {dt} s, Courant number {courant:.3e}), first or most in cell \
-         {cell:?}; take a smaller time step, or smaller relaxation factors in steady iterations"
+        "the velocity diverged in {}, first or most in cell {cell:?}; {}",
+        step_text(*step, *time, *dt, Some(*courant)),
+        if *dt > 0.0 { "take a smaller time step" } else { "check that the sides determine the flow, or take a finer grid or convection = upwind" }
     )]
     Diverged {
         /// Step number.
@@ -83,7 +86,9 @@ pub enum FlowError {
     },
     /// A scalar is no longer finite.
     #[error(
-        "the scalar is not finite any more in step {step} (t = {time} s, dt = {dt} s); take a smaller time step"
+        "the scalar is not finite any more in {}; {}",
+        step_text(*step, *time, *dt, None),
+        if *dt > 0.0 { "take a smaller time step" } else { "check its values at the sides" }
     )]
     ScalarDiverged {
         /// Step number.
@@ -179,5 +184,15 @@ pub enum FlowError {
 impl From<PoissonError> for FlowError {
     fn from(e: PoissonError) -> Self {
         Self::Poisson(e)
+    }
+}
+
+/// A step in words; an iteration of a steady algorithm has no length.
+fn step_text(step: u64, time: f64, dt: f64, courant: Option<f64>) -> String {
+    if dt > 0.0 {
+        let courant = courant.map_or(String::new(), |c| format!(", Courant number {c:.3e}"));
+        format!("step {step} (t = {time} s, dt = {dt} s{courant})")
+    } else {
+        format!("iteration {step}")
     }
 }

@@ -31,8 +31,7 @@ pub enum IbmError {
     },
     /// The grid is not uniform around a body.
     #[error(
-        "around body {} the nodes along axis {axis} are {least:.6e} to {most:.6e} m apart, but the smooth forcing needs equal spacing there: make the grid uniform wherever the body may go, or use `Hfdib`", body.0
-    )]
+        "around body {} the nodes along axis {axis} are {least:.6e} to {most:.6e} m apart, but the smooth forcing needs equal spacing there: make the grid uniform wherever the body may go, or use `Hfdib`", body.0)]
     Stretched {
         /// The body.
         body: BodyId,
@@ -52,8 +51,7 @@ pub enum IbmError {
     /// A body is longer than the period of the grid by more than a cell (and
     /// [`interfaces::LENGTH_PRECISION`] of both).
     #[error(
-        "body {} is {size:.3e} m long along axis {axis}, longer than the period of {period:.3e} m by more than a cell: make the body smaller or the box larger", body.0
-    )]
+        "body {} is {size:.3e} m long along axis {axis}, longer than the period of {period:.3e} m by more than a cell: make the body smaller or the box larger", body.0)]
     TooLarge {
         /// The body.
         body: BodyId,
@@ -80,8 +78,7 @@ pub enum IbmError {
     /// A body at rest reaches beyond a bounded side, and no node is in what is left of it inside the box.
     #[error(
         "body {} reaches from {low:.6e} to {high:.6e} m along axis {axis}, the box from {:.6e} to {:.6e} m, and no node of some velocity \
-         component is in the part of the body inside the box: move it inside, or leave it out", body.0, box_[0], box_[1]
-    )]
+         component is in the part of the body inside the box: move it inside, or leave it out", body.0, box_[0], box_[1])]
     Outside {
         /// The body.
         body: BodyId,

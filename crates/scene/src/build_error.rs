@@ -3,8 +3,8 @@ use crate::document::Document;
 use crate::problem::Problems;
 use crate::setup::{Algorithm, BodySetup, ForcingChoice, Motion, Setup};
 use coupling::CouplingError;
-use dem::DemError;
 use dem::placing::PlacingError;
+use dem::{DemError, SubStepLimit};
 use fv_mesh::FlowError;
 use ibm::IbmError;
 use interfaces::BodyId;
@@ -94,9 +94,16 @@ impl BuildError {
             Some(body) => Some(body.origin.clone()),
             None => Some(setup.bodies.inflows.first()?.origin.clone()),
         };
+        let bodies = |error: &DemError| {
+            let part = match error {
+                DemError::SubSteps { limit: SubStepLimit::Tether(_), .. } => ".tether",
+                DemError::SubSteps { limit: SubStepLimit::Material(_), .. } => ".material",
+                _ => "",
+            };
+            body(&body_of(error)?).map(|key| key + part)
+        };
         match self {
-            Self::Bodies(error) => body(&body_of(error)?),
-            Self::Placing(PlacingError::Shape(error)) => body(&body_of(error)?),
+            Self::Bodies(error) | Self::Placing(PlacingError::Shape(error)) => bodies(error),
             Self::Immersed(error) | Self::Coupling(CouplingError::Immersed(error)) => match error {
                 IbmError::TooCoarse { body: b, .. }
                 | IbmError::TooLarge { body: b, .. }
@@ -114,7 +121,7 @@ impl BuildError {
                 | CouplingError::Escaped { body: b, .. },
             ) => body(b),
             Self::Coupling(CouplingError::Dynamics { source, .. }) => match source.downcast_ref() {
-                Some(PlacingError::Shape(error)) => body(&body_of(error)?),
+                Some(PlacingError::Shape(error)) => bodies(error),
                 _ => None,
             },
             Self::Turbulence(_) => Some("turbulence".into()),
@@ -137,6 +144,19 @@ impl BuildError {
         }
     }
 
+    /// Speed \[m/s\] of the flow when it had grown too much, on cells of width `h` \[m\].
+    fn flow_speed(&self, h: f64) -> Option<f64> {
+        match self {
+            Self::Flow(FlowError::Diverged { courant, dt, .. })
+            | Self::Coupling(
+                CouplingError::Flow(FlowError::Diverged { courant, dt, .. })
+                | CouplingError::Courant { courant, dt, .. }
+                | CouplingError::Collapsed { courant, dt, .. },
+            ) if *dt > 0.0 => Some(courant * h / dt),
+            _ => None,
+        }
+    }
+
     /// When the velocity had grown too much, if that is it \[s\].
     fn too_fast_at(&self) -> Option<f64> {
         match self {
@@ -153,14 +173,24 @@ impl BuildError {
     /// The same with its place in the file, if a key has to do with it.
     pub(crate) fn placed(self, setup: &Setup, document: &Document) -> Self {
         if let Some((key, speed)) = self.too_fast_at().and_then(|time| setup.rush(time)) {
-            let message =
-                in_keys(format!("{self}; what enters or moves here has come to {speed:.3e} m/s by then"));
+            let message = format!("{self}; what enters or moves here has come to {speed:.3e} m/s by then");
+            return Self::Scene(Box::new(document.problem(&key, message)));
+        }
+        if let (Some(flow), Some((key, speed))) = (self.flow_speed(setup.narrowest()), setup.fastest_body())
+            && speed > BODY_SHARE * flow
+        {
+            let message = format!("{self}; the surface of this body begins with {speed:.3e} m/s");
             return Self::Scene(Box::new(document.problem(&key, message)));
         }
         match self.key(setup) {
+            Some(key) if key == VIRTUAL_MASS => {
+                let message =
+                    format!("{self}; bodies lighter than the fluid need a virtual mass, or a larger one");
+                Self::Scene(Box::new(document.problem(&key, message)))
+            }
             Some(key) => {
                 let doubt = setup.unit_doubt(&key).map(|doubt| format!("; {doubt}")).unwrap_or_default();
-                Self::Scene(Box::new(document.problem(&key, in_keys(format!("{self}{doubt}")))))
+                Self::Scene(Box::new(document.problem(&key, format!("{self}{doubt}"))))
             }
             None => self,
         }
@@ -198,17 +228,11 @@ fn place(axis: usize, at: f64, problem: &PathProblem) -> String {
     }
 }
 
-/// Remedies in terms of a scene's keys for those in terms of the libraries.
-const REMEDIES: [(&str, &str); 3] = [
-    ("or use `Hfdib`", "or take coupling.forcing = \"hfdib\""),
-    ("a virtual mass (`Particles::with_virtual_mass`)", "coupling.virtual_mass"),
-    ("`SmoothForcing`", "coupling.forcing = \"smooth\""),
-];
-
-/// A message of the libraries in terms of a scene's keys.
-fn in_keys(message: String) -> String {
-    REMEDIES.iter().fold(message, |text, (library, key)| text.replace(library, key))
-}
+/// Key of the virtual mass.
+const VIRTUAL_MASS: &str = "coupling.virtual_mass";
+/// Share of the flow's speed from which on a body's own speed is its cause: momentum spreads, but does
+/// not grow.
+const BODY_SHARE: f64 = 0.3;
 
 /// The body that an error is about.
 fn body_of(error: &DemError) -> Option<BodyId> {
@@ -217,7 +241,10 @@ fn body_of(error: &DemError) -> Option<BodyId> {
         | DemError::Period { body, .. }
         | DemError::PassedThrough { body, .. }
         | DemError::Diverged { body, .. }
-        | DemError::TooFast { body, .. } => Some(*body),
+        | DemError::TooFast { body, .. }
+        | DemError::SubSteps { limit: SubStepLimit::Tether(body) | SubStepLimit::Material(body), .. } => {
+            Some(*body)
+        }
         DemError::OverlappingStart { a, b, .. } => Some(*a.max(b)),
         _ => None,
     }
@@ -233,12 +260,22 @@ impl Setup {
         }
         .into()
     }
+    /// Key of the body whose surface is fastest at the start, and its speed \[m/s\].
+    fn fastest_body(&self) -> Option<(String, f64)> {
+        let speed = |b: &BodySetup| {
+            let [linear, angular] =
+                [b.twist.linear.norm(), b.twist.angular.norm() * b.shape.bounding_radius()];
+            let key = if angular > linear { "spin" } else { "velocity" };
+            (format!("{}.{key}", b.origin), linear + angular)
+        };
+        self.bodies.list.iter().map(speed).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
     /// The key of what holds bodies that the fluid moves and that are lighter than it, or not much heavier by the paper's forcing, if there are such bodies.
     fn light(&self) -> Option<String> {
         let least = if self.bodies.forcing() == ForcingChoice::Hfdib { 3.0 } else { 1.0 };
         let light = |b: &BodySetup| {
             matches!(b.motion, Motion::Free(_)) && b.material.density < least * self.fluid().density
         };
-        self.bodies.list.iter().any(light).then(|| "coupling.virtual_mass".into())
+        self.bodies.list.iter().any(light).then(|| VIRTUAL_MASS.into())
     }
 }

@@ -2,6 +2,21 @@
 use crate::document::Place;
 use std::fmt;
 
+/// Words of a scene for those of the libraries.
+const IN_KEYS: [(&str, &str); 6] = [
+    ("or use `Hfdib`", "or take coupling.forcing = \"hfdib\""),
+    ("convection = upwind", "flow.convection = \"upwind\""),
+    ("axis 0", "axis x"),
+    ("axis 1", "axis y"),
+    ("axis 2", "axis z"),
+    ("`exits` of a scene, `dem::Population::with_exit`", "`exits`"),
+];
+
+/// A message of the libraries in words of a scene.
+fn in_keys(message: String) -> String {
+    IN_KEYS.iter().fold(message, |text, (library, key)| text.replace(library, key))
+}
+
 /// One thing that is wrong.
 #[derive(Clone, Debug)]
 pub(crate) struct Problem {
@@ -14,7 +29,7 @@ pub(crate) struct Problem {
 
 impl Problem {
     pub(crate) fn new(path: String, place: Place, message: impl Into<String>) -> Self {
-        Self { path, place, message: message.into() }
+        Self { path, place, message: in_keys(message.into()) }
     }
 }
 

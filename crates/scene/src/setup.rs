@@ -81,6 +81,12 @@ pub(crate) struct Setup {
     pub(crate) files: Vec<FileKey>,
 }
 
+/// Message about a file, with its name once.
+fn of_file(path: &Path, error: &dyn std::fmt::Display) -> String {
+    let (name, text) = (path.display().to_string(), error.to_string());
+    if text.starts_with(&name) { text } else { format!("{name}: {text}") }
+}
+
 /// Where the scene is being read.
 pub(crate) struct Context<'a> {
     /// Folder of the file: paths in it begin there.

@@ -3,7 +3,8 @@ use super::RigidBodies;
 use super::body::{Constants, Kind};
 use super::depth::Geometry;
 use crate::contact::{ContactLaw, LEAST_STEPS};
-use crate::{DemError, PairProperties};
+use crate::{DemError, PairProperties, SubStepLimit};
+use interfaces::BodyId;
 use std::f64::consts::PI;
 
 /// Sub-steps per half period of the stiffest contact foreseen.
@@ -83,7 +84,27 @@ impl<L: ContactLaw> RigidBodies<L> {
         let longest = self.longest_step();
         let steps = (dt / longest).ceil().max(1.0);
         // Not a number fails, too.
-        if steps <= MOST { Ok(steps) } else { Err(DemError::SubSteps { dt, longest }) }
+        if steps <= MOST { Ok(steps) } else { Err(DemError::SubSteps { limit: self.limit(), dt, longest }) }
+    }
+
+    /// Cause of the longest sub-step.
+    fn limit(&self) -> SubStepLimit {
+        let contact = PI / (LEAST_STEPS * self.stiffest.sqrt());
+        if TRAVEL / self.fastest < self.stable_dt.min(contact) {
+            return SubStepLimit::Speed;
+        } else if contact < self.stable_dt {
+            return SubStepLimit::Contact;
+        }
+        let least = |of: &dyn Fn(usize) -> f64| {
+            let bodies = (0..self.bodies.len()).map(|b| (b, of(b)));
+            bodies.min_by(|x, y| x.1.total_cmp(&y.1)).unwrap_or((0, f64::INFINITY))
+        };
+        let (tether, material) = (least(&|b| self.stable_dt_of_tether(b)), least(&|b| self.stable_dt_of(b)));
+        if tether.1 < material.1 {
+            SubStepLimit::Tether(BodyId(tether.0))
+        } else {
+            SubStepLimit::Material(BodyId(material.0))
+        }
     }
 
     /// The largest rate at which near bodies may come nearer to one another, by their inner radii \[1/s\].

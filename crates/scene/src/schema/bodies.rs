@@ -18,7 +18,7 @@ pub(super) static MATERIAL: Table = Table {
         ),
         optional(
             "poisson_ratio",
-            Kind::Number(Range::Within(-1.0, 0.5), "1"),
+            Kind::Number(Range::Above(-1.0, 0.5), "1"),
             "0.3",
             "Poisson's ratio.",
             "0.25",

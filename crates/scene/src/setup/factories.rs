@@ -1,7 +1,7 @@
 //! Many bodies at once.
 use super::bodies::{BodySetup, Materials, Motion, freedom};
 use super::shapes::PlacedShape;
-use super::{Context, is_open, shapes};
+use super::{Context, is_open, of_file, shapes};
 use crate::problem::Problem;
 use crate::reader::Reader;
 use dem::placing::{
@@ -315,7 +315,7 @@ impl Factory<'_> {
     fn table(&self) -> Result<Made, Problem> {
         let t = self.t;
         let path = self.context.path(t.text("file").unwrap_or_default());
-        let told = |e: &dyn std::fmt::Display| t.fail("file", format!("{}: {e}", path.display()));
+        let told = |e: &dyn std::fmt::Display| t.fail("file", of_file(&path, e));
         let file = std::fs::File::open(&path).map_err(|e| told(&e))?;
         let rows = read_bodies(std::io::BufReader::new(file)).map_err(|e| told(&e))?;
         let factors: Vec<f64> = rows.iter().map(|row| row.size.unwrap_or(1.0)).collect();

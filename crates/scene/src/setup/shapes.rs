@@ -1,5 +1,5 @@
 //! Shapes.
-use super::Context;
+use super::{Context, of_file};
 use crate::expression::Expression;
 use crate::problem::Problem;
 use crate::reader::Reader;
@@ -195,7 +195,7 @@ pub(super) fn shape(
             let path = context.path(t.text("file").unwrap_or_default());
             let unit = factor * t.number("unit").unwrap_or(1.0);
             let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-            let told = |e: &dyn std::fmt::Display| t.fail("file", format!("{}: {e}", path.display()));
+            let told = |e: &dyn std::fmt::Display| t.fail("file", of_file(&path, e));
             let repair = t.flag("repair").unwrap_or(false);
             let soup = match extension.as_deref() {
                 Some("stl") => TriangleSoup::from_stl(&path, unit),

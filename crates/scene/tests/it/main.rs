@@ -8,6 +8,7 @@ mod heat;
 mod ledger;
 mod many;
 mod mesh_files;
+mod messages;
 mod models;
 mod mutation;
 mod numbers;

@@ -182,7 +182,7 @@ end = 0.1
     let cases = [
         (disc(0.2, 0.5, 3.0), 13, "bodies.0: body 0 stands 2.200e0 m deep in wall 1"),
         (disc(0.2, 0.5, 0.5) + &disc(0.2, 0.6, 0.5), 17, "bodies.1: bodies 0 and 1 overlap by 3.000e-1 m"),
-        (disc(0.8, 0.5, 0.5), 13, "bodies.0: body 0 is 1.600e0 m long along axis 0"),
+        (disc(0.8, 0.5, 0.5), 13, "bodies.0: body 0 is 1.600e0 m long along axis x"),
         (disc(0.1, 0.5, 0.5), 13, "bodies.0: body 0 is 2.000e-1 m across, 3.2 cells"),
         (
             "[[factories]]\ntype = \"lattice\"\ndistance = 0.5\nshape = { type = \"disc\", radius = 0.01 }\ndensity = 2000.0\n".into(),
@@ -204,7 +204,7 @@ end = 0.1
         }
     }
     for (speed, end, line, message) in [
-        ("1.0", "wall", 5, "m³/s more out than in"),
+        ("1.0", "wall", 5, "m³/s more in than out"),
         ("\"sqrt(-y)\"", "outlet", 6, "sides.x_min.velocity: the formula \"sqrt(-y)\" is NaN at x = 0"),
     ] {
         for found in told(&inlet.replace('V', speed).replace('E', end)) {

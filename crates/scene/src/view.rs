@@ -324,6 +324,18 @@ where
     }
 }
 
+/// Writes in single precision, or in double precision values that it does not hold.
+fn in_single_or_double<'a, const D: usize>(
+    grid: &'a CartesianGrid<D>,
+    mut write: impl FnMut(CellWriter<'a, D>) -> Result<(), OutputError>,
+) -> Result<(), OutputError> {
+    match write(CellWriter::new(grid)) {
+        // Nothing has been written.
+        Err(OutputError::Range { .. }) => write(CellWriter::new(grid).double_precision()),
+        other => other,
+    }
+}
+
 impl<const D: usize, A: Flow<D>, P: Guests> View for Seen<'_, D, A, P> {
     fn axis(&self, a: usize) -> &Axis {
         self.flow.grid().axis(a)
@@ -398,28 +410,32 @@ impl<const D: usize, A: Flow<D>, P: Guests> View for Seen<'_, D, A, P> {
         self.flow.pressure_solver()
     }
     fn write_fields(&self, lambda: &[f64], mut out: &mut dyn Write) -> Result<(), OutputError> {
-        let writer = CellWriter::new(self.flow.grid())
-            .scalar("lambda", lambda.iter().copied())
-            .vector("velocity", std::array::from_fn(|c| self.flow.centred_velocity(c)))
-            .scalar("pressure", self.flow.pressure().values());
-        let others = self.flow.others();
-        others.into_iter().fold(writer, |w, other| w.scalar(other.name, other.values)).write(&mut out)
+        in_single_or_double(self.flow.grid(), |writer| {
+            let writer = writer
+                .scalar("lambda", lambda.iter().copied())
+                .vector("velocity", std::array::from_fn(|c| self.flow.centred_velocity(c)))
+                .scalar("pressure", self.flow.pressure().values());
+            let others = self.flow.others();
+            others.into_iter().fold(writer, |w, other| w.scalar(other.name, other.values)).write(&mut out)
+        })
     }
     fn write_named(
         &self,
         fields: &[(&str, Vec<&[f64]>)],
         mut out: &mut dyn Write,
     ) -> Result<(), OutputError> {
-        let mut writer = CellWriter::new(self.flow.grid());
-        for (name, components) in fields {
-            writer = match components.as_slice() {
-                [one] => writer.scalar(name, one.iter().copied()),
-                many => {
-                    writer.vector(name, std::array::from_fn(|c| many[c.min(many.len() - 1)].iter().copied()))
-                }
-            };
-        }
-        writer.write(&mut out)
+        in_single_or_double(self.flow.grid(), |mut writer| {
+            for (name, components) in fields {
+                writer = match components.as_slice() {
+                    [one] => writer.scalar(name, one.iter().copied()),
+                    many => {
+                        let component = |c: usize| many[c.min(many.len() - 1)].iter().copied();
+                        writer.vector(name, std::array::from_fn(component))
+                    }
+                };
+            }
+            writer.write(&mut out)
+        })
     }
     fn extension(&self) -> &'static str {
         CellWriter::new(self.flow.grid()).extension()

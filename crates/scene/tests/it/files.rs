@@ -121,3 +121,15 @@ fn a_run_that_was_stopped_is_told_in_the_table() {
         );
     }
 }
+
+/// Fields beyond single precision are written in double precision.
+#[test]
+fn large_values_are_written_in_double_precision() {
+    let text = std::fs::read_to_string(root().join("scenes/cavity.toml")).unwrap();
+    let out = folder("large");
+    let more = ["fluid.density=1e45", "grid.cells=[8, 8]", "time.end=1.0", "output.images=false"];
+    run(&text, &more, &quiet(&out));
+    let file = std::fs::read(out.join("fields/00001.vti")).unwrap();
+    assert!(String::from_utf8_lossy(&file).contains("Float64"));
+    std::fs::remove_dir_all(&out).unwrap();
+}

@@ -134,6 +134,7 @@ fn picture<L: Law>(
         let layer = Layer {
             values: &values,
             solid: Some(&solid),
+            bodies: &[],
             solids_alone: false,
             limits: [0.0, most],
             label,
@@ -144,7 +145,7 @@ fn picture<L: Law>(
             &mut Sheet::default(),
             Path::new(&path),
             &layer,
-            "Swinging cylinder, SST, Re 10 000, KC 5",
+            ["Swinging cylinder, SST, Re 10 000, KC 5", ""],
         )?;
     }
     Ok(())

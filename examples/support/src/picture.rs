@@ -10,6 +10,7 @@ mod canvas;
 mod colour;
 pub mod comparison;
 pub mod gallery;
+mod outlines;
 pub mod plot;
 pub mod profiles;
 pub mod section;

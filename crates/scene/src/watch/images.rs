@@ -3,8 +3,9 @@ use super::{Solids, Taken, Watch, output};
 use crate::setup::{Algorithm, Images, Quantity, Setup};
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
-use example_support::picture::section::{Layer, Section, Sheet};
-use interfaces::{Checkpoint, RestartError};
+use example_support::picture::section::{BodySection, Layer, Section, Sheet};
+use fv_mesh::Axis;
+use interfaces::{BodyId, Checkpoint, Pose, RestartError};
 use std::path::{Path, PathBuf};
 
 /// Draws `images/NNNNN.png` at snapshots.
@@ -45,7 +46,7 @@ impl ImagesWatch {
     fn vorticity(view: &dyn View, [a, b]: [usize; 2], u: &[f64], v: &[f64]) -> Vec<f64> {
         let (x, y) = (view.axis(a), view.axis(b));
         let (nx, ny) = (x.cells(), y.cells());
-        let slope = |axis: &fv_mesh::Axis, i: usize, n: usize, periodic: bool, at: &dyn Fn(usize) -> f64| {
+        let slope = |axis: &Axis, i: usize, n: usize, periodic: bool, at: &dyn Fn(usize) -> f64| {
             if periodic && n > 2 && axis.is_uniform() {
                 let (before, after) = ((i + n - 1) % n, (i + 1) % n);
                 return (at(after) - at(before)) / (2.0 * axis.mean_width());
@@ -84,6 +85,50 @@ pub(super) fn section_of<'a>(view: &'a dyn View, images: &Images) -> Section<'a>
         &axis.faces()[cells.start..=cells.end]
     };
     Section { across: faces(0), up: faces(1), names: images.axes.map(|a| ["x", "y", "z"][a]) }
+}
+
+/// The bodies, and their periodic images, that reach the plane of the slice.
+fn bodies_in<'a>(view: &'a dyn View, images: &Images) -> Vec<BodySection<'a>> {
+    let (bodies, dim) = (view.bodies(), view.dim());
+    let mut plane = [0.0; 3];
+    if let Some((normal, layer)) = images.slice {
+        plane[normal] = view.axis(normal).centre(layer);
+    }
+    // The box on each axis: along the normal it is the plane alone.
+    let room = |a: usize| match images.slice {
+        Some((normal, _)) if normal == a => [plane[a]; 2],
+        _ => [view.axis(a).lower(), view.axis(a).upper()],
+    };
+    let mut out = Vec::new();
+    for b in (0..bodies.n_bodies()).map(BodyId) {
+        let (solid, mut pose) = (bodies.solid(b), bodies.pose(b));
+        let repeats = |a: usize| a < dim && view.periodic(a);
+        let length = |a: usize| view.axis(a).length();
+        for a in (0..dim).filter(|&a| repeats(a)) {
+            let lower = view.axis(a).lower();
+            pose.position[a] = lower + (pose.position[a] - lower).rem_euclid(length(a));
+        }
+        let bounds = solid.aabb().posed(&pose);
+        let shifts = |a: usize| -> Vec<f64> {
+            if a >= dim {
+                return vec![0.0];
+            }
+            let [low, high] = room(a);
+            let images: &[f64] = if repeats(a) { &[-1.0, 0.0, 1.0] } else { &[0.0] };
+            let shifted = images.iter().map(|image| image * length(a));
+            shifted.filter(|d| bounds.min[a] + d <= high && bounds.max[a] + d >= low).collect()
+        };
+        let [xs, ys, zs] = [0, 1, 2].map(shifts);
+        for (&x, &y) in xs.iter().flat_map(|x| ys.iter().map(move |y| (x, y))) {
+            let place = |&z: &f64| Pose {
+                position: pose.position + interfaces::Vector::new(x, y, z),
+                orientation: pose.orientation,
+            };
+            let section = |pose| BodySection { solid, pose, axes: images.axes, plane };
+            out.extend(zs.iter().map(place).map(section));
+        }
+    }
+    out
 }
 
 impl Checkpoint for ImagesWatch {
@@ -173,21 +218,22 @@ impl Watch for ImagesWatch {
             Quantity::Vorticity => "vorticity in 1/s",
         };
         let section = section_of(view, &self.images);
-        let solids = view.bodies().n_bodies() > 0;
+        let sections = bodies_in(view, &self.images);
         let layer = Layer {
             values: &self.values,
-            solid: solids.then_some(&self.solid),
+            solid: None,
+            bodies: &sections,
             solids_alone: self.alone,
             limits,
             label,
             signed,
         };
         let path = self.folder.join(format!("{index:05}.png"));
-        let title = match self.steady {
-            true => format!("{}   after {} iterations", self.title, info.step),
-            false => format!("{}   t = {:.4} s", self.title, info.time),
+        let state = match self.steady {
+            true => format!("after {} iterations", info.step),
+            false => format!("t = {:.4} s", info.time),
         };
-        section.draw(&mut self.sheet, &path, &layer, &title).map_err(output("drawing", &path))
+        section.draw(&mut self.sheet, &path, &layer, [&self.title, &state]).map_err(output("drawing", &path))
     }
 }
 

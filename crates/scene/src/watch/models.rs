@@ -122,10 +122,12 @@ impl ModelsWatch {
             [("run", &truth, &truth), ("model", &predicted, &truth), ("off", &off, &off)]
         {
             let limits = ends(of);
-            let layer = Layer { values, solid: None, solids_alone: false, limits, label, signed: false };
+            let layer =
+                Layer { values, solid: None, bodies: &[], solids_alone: false, limits, label, signed: false };
             let path = self.folder.join(format!("{}_{what}.png", model.setup.name));
-            let title = format!("{}, {what}   t = {:.4} s", model.setup.name, story.time);
-            section.draw(&mut sheet, &path, &layer, &title).map_err(output("drawing", &path))?;
+            let title = [format!("{}, {what}", model.setup.name), format!("t = {:.4} s", story.time)];
+            let title = title.each_ref().map(String::as_str);
+            section.draw(&mut sheet, &path, &layer, title).map_err(output("drawing", &path))?;
         }
         Ok(())
     }

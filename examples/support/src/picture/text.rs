@@ -94,3 +94,40 @@ fn each_glyph(size: f64, text: &str, mut visit: impl FnMut(GlyphId, f64)) -> f64
 pub(crate) fn width(size: f64, text: &str) -> f64 {
     each_glyph(size, text, |_, _| {})
 }
+
+/// `text` in lines of at most `room` pixels, broken between words; a longer word is broken anywhere.
+pub(crate) fn wrapped(size: f64, text: &str, room: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        if let Some(last) = lines.last_mut()
+            && width(size, &format!("{last} {word}")) <= room
+        {
+            *last += &format!(" {word}");
+            continue;
+        }
+        let mut line = String::new();
+        for letter in word.chars() {
+            if !line.is_empty() && width(size, &format!("{line}{letter}")) > room {
+                lines.push(std::mem::take(&mut line));
+            }
+            line.push(letter);
+        }
+        lines.push(line);
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_broken_to_fit() {
+        let room = width(16.0, "settling in");
+        assert_eq!(wrapped(16.0, "settling in water", room), ["settling in", "water"]);
+        assert_eq!(wrapped(16.0, "", room), [""; 0]);
+        let broken = wrapped(16.0, "a rock_in_a_channel", room);
+        assert!(broken.len() > 2 && broken.iter().all(|line| width(16.0, line) <= room), "{broken:?}");
+        assert_eq!(broken.concat(), "arock_in_a_channel");
+    }
+}

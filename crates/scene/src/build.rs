@@ -1,4 +1,5 @@
 //! From a setup to what the libraries run.
+use crate::available_memory::AvailableMemory;
 use crate::build_error::BuildError;
 use crate::cast::{Cast, Script};
 use crate::physics::{Physics, Segregated};
@@ -16,14 +17,6 @@ use interfaces::{BodyId, Freedom, Kinematics, Periods, Point, ThinPart, Twist};
 /// A number of which one digit counts.
 fn about(x: f64) -> String {
     if x < 10.0 { format!("{x:.1}") } else { format!("{x:.0}") }
-}
-
-/// Memory that may be had \[bytes\]; `None` where the system does not tell.
-fn free_memory() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    let kilobytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(1024.0 * kilobytes)
 }
 
 /// The image in the box of a place: bodies keep on counting beyond periodic sides.
@@ -98,8 +91,10 @@ impl Setup {
     /// Is there room for the grid?
     pub(crate) fn check_memory(&self) -> Result<(), BuildError> {
         let (cells, needed) = (self.cells() as f64, self.memory());
-        match free_memory() {
-            Some(free) if needed > free => Err(BuildError::Memory { cells, needed, free }),
+        match AvailableMemory::now() {
+            Some(AvailableMemory { bytes: free, limit }) if needed > free => {
+                Err(BuildError::Memory { cells, needed, free, limit })
+            }
             _ => Ok(()),
         }
     }

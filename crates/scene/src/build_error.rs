@@ -37,7 +37,7 @@ pub enum BuildError {
     #[error(transparent)]
     Run(Box<crate::RunError>),
     /// The grid is too large for this machine.
-    #[error("{cells:.2e} cells need about {:.1} GB of memory, and {:.1} GB are free; take fewer cells", needed / 1e9, free / 1e9)]
+    #[error("{cells:.2e} cells need about {:.1} GB of memory, and {:.1} GB are left of the {limit}; take fewer cells", needed / 1e9, free / 1e9)]
     Memory {
         /// Cells of the grid.
         cells: f64,
@@ -45,6 +45,8 @@ pub enum BuildError {
         needed: f64,
         /// What is there \[bytes\].
         free: f64,
+        /// The limit that leaves the least.
+        limit: &'static str,
     },
     /// A reference to what the results do not have.
     #[error("the results have no number at {pointer}: {found}; give the pointer of a number in result.json")]

@@ -31,6 +31,7 @@
 #![deny(missing_docs)]
 
 mod assembly;
+mod available_memory;
 mod build;
 mod build_error;
 mod cast;
@@ -43,6 +44,7 @@ mod identity;
 mod log;
 mod look;
 mod options;
+mod pace;
 mod physics;
 mod plan;
 mod problem;

@@ -19,9 +19,9 @@ pub struct Plan {
     pub bodies: usize,
     /// Memory for fields and solvers, roughly \[bytes\].
     pub memory: f64,
-    /// The first full step \[s\]; none for steady flow.
+    /// Mean length of a step \[s\]; none for steady flow.
     pub dt: Option<f64>,
-    /// Steps of that length to the end, or iterations allowed.
+    /// Steps to the end, or iterations allowed.
     pub steps: f64,
     /// CPU time, roughly \[s\].
     pub cpu: f64,
@@ -63,7 +63,7 @@ impl Setup {
     /// Findings about a scene that is too large to be tried: those of as few of its narrowest cells.
     fn untried<const D: usize>(&self) -> Result<Tried, BuildError> {
         let pressure = "chosen at the start of the run: the scene is too large to be tried by a check";
-        let dt = match self.flow.algorithm {
+        let longest = match self.flow.algorithm {
             _ if self.fluid.is_none() => Some(self.cast(self.chen())?.stable_dt()),
             Algorithm::Simple => None,
             Algorithm::Piso => Some(f64::INFINITY),
@@ -79,7 +79,9 @@ impl Setup {
                 Some(flow.stable_dt(self.courant))
             }
         };
-        Ok(Tried { dt, pressure: pressure.into(), thin: Vec::new(), step: None })
+        let initial = self.initial_speed() / self.narrowest();
+        let limits = longest.map(|longest| [longest, initial]);
+        Ok(Tried { limits, pressure: pressure.into(), thin: Vec::new(), step: None })
     }
 
     fn plan_in<const D: usize>(&self) -> Result<Plan, BuildError> {
@@ -102,21 +104,15 @@ impl Setup {
         }
         self.check_paths()?;
         let large = self.memory() > LARGE || self.bodies.list.len() > MANY_BODIES;
-        let Tried { dt, pressure, thin, step } = match large {
+        let Tried { limits, pressure, thin, step } = match large {
             true => self.untried::<D>()?,
             false => {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(RunError::from);
                 pool.and_then(|pool| pool.install(|| self.execute(&Trial::new(self))))?
             }
         };
-        let speed = self.speed();
-        let rate: f64 = self.axes.iter().map(|axis| speed / axis.narrowest()).sum();
-        let convective = if rate > 0.0 && self.fluid.is_some() { self.courant / rate } else { f64::INFINITY };
-        let dt = dt.map(|stable| self.dt.unwrap_or(stable.min(convective)).min(self.end));
-        let steps = match dt {
-            Some(dt) => (self.end / dt).ceil(),
-            None => self.flow.iterations as f64,
-        };
+        let pace = limits.map(|[longest, rate]| self.expected_steps(longest, rate));
+        let (dt, steps) = (pace.map(|p| p.dt), pace.map_or(self.flow.iterations as f64, |p| p.steps));
         let h = self.narrowest();
         let markers: f64 = if moved { self.bodies.list.iter().map(|b| surface(b, h, D)).sum() } else { 0.0 };
         let model = self.turbulence.as_ref().map_or(0.0, |t| COST_OF_MODEL[usize::from(t.model.averages())]);

@@ -32,7 +32,7 @@ fn norm(u: [f64; 3]) -> f64 {
 }
 
 /// What enters at `at` \[m\] by this side at `time` \[s\], or how fast its wall moves \[m/s\].
-fn speed_at(side: &Side, at: [f64; 3], time: f64) -> f64 {
+pub(crate) fn speed_at(side: &Side, at: [f64; 3], time: f64) -> f64 {
     match side {
         Side::Wall(u) | Side::Inlet(Profile::Uniform(u)) => norm(*u),
         Side::MovingWall(u) => norm(u.at(at, time)),
@@ -64,7 +64,7 @@ impl Setup {
         (0..=INSTANTS).map(|i| self.end * f64::from(i) / f64::from(INSTANTS))
     }
     /// Every side of the box: key, what happens there, its middle \[m\].
-    fn faces(&self) -> impl Iterator<Item = (String, &Side, [f64; 3])> {
+    pub(crate) fn faces(&self) -> impl Iterator<Item = (String, &Side, [f64; 3])> {
         let middle = |a: usize| self.axes.get(a).map_or(0.0, |axis| 0.5 * (axis.lower() + axis.upper()));
         self.sides.iter().enumerate().flat_map(move |(a, pair)| {
             let ends = [self.axes[a].lower(), self.axes[a].upper()];
@@ -90,10 +90,7 @@ impl Setup {
             self.instants().map(|t| speed_at(side, at, t)).fold(0.0, f64::max)
         };
         let sides = self.faces().map(of_side).fold(0.0, f64::max);
-        let middle: Vec<f64> = (0..3)
-            .map(|a| self.axes.get(a).map_or(0.0, |axis| 0.5 * (axis.lower() + axis.upper())))
-            .collect();
-        let initial = self.initial.as_ref().map_or(0.0, |u| norm(u.each_ref().map(|u| u.at(&middle))));
+        let initial = self.initial_speed();
         let bodies = self.bodies.list.iter().map(|b| {
             let radius = b.shape.bounding_radius();
             let ratio = (b.material.density / self.fluid().density - 1.0).abs();
@@ -106,9 +103,17 @@ impl Setup {
                 self.instants().map(|t| surface.speed(&b.shape, t)).fold(0.0, f64::max)
             };
             let slides = b.surface.as_ref().map_or(0.0, slides);
-            fall.max(slides).max(b.twist.linear.norm() + b.twist.angular.norm() * radius)
+            let prescribed = self.instants().map(|t| self.prescribed_speed(b, t)).fold(0.0, f64::max);
+            fall.max(slides).max(prescribed).max(b.twist.linear.norm() + b.twist.angular.norm() * radius)
         });
         sides.max(initial).max(bodies.fold(0.0, f64::max))
+    }
+
+    /// Speed \[m/s\] at the start in the middle of the box.
+    pub(crate) fn initial_speed(&self) -> f64 {
+        let middle =
+            [0, 1, 2].map(|a| self.axes.get(a).map_or(0.0, |axis| 0.5 * (axis.lower() + axis.upper())));
+        self.initial.as_ref().map_or(0.0, |u| norm(u.each_ref().map(|u| u.at(&middle))))
     }
 
     /// Net weight of the bodies over the weight of all fluid, where the fluid has to bear it.
@@ -325,7 +330,7 @@ impl Setup {
     }
 
     /// Is this body all inside the box? Those that reach beyond it are its walls.
-    fn holds(&self, b: &BodySetup) -> bool {
+    pub(crate) fn holds(&self, b: &BodySetup) -> bool {
         let bounds = b.shape.aabb().posed(&b.pose);
         let inside =
             |(a, axis): (usize, &Axis)| bounds.min[a] >= axis.lower() && bounds.max[a] <= axis.upper();

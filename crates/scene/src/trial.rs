@@ -24,8 +24,9 @@ pub(crate) struct Trial<'a> {
 
 /// Findings of a trial.
 pub(crate) struct Tried {
-    /// Longest stable step of the start \[s\]; none for a steady flow.
-    pub(crate) dt: Option<f64>,
+    /// Longest step \[s\] that is stable however slow the flow is, and Courant number per time \[1/s\] at
+    /// the start; none for a steady flow.
+    pub(crate) limits: Option<[f64; 2]>,
     /// Pressure solver, and why it is taken.
     pub(crate) pressure: String,
     /// Parts of bodies that are too thin for the grid.
@@ -99,7 +100,7 @@ impl Execution for Trial<'_> {
     fn march<S: Show, K: Books<S>>(&self, mut simulation: S, _: K) -> Result<Tried, RunError> {
         let setup = self.setup;
         let schedule = setup.schedule(&simulation);
-        let dt = simulation.stable_dt(setup.courant).min(setup.end);
+        let limits = [simulation.longest_dt(), simulation.courant(1.0)];
         let stop = AtomicBool::new(false);
         let mut first = FirstSteps::new(&stop);
         coupling::run(&mut simulation, &schedule, &mut first, &stop)?;
@@ -108,7 +109,7 @@ impl Execution for Trial<'_> {
         self.check_references(&mut view)?;
         let pressure = view.pressure_solver();
         drop(view);
-        Ok(Tried { dt: Some(dt), pressure, thin: self.thin.take(), step })
+        Ok(Tried { limits: Some(limits), pressure, thin: self.thin.take(), step })
     }
 
     fn converge<const D: usize>(&self, mut steady: Steady<D>) -> Result<Tried, RunError> {
@@ -124,7 +125,7 @@ impl Execution for Trial<'_> {
         let still = Still(self.setup.still());
         let mut view = Seen { flow: &mut steady, guests: &still, timings: coupling::Timings::default() };
         self.check_references(&mut view)?;
-        Ok(Tried { dt: None, pressure: view.pressure_solver(), thin, step: first.shortest })
+        Ok(Tried { limits: None, pressure: view.pressure_solver(), thin, step: first.shortest })
     }
 
     fn thin(&self, parts: Vec<ThinPart>) {

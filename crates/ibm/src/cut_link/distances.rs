@@ -214,3 +214,29 @@ impl Distances {
         self.at(node).filter(|near| near.distance <= 0.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Balls;
+    use std::time::{Duration, Instant};
+
+    /// One cell as wide as a million periods of the other axis: only the nearest images of a body matter.
+    #[test]
+    fn wide_cells_need_no_far_images() {
+        let ticks =
+            [Nodes::uniform(0.0, 1e6, 4, false), Nodes::uniform(0.0, 0.1, 8, true)].map(|n| Ticks::nodes(&n));
+        let [x, y] = ticks;
+        let bodies = Balls::new(2, 0.2, vec![[1.0, 0.33, 0.0]]);
+        let start = Instant::now();
+        let z = Ticks { places: vec![0.0], period: None };
+        let distances = Distances::new([x, y, z], 2, &bodies);
+        assert!(start.elapsed() < Duration::from_millis(200), "{:?}", start.elapsed());
+        for j in 0..8 {
+            let way = (0.1 * j as f64 - 0.33 + 0.4_f64).rem_euclid(0.8) - 0.4;
+            let found = distances.at([0, j, 0]).map(|near| near.distance);
+            let expected = 1.0_f64.hypot(way) - 0.2;
+            assert!(found.is_some_and(|d| (d - expected).abs() < 1e-12), "{j}: {found:?} {expected}");
+        }
+    }
+}

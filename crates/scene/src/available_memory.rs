@@ -121,7 +121,8 @@ mod tests {
             ("sys/fs/cgroup/memory/memory.limit_in_bytes", "2000000000\n"),
             ("sys/fs/cgroup/memory/memory.usage_in_bytes", "500000000\n"),
         ];
-        let cases: [(&str, &[(&str, &str)], f64, &str); 5] = [
+        type Files<'a> = &'a [(&'a str, &'a str)];
+        let cases: [(&str, Files<'_>, f64, &str); 5] = [
             ("free", &[("proc/self/limits", UNLIMITED)], 8.192e9, "system"),
             ("address", &[("proc/self/limits", "Max address space  102048000 unlimited bytes\n")], 1e8, "-v"),
             ("data", &[("proc/self/limits", "Max data size  101024000 unlimited bytes\n")], 1e8, "-d"),

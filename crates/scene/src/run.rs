@@ -218,6 +218,7 @@ impl Stage<'_> {
         Ok(())
     }
 
+    /// Error of a state that does not fit.
     pub(crate) fn not_resumed(&self, error: RestartError) -> RunError {
         match error {
             RestartError::Differs(_) => RunError::OtherScene(self.folder().join(STATE)),
@@ -328,8 +329,6 @@ impl Execution for Stage<'_> {
             RunResult::new(setup, &mut seen, &extremes, books.report(), &audience, ending, self.folder());
         Ok(result.with_timings(watch.elapsed(), self.options.threads, seconds, &seen).write()?)
     }
-
-    /// The error of a state that does not fit.
 
     fn converge<const D: usize>(&self, steady: Steady<D>) -> Result<RunResult, RunError> {
         self.steady(steady)

@@ -1,5 +1,5 @@
 //! Errors of the first steps, found by a check.
-use crate::{folder, problems, quiet};
+use crate::{folder, problems, quiet, root};
 use scene::Scene;
 use std::sync::atomic::AtomicBool;
 
@@ -96,4 +96,22 @@ fn a_large_scene_is_not_tried() {
     assert!(plan.memory > 5e8 && plan.pressure.contains("too large to be tried"), "{plan}");
     // Explicit or not, the step is that of a grid with as narrow cells.
     assert!(plan.dt.is_some_and(|dt| dt > 0.0));
+}
+
+/// Estimated steps are within 1.5 of those made: decaying vortices, a lid, a cylinder that swings and
+/// bodies that fall.
+#[test]
+fn as_many_steps_are_made_as_estimated() {
+    for (name, end) in
+        [("taylor_green", 5.0), ("cylinder", 1.0), ("oscillating_cylinder", 1.5), ("two_discs", 0.6)]
+    {
+        let path = root().join(format!("scenes/{name}.toml"));
+        let more = [format!("time.end={end}"), "output.images=false".into(), "output.fields=false".into()];
+        let scene = Scene::load(&path, &more).unwrap_or_else(|e| panic!("{e}"));
+        let out = folder("steps-estimated");
+        let made = scene.run(&quiet(&out), &AtomicBool::new(false)).unwrap().result["steps"].as_f64();
+        let _ = std::fs::remove_dir_all(&out);
+        let ratio = scene.plan().unwrap().steps / made.unwrap();
+        assert!((1.0 / 1.5..=1.5).contains(&ratio), "{name}: {ratio}");
+    }
 }

@@ -1,5 +1,5 @@
 //! Motion of bodies given as functions of time.
-use interfaces::{Point, Rotation, Twist, Vector};
+use interfaces::{Point, Pose, Rotation, Twist, Vector};
 use nalgebra::Unit;
 use std::fmt;
 use std::sync::Arc;
@@ -29,6 +29,9 @@ use std::sync::Arc;
 /// }
 /// let (angle, x) = (swing(1.0), bodies.pose(flap).position);
 /// assert!((x.x + 0.1 * angle.sin()).abs() < 1e-12 && (x.y - 0.1 * angle.cos()).abs() < 1e-12);
+/// let expected = motion.pose(&pose, 1.0);
+/// assert!((expected.position - x).norm() < 1e-12);
+/// assert!(expected.orientation.angle_to(&bodies.pose(flap).orientation) < 1e-12);
 /// # Ok::<(), dem::DemError>(())
 /// ```
 #[derive(Clone, Default)]
@@ -80,6 +83,15 @@ impl PrescribedMotion {
         }
         let turn = Rotation::from_scaled_axis(self.angle(t) - self.angle(0.0));
         shift + (turn * self.arm - self.arm)
+    }
+
+    /// Pose at `t` \[s\] of a body that is at `start` when t = 0.
+    pub fn pose(&self, start: &Pose, t: f64) -> Pose {
+        let turn = Rotation::from_scaled_axis(self.angle(t) - self.angle(0.0));
+        Pose {
+            position: start.position + self.displacement(t) - self.displacement(0.0),
+            orientation: turn * start.orientation,
+        }
     }
 
     /// Mean velocity from `t` to `t + dt` \[s\]: with it a body is at the end where the functions

@@ -70,7 +70,7 @@ pub enum FlowError {
     #[error(
         "the velocity diverged in {}, first or most in cell {cell:?}; {}",
         step_text(*step, *time, *dt, Some(*courant)),
-        if *dt > 0.0 { "take a smaller time step" } else { "check that the sides determine the flow, or take a finer grid or convection = upwind" }
+        if *dt > 0.0 { "take a smaller time step" } else { "check that the sides determine the flow, or take a finer grid or upwind convection" }
     )]
     Diverged {
         /// Step number.

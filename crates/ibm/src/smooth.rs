@@ -13,7 +13,7 @@ use crate::solid_fraction::check;
 use crate::{Forcing, IbmError, Kernel, Layer, SolidFraction, SolidNode, ViscousStep};
 use clearance::Clearance;
 use interfaces::{
-    Bodies, BodyId, Kinematics, Point, Pose, Renumbering, Twist, Vector, VelocityField, Wrench,
+    Aabb, Bodies, BodyId, Kinematics, Lattice, Point, Pose, Renumbering, Twist, Vector, VelocityField, Wrench,
 };
 use markers::Markers;
 
@@ -109,6 +109,53 @@ impl SmoothForcing {
         self.kernel.unwrap_or_else(|| Kernel::suited(dim))
     }
 
+    /// Least and largest distance \[m\] of nodes along an axis that the markers of a body within `bounds`
+    /// reach, on the lattices of the velocity's components; whether they are equal, as they have to be.
+    pub fn spacings<'a>(
+        &self,
+        lattices: impl Iterator<Item = &'a Lattice> + Clone,
+        axis: usize,
+        bounds: &Aabb,
+    ) -> ([f64; 2], bool) {
+        let kernel = self.kernel(lattices.clone().count());
+        let (from, to) = (bounds.min[axis], bounds.max[axis]);
+        let [least, most] = lattices.fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], lattice| {
+            let nodes = &lattice.axes[axis];
+            let [_, here] = nodes.spacings(from, to);
+            let reach = kernel.reach() * here;
+            let [low, high] = nodes.spacings(from - reach, to + reach);
+            [least.min(low), most.max(high)]
+        });
+        ([least, most], most - least <= UNEQUAL * most)
+    }
+
+    /// Volume of the cells that the markers of a body reach, which must all be equal.
+    fn uniform_cell(
+        &self,
+        velocity: &dyn VelocityField,
+        bodies: &dyn Bodies,
+        body: BodyId,
+    ) -> Result<f64, IbmError> {
+        let bounds = bodies.aabb(body);
+        let lattices = (0..velocity.dim()).map(|c| velocity.lattice(c));
+        let mut cell = 1.0;
+        for axis in 0..velocity.dim() {
+            let ([least, most], equal) = self.spacings(lattices.clone(), axis, &bounds);
+            if !equal {
+                return Err(IbmError::Stretched { body, axis, least, most });
+            }
+            let narrowest = lattices.clone().map(|lattice| {
+                let nodes = &lattice.axes[axis];
+                nodes.spacings(nodes.place(0), nodes.place(nodes.len() as isize - 1))[0]
+            });
+            let narrowest = narrowest.fold(f64::INFINITY, f64::min);
+            // The narrowest cells give the same number wherever the body is, to the last bit: a run that
+            // goes on makes the same markers.
+            cell *= if least - narrowest <= UNEQUAL * narrowest { narrowest } else { least };
+        }
+        Ok(cell)
+    }
+
     fn place_body(
         &mut self,
         velocity: &dyn VelocityField,
@@ -117,7 +164,7 @@ impl SmoothForcing {
     ) -> Result<(), IbmError> {
         let dim = velocity.dim();
         let kernel = self.kernel(dim);
-        let cell = uniform_cell(velocity, kernel, bodies, b)?;
+        let cell = self.uniform_cell(velocity, bodies, b)?;
         let h = cell.powf(1.0 / dim as f64);
         let markers = &mut self.bodies[b.0];
         let pose = bodies.pose(b);
@@ -217,36 +264,6 @@ fn middle(velocity: &dyn VelocityField) -> Pose {
 
 /// Distances of nodes that differ by no more than this are equal.
 const UNEQUAL: f64 = 1e-6;
-
-/// Volume of the cells that the markers of body `b` reach, which must all be equal.
-fn uniform_cell(
-    velocity: &dyn VelocityField,
-    kernel: Kernel,
-    bodies: &dyn Bodies,
-    body: BodyId,
-) -> Result<f64, IbmError> {
-    let bounds = bodies.aabb(body);
-    let mut cell = 1.0;
-    for axis in 0..velocity.dim() {
-        let [mut least, mut most] = [f64::INFINITY, 0.0_f64];
-        let mut narrowest = f64::INFINITY;
-        for c in 0..velocity.dim() {
-            let nodes = &velocity.lattice(c).axes[axis];
-            let [_, here] = nodes.spacings(bounds.min[axis], bounds.max[axis]);
-            let reach = kernel.reach() * here;
-            let [low, high] = nodes.spacings(bounds.min[axis] - reach, bounds.max[axis] + reach);
-            (least, most) = (least.min(low), most.max(high));
-            narrowest =
-                narrowest.min(nodes.spacings(nodes.place(0), nodes.place(nodes.len() as isize - 1))[0]);
-        }
-        if most - least > UNEQUAL * most {
-            return Err(IbmError::Stretched { body, axis, least, most });
-        }
-        // Where the narrowest cells are it is the same number wherever the body is, to the last bit: a run that goes on makes the same markers.
-        cell *= if least - narrowest <= UNEQUAL * narrowest { narrowest } else { least };
-    }
-    Ok(cell)
-}
 
 /// Cells from marker to marker in space. On a moving sphere the drag is the same to 1e-4 as with markers a cell apart, its noise
 /// stays below 0.2 %, and there are two thirds as many of them.

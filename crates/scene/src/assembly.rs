@@ -12,7 +12,7 @@ use coupling::{
 };
 use dem::{ContactLaw, Population, Rolling};
 use ibm::Forcing;
-use interfaces::{Checkpoint, ThinPart};
+use interfaces::Checkpoint;
 
 /// Use of an assembled simulation: a whole run, or its first steps.
 pub(crate) trait Execution {
@@ -24,9 +24,6 @@ pub(crate) trait Execution {
 
     /// Iterates to a steady state.
     fn converge<const D: usize>(&self, steady: Steady<D>) -> Result<Self::Output, RunError>;
-
-    /// Takes note of parts of bodies that are too thin for the grid.
-    fn thin(&self, _parts: Vec<ThinPart>) {}
 }
 
 impl Setup {
@@ -71,8 +68,7 @@ impl Setup {
             Algorithm::Projection => {}
         }
         if !self.is_forced() {
-            let (flow, still, thin) = self.walled::<D>()?;
-            execution.thin(thin);
+            let (flow, still) = self.walled::<D>()?;
             return execution.march(self.simulation(flow, still)?, ());
         }
         match self.bodies.forcing() {

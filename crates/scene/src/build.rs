@@ -12,7 +12,7 @@ use fv_mesh::{
     Axis, CartesianGrid, Convection, Diffusion, FlowError, Piso, PisoParams, Projection, Side, TimeScheme,
 };
 use ibm::{Hfdib, IbmError, SmoothFilm, SmoothForcing, cut_walls};
-use interfaces::{BodyId, Freedom, Kinematics, Periods, Point, ThinPart, Twist};
+use interfaces::{BodyId, Freedom, Kinematics, Periods, Point, Twist};
 
 /// A number of which one digit counts.
 fn about(x: f64) -> String {
@@ -147,16 +147,15 @@ impl Setup {
     }
 
     /// The projection algorithm with bodies at rest as walls.
-    pub(crate) fn walled<const D: usize>(&self) -> Result<(Physics<D>, Still, Vec<ThinPart>), BuildError> {
+    pub(crate) fn walled<const D: usize>(&self) -> Result<(Physics<D>, Still), BuildError> {
         let mut flow = self.projection()?;
-        let still = self.still();
-        let mut thin = Vec::new();
-        if still.n_bodies() > 0 {
-            let walls = cut_walls(flow.velocity(), &still)?;
-            thin.clone_from(&walls.thin);
+        let mut still = Still { bodies: self.still(), thin: Vec::new() };
+        if still.bodies.n_bodies() > 0 {
+            let walls = cut_walls(flow.velocity(), &still.bodies)?;
+            still.thin.clone_from(&walls.thin);
             flow.set_walls(Some(walls))?;
         }
-        Ok((self.physics(flow)?, Still(still), thin))
+        Ok((self.physics(flow)?, still))
     }
 
     /// PISO by Euler's scheme in time, as the paper has it.

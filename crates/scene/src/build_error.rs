@@ -59,7 +59,7 @@ pub enum BuildError {
         found: String,
     },
     /// A body that its formulas move to where it cannot be.
-    #[error("its formulas move body {body} at t = {time:.4e} s {}", place(*axis, *at, place_of))]
+    #[error("its formulas move body {body} at t = {time:.4e} s {}", place(*axis, *at, problem))]
     Path {
         /// Name of the body.
         body: String,
@@ -72,7 +72,7 @@ pub enum BuildError {
         /// Place of its centre along the axis \[m\].
         at: f64,
         /// What is wrong there.
-        place_of: PathProblem,
+        problem: PathProblem,
     },
     /// A formula without a value.
     #[error("{what} is {value} at ({}); the formula needs a finite value all over the box", at.map(|x| format!("{x:.6}")).join(", "))]

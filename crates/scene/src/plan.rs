@@ -2,10 +2,9 @@
 use crate::build_error::BuildError;
 use crate::run::RunError;
 use crate::setup::{Algorithm, ContactLawChoice, ForcingChoice, Setup};
-use crate::trial::{Trial, Tried};
-use coupling::check_places;
+use crate::trial::{ANY_COURANT, Trial, Tried};
+use coupling::{Evolving, Grains, check_places};
 use fv_mesh::{Axis, CartesianGrid, Projection, Side};
-use interfaces::Dynamics;
 use std::fmt;
 
 /// What running a scene would mean: told before it is run.
@@ -27,6 +26,8 @@ pub struct Plan {
     pub cpu: f64,
     /// Parts of the libraries: name, whether it is at work, and what it does or why it is skipped.
     pub parts: Vec<(&'static str, bool, String)>,
+    /// Whether the first steps were taken: a run may refuse others at its start.
+    pub tried: bool,
     /// The pressure solver and why it was chosen.
     pub pressure: String,
     /// What looks doubtful.
@@ -60,28 +61,30 @@ impl Setup {
         }
     }
 
-    /// Findings about a scene that is too large to be tried: those of as few of its narrowest cells.
+    /// Findings about a scene that is too large to be tried: limits of its narrowest cells, of the flow
+    /// alone.
     fn untried<const D: usize>(&self) -> Result<Tried, BuildError> {
-        let pressure = "chosen at the start of the run: the scene is too large to be tried by a check";
         let longest = match self.flow.algorithm {
-            _ if self.fluid.is_none() => Some(self.cast(self.chen())?.stable_dt()),
+            _ if self.fluid.is_none() => Some(Grains::new(self.cast(self.chen())?).longest_dt()),
             Algorithm::Simple => None,
             Algorithm::Piso => Some(f64::INFINITY),
             Algorithm::Projection => {
                 let window = |a: usize| {
-                    let width = self.axes[a].narrowest();
-                    Axis::uniform(WINDOW.min(self.axes[a].cells()), 0.0, width * WINDOW as f64)
+                    let n = WINDOW.min(self.axes[a].cells());
+                    Axis::uniform(n, 0.0, self.axes[a].narrowest() * n as f64)
                 };
                 let axes: Vec<_> = (0..D).map(window).collect::<Result<_, _>>()?;
                 let grid = CartesianGrid::<D>::from_axes(std::array::from_fn(|a| axes[a].clone()))?;
                 let walls = std::array::from_fn(|_| [Side::Wall([0.0; 3]), Side::Wall([0.0; 3])]);
                 let flow = Projection::new(grid, walls, self.fluid())?.with_diffusion(self.diffusion());
-                Some(flow.stable_dt(self.courant))
+                Some(flow.stable_dt(ANY_COURANT))
             }
         };
+        self.initial(&self.grid::<D>()?)?;
         let initial = self.initial_speed() / self.narrowest();
         let limits = longest.map(|longest| [longest, initial]);
-        Ok(Tried { limits, pressure: pressure.into(), thin: Vec::new(), step: None })
+        let pressure = "chosen at the start of the run".into();
+        Ok(Tried { limits, pressure, thin: Vec::new(), step: None })
     }
 
     fn plan_in<const D: usize>(&self) -> Result<Plan, BuildError> {
@@ -102,13 +105,13 @@ impl Setup {
                 self.check_sizes()?;
             }
         }
-        self.check_paths()?;
+        self.check_paths::<D>()?;
         let large = self.memory() > LARGE || self.bodies.list.len() > MANY_BODIES;
         let Tried { limits, pressure, thin, step } = match large {
             true => self.untried::<D>()?,
             false => {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(RunError::from);
-                pool.and_then(|pool| pool.install(|| self.execute(&Trial::new(self))))?
+                pool.and_then(|pool| pool.install(|| self.execute(&Trial(self))))?
             }
         };
         let pace = limits.map(|[longest, rate]| self.expected_steps(longest, rate));
@@ -130,16 +133,7 @@ impl Setup {
                 Algorithm::Simple => cells * COST_OF_ITERATION,
             };
         let mut warnings = self.warnings();
-        warnings.extend(thin.iter().map(|part| {
-            format!(
-                "body {} is thin at ({}): {:.3e} m thick, where the grid needs {:.3e} m; through parts that thin, {:.0} % of its surface, fluid leaks, and about that share of its loads is lost: take more cells there",
-                self.bodies.list[part.body].name,
-                part.place_text(),
-                part.thickness,
-                part.needed,
-                (100.0 * part.share).max(1.0)
-            )
-        }));
+        warnings.extend(self.thin_warnings(&thin));
         if steps > MANY_STEPS {
             warnings.push(format!(
                 "{} steps to time.end, {} on one core: is everything in metres and seconds, and no cell far narrower than the others?",
@@ -156,6 +150,7 @@ impl Setup {
             steps,
             cpu,
             parts: self.parts(),
+            tried: !large,
             pressure,
             warnings,
         })
@@ -183,6 +178,12 @@ impl fmt::Display for Plan {
         }
         writeln!(f, "  cost      about {} on one core", duration(self.cpu))?;
         writeln!(f, "  pressure  {}", self.pressure)?;
+        if !self.tried {
+            writeln!(
+                f,
+                "  not tried: too large for first steps; a run may refuse at its start what passes here"
+            )?;
+        }
         for (name, active, about) in &self.parts {
             writeln!(f, "  {} {name:<18} {about}", if *active { "on  " } else { "skip" })?;
         }

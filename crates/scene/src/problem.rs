@@ -5,7 +5,7 @@ use std::fmt;
 /// Words of a scene for those of the libraries.
 const IN_KEYS: [(&str, &str); 6] = [
     ("or use `Hfdib`", "or take coupling.forcing = \"hfdib\""),
-    ("convection = upwind", "flow.convection = \"upwind\""),
+    ("upwind convection", "flow.convection = \"upwind\""),
     ("axis 0", "axis x"),
     ("axis 1", "axis y"),
     ("axis 2", "axis z"),

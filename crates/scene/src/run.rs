@@ -10,6 +10,7 @@ use crate::problem::Problems;
 use crate::result::{Ending, RunResult};
 use crate::setup::Setup;
 use crate::steady::Steady;
+use crate::view::View;
 use crate::watch::{
     Audience, AveragesWatch, FieldsWatch, ForcesWatch, ImagesWatch, ModelsWatch, ProbesWatch,
     TrajectoriesWatch, Watch, output,
@@ -17,7 +18,7 @@ use crate::watch::{
 use coupling::{CheckpointError, CouplingError, SavedState};
 use example_support::cpu::Stopwatch;
 use example_support::progress::Progress;
-use interfaces::RestartError;
+use interfaces::{RestartError, ThinPart};
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -210,9 +211,11 @@ impl Stage<'_> {
         Ok(())
     }
 
-    /// Tells what looks doubtful.
-    pub(crate) fn warn(&self, log: &mut Log) -> Result<(), CouplingError> {
-        for warning in self.warnings {
+    /// Logs warnings of the plan, and of thin parts of bodies that it has not found.
+    pub(crate) fn warn(&self, log: &mut Log, thin: &[ThinPart]) -> Result<(), CouplingError> {
+        let mut thin = self.setup.thin_warnings(thin);
+        thin.retain(|warning| !self.warnings.contains(warning));
+        for warning in self.warnings.iter().chain(&thin) {
             warn(log, warning, self.options.quiet)?;
         }
         Ok(())
@@ -278,7 +281,7 @@ impl Execution for Stage<'_> {
             setup.cells(),
             setup.bodies.list.len(),
         ))?;
-        self.warn(&mut log)?;
+        self.warn(&mut log, simulation.see(setup).thin())?;
         let mut look = Look {
             setup,
             audience,

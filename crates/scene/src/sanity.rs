@@ -10,7 +10,7 @@ use crate::setup::{Algorithm, BodySetup, Setup, SurfaceVelocity, is_open};
 use blockage::Blockage;
 use coupling::WeightBalance;
 use fv_mesh::{Axis, Convection, Profile, Side, WallStress};
-use interfaces::{Aabb, LENGTH_PRECISION};
+use interfaces::{Aabb, LENGTH_PRECISION, ThinPart};
 
 /// Cells so much longer than wide are hardly meant.
 const THIN: f64 = 1000.0;
@@ -174,7 +174,22 @@ impl Setup {
             && !self.walls_move()
     }
 
-    /// What looks doubtful.
+    /// Warnings of parts of bodies that are too thin for the grid.
+    pub(crate) fn thin_warnings(&self, parts: &[ThinPart]) -> Vec<String> {
+        let warning = |part: &ThinPart| {
+            format!(
+                "body {} is thin at ({}): {:.3e} m thick, where the grid needs {:.3e} m; through parts that thin, {:.0} % of its surface, fluid leaks, and about that share of its loads is lost: take more cells there",
+                self.bodies.list[part.body].name,
+                part.place_text(),
+                part.thickness,
+                part.needed,
+                (100.0 * part.share).max(1.0)
+            )
+        };
+        parts.iter().map(warning).collect()
+    }
+
+    /// Warnings of what looks doubtful.
     pub(crate) fn warnings(&self) -> Vec<String> {
         let mut out = Vec::new();
         if !self.unused.is_empty() {

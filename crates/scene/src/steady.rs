@@ -172,7 +172,8 @@ impl Stage<'_> {
             }
             Some(_) => format!("going on with {} from iteration {begin}, residual {residual:.3e}: {cells} cells, to residuals of {tolerance:e}", setup.name),
         })?;
-        self.warn(&mut log)?;
+        let still = Still { bodies: setup.still(), thin: std::mem::take(&mut flow.thin) };
+        self.warn(&mut log, &still.thin)?;
         let mut progress = (!self.options.quiet).then(|| Progress::steady(tolerance));
         let every = Duration::try_from_secs_f64(setup.save_every).unwrap_or(Duration::MAX);
         let mut saved = Instant::now();
@@ -228,7 +229,6 @@ impl Stage<'_> {
         if !stopped {
             flow.settle().map_err(BuildError::from)?;
         }
-        let still = Still(setup.still());
         let given_off = flow.scalars.given_off();
         let mut seen = Seen { flow: &mut flow, guests: &still, timings: coupling::Timings::default() };
         // One "step" of a second, whose impulses are the loads.

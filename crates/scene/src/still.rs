@@ -1,11 +1,15 @@
 //! Bodies at rest, as walls of the flow.
 use coupling::{CouplingError, FlowSolver, Immersed, Module, Timings};
 use ibm::StaticBodies;
-use interfaces::{Checkpoint, RestartError};
+use interfaces::{Checkpoint, RestartError, ThinPart};
 
 /// Bodies that stay where they are. The flow has them as walls already, so nothing is left to do in a step.
 #[derive(Default)]
-pub(crate) struct Still(pub(crate) StaticBodies);
+pub(crate) struct Still {
+    pub(crate) bodies: StaticBodies,
+    /// Parts that are too thin for the grid.
+    pub(crate) thin: Vec<ThinPart>,
+}
 
 impl Checkpoint for Still {
     fn save(&self, _: &mut dyn FnMut(&str, &[f64])) {}

@@ -11,16 +11,12 @@ use crate::view::{Seen, View};
 use crate::watch::Audience;
 use coupling::{CouplingError, Observer, StepInfo};
 use interfaces::ThinPart;
-use std::cell::RefCell;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Execution of the first steps.
-pub(crate) struct Trial<'a> {
-    setup: &'a Setup,
-    thin: RefCell<Vec<ThinPart>>,
-}
+pub(crate) struct Trial<'a>(pub(crate) &'a Setup);
 
 /// Findings of a trial.
 pub(crate) struct Tried {
@@ -40,22 +36,23 @@ const STEPS: u32 = 4;
 const TIME: Duration = Duration::from_millis(250);
 
 /// Courant number that limits no step.
-const ANY_COURANT: f64 = 1e9;
+pub(crate) const ANY_COURANT: f64 = 1e9;
 
-impl<'a> Trial<'a> {
-    pub(crate) fn new(setup: &'a Setup) -> Self {
-        Self { setup, thin: RefCell::default() }
-    }
-
-    /// Requires that references point to what a result has.
-    fn check_references(&self, view: &mut dyn View) -> Result<(), BuildError> {
-        if self.setup.references.is_empty() {
-            return Ok(());
+impl Trial<'_> {
+    /// Findings after the first steps; requires that references point to what a result has.
+    fn found(
+        &self,
+        view: &mut dyn View,
+        limits: Option<[f64; 2]>,
+        step: Option<f64>,
+    ) -> Result<Tried, BuildError> {
+        if !self.0.references.is_empty() {
+            let (extremes, audience) = (Extremes::default(), Audience::new(Vec::new()));
+            let ending = Ending::Stopped;
+            let result = RunResult::new(self.0, view, &extremes, None, &audience, ending, Path::new(""));
+            self.0.check_references(&result.result)?;
         }
-        let (extremes, audience) = (Extremes::default(), Audience::new(Vec::new()));
-        let result =
-            RunResult::new(self.setup, view, &extremes, None, &audience, Ending::Stopped, Path::new(""));
-        self.setup.check_references(&result.result)
+        Ok(Tried { limits, pressure: view.pressure_solver(), thin: view.thin().to_vec(), step })
     }
 }
 
@@ -101,19 +98,14 @@ impl Execution for Trial<'_> {
     type Output = Tried;
 
     fn march<S: Show, K: Books<S>>(&self, mut simulation: S, _: K) -> Result<Tried, RunError> {
-        let setup = self.setup;
+        let setup = self.0;
         let schedule = setup.schedule(&simulation);
         // Without regard to convection: implicit viscous terms do not limit it.
         let limits = [simulation.stable_dt(ANY_COURANT), simulation.courant(1.0)];
         let stop = AtomicBool::new(false);
         let mut first = FirstSteps::new(&stop);
         coupling::run(&mut simulation, &schedule, &mut first, &stop)?;
-        let step = first.shortest;
-        let mut view = simulation.see(setup);
-        self.check_references(&mut view)?;
-        let pressure = view.pressure_solver();
-        drop(view);
-        Ok(Tried { limits: Some(limits), pressure, thin: self.thin.take(), step })
+        Ok(self.found(&mut simulation.see(setup), Some(limits), first.shortest)?)
     }
 
     fn converge<const D: usize>(&self, mut steady: Steady<D>) -> Result<Tried, RunError> {
@@ -125,14 +117,8 @@ impl Execution for Trial<'_> {
                 break;
             }
         }
-        let thin = std::mem::take(&mut steady.thin);
-        let still = Still(self.setup.still());
+        let still = Still { bodies: self.0.still(), thin: std::mem::take(&mut steady.thin) };
         let mut view = Seen { flow: &mut steady, guests: &still, timings: coupling::Timings::default() };
-        self.check_references(&mut view)?;
-        Ok(Tried { limits: None, pressure: view.pressure_solver(), thin, step: first.shortest })
-    }
-
-    fn thin(&self, parts: Vec<ThinPart>) {
-        self.thin.replace(parts);
+        Ok(self.found(&mut view, None, first.shortest)?)
     }
 }

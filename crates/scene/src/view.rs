@@ -12,7 +12,7 @@ use fv_mesh::{
     Velocity,
 };
 use ibm::{FluidSampler, Forcing};
-use interfaces::{Bodies, BodyId, Checkpoint, Closure, Kinematics, Lattice, Point, Wrench};
+use interfaces::{Bodies, BodyId, Checkpoint, Closure, Kinematics, Lattice, Point, ThinPart, Wrench};
 use std::io::{self, Write};
 use turb::YPlus;
 
@@ -90,6 +90,10 @@ pub(crate) trait View {
         ""
     }
     fn bodies(&self) -> &dyn Bodies;
+    /// Parts of bodies that are too thin for the grid.
+    fn thin(&self) -> &[ThinPart] {
+        &[]
+    }
     /// A number that a body keeps, however many come and go.
     fn serial(&self, b: BodyId) -> u64;
     /// Loads of fluid (without buoyancy) and contacts over the last step of length `dt`.
@@ -259,6 +263,10 @@ pub(crate) trait Guests {
     fn walls(&self) -> Option<&dyn Bodies> {
         None
     }
+    /// Parts that are too thin for the grid.
+    fn thin(&self) -> &[ThinPart] {
+        &[]
+    }
     fn serial(&self, b: BodyId) -> u64;
     fn loads(&self, b: BodyId, dt: f64, walls: &[Wrench]) -> [Wrench; 2];
     fn contacts(&self) -> usize;
@@ -269,10 +277,13 @@ pub(crate) trait Guests {
 
 impl Guests for Still {
     fn bodies(&self) -> &dyn Bodies {
-        &self.0
+        &self.bodies
     }
     fn walls(&self) -> Option<&dyn Bodies> {
-        Some(&self.0)
+        Some(&self.bodies)
+    }
+    fn thin(&self) -> &[ThinPart] {
+        &self.thin
     }
     fn serial(&self, b: BodyId) -> u64 {
         b.0 as u64
@@ -442,6 +453,9 @@ impl<const D: usize, A: Flow<D>, P: Guests> View for Seen<'_, D, A, P> {
     }
     fn bodies(&self) -> &dyn Bodies {
         self.guests.bodies()
+    }
+    fn thin(&self) -> &[ThinPart] {
+        self.guests.thin()
     }
     fn serial(&self, b: BodyId) -> u64 {
         self.guests.serial(b)

@@ -81,7 +81,7 @@ pub enum ShiftedError {
     },
     /// The phase of a wave vector shifts around a period only.
     #[error(
-        "frame {frame} moves by {distance} along axis {axis} at snapshot {snapshot}, which is not periodic: shift by Lagrange polynomials or splines"
+        "frame {frame} moves or turns by up to {distance} along axis {axis} at snapshot {snapshot}, which is not periodic: shift by Lagrange polynomials or splines"
     )]
     NotPeriodic {
         /// Of reference.

@@ -231,12 +231,10 @@ impl ShiftedPod {
         }
         let wrong: Vec<_> = spectral.noise.as_ref().map_or_else(Vec::new, nonzero);
         let (frames, stopped) = self.fit(operators, snapshots, &wrong, start, watch)?;
-        let noise = spectral.noise.map(|_| {
-            let residual = Problem::new(operators, snapshots).map(|p| p.residual(&frames));
-            residual.map(|residual| only(&residual, &wrong))
-        });
+        let residual = Problem::new(operators, snapshots)?.residual(&frames);
+        let noise = spectral.noise.map(|_| only(&residual, &wrong));
         let d = Decomposition::of(frames, watch.take(), stopped);
-        Ok(Decomposition { noise: noise.transpose()?, attempts: spectral.attempts, ..d })
+        Ok(Decomposition { noise, attempts: spectral.attempts, ..d })
     }
 
     /// The modes that are asked for, fitted to all entries but the wrong ones.

@@ -55,6 +55,19 @@ fn bodies_cost_the_same_however_many_there_are() {
     assert!(checked < 8.0 && ran < 16.0, "{checked} {ran}");
 }
 
+/// Scenes too large for first steps have as many steps as those that are tried.
+#[test]
+fn steps_of_scenes_that_are_not_tried_are_estimated() {
+    let plan = |n: usize| {
+        let text = balls(n).replace("steps = 1, dt = 1e-4", "end = 0.1");
+        Scene::parse("balls.toml", &text, &[]).unwrap_or_else(|e| panic!("{e}")).plan().unwrap()
+    };
+    let [tried, not_tried] = [99_000, 101_000].map(plan);
+    assert!(tried.tried && !not_tried.tried);
+    assert_eq!(tried.steps, not_tried.steps);
+    assert!(not_tried.to_string().contains("not tried"), "{not_tried}");
+}
+
 #[test]
 #[ignore = "a minute and 6 GB; cargo test --release -p scene --test it -- --ignored a_million --nocapture"]
 fn a_million_balls_start_within_a_minute() {

@@ -1,32 +1,18 @@
 //! Messages that name the key at fault.
+use crate::first_steps::BOX;
 use crate::{folder, problems, quiet};
 use scene::Scene;
 use std::sync::atomic::AtomicBool;
 
-const TWO: &str = r#"
-[grid]
-cells = [32, 32]
-size = [1.0, 1.0]
-[sides]
-x = "wall"
-y = "wall"
-[fluid]
-density = 1000.0
-nu = 1e-3
-[time]
-end = 0.1
-[output]
-images = false
-fields = false
-[[bodies]]
-shape = { type = "disc", radius = 0.1 }
-density = 2000.0
-position = [0.3, 0.5]
-[[bodies]]
-shape = { type = "disc", radius = 0.1 }
-density = 2000.0
-position = [0.7, 0.5]
-"#;
+/// Two discs in a box.
+fn two() -> String {
+    let disc = |x: f64| {
+        format!(
+            "[[bodies]]\nshape = {{ type = \"disc\", radius = 0.1 }}\ndensity = 2000.0\nposition = [{x}, 0.5]\n"
+        )
+    };
+    format!("{}{}{}", BOX.replace("end = 1.0", "end = 0.1"), disc(0.3), disc(0.7))
+}
 
 /// Error of a run.
 fn error(text: &str, more: &[&str]) -> String {
@@ -40,22 +26,22 @@ fn error(text: &str, more: &[&str]) -> String {
 
 #[test]
 fn the_key_at_fault_is_named() {
-    let spin = error(TWO, &["bodies.0.spin=1e6"]);
+    let spin = error(&two(), &["bodies.0.spin=1e6"]);
     assert!(spin.contains("bodies.0.spin: ") && spin.contains("begins with 1.000e5 m/s"), "{spin}");
     let tether = "bodies.1.tether={ anchor = [0.7, 0.5], stiffness = 1.0, damping = 1e300 }";
-    let found = error(TWO, &[tether]);
+    let found = error(&two(), &[tether]);
     assert!(found.contains("bodies.1.tether: ") && found.contains("less stiffness or damping"), "{found}");
     let hard = "materials={ hard = { youngs_modulus = 1e300 } }";
-    let found = error(TWO, &[hard, "bodies.1.material=\"hard\"", "bodies.0.position=[0.498, 0.5]"]);
+    let found = error(&two(), &[hard, "bodies.1.material=\"hard\"", "bodies.0.position=[0.498, 0.5]"]);
     assert!(found.contains("bodies.1.material: ") && found.contains("smaller Young's modulus"), "{found}");
-    let found = problems(TWO, "materials={ odd = { poisson_ratio = -1.0 } }");
+    let found = problems(&two(), "materials={ odd = { poisson_ratio = -1.0 } }");
     assert!(found.contains("a number above -1, at most 0.5"), "{found}");
 }
 
 #[test]
 fn inlets_that_do_not_balance_are_told_with_the_direction() {
     let sides = |right: &str| {
-        TWO.replace(
+        two().replace(
             "x = \"wall\"\n",
             &format!("x_min = {{ type = \"inlet\", velocity = [1.0, 0.0] }}\nx_max = {right}\n"),
         )
@@ -69,7 +55,7 @@ fn inlets_that_do_not_balance_are_told_with_the_direction() {
 #[test]
 fn files_and_axes_are_named_once_and_by_their_names() {
     let shape = "bodies.0.shape={ type = \"mesh\", file = \"nowhere.stl\" }";
-    let text = TWO
+    let text = two()
         .replace("cells = [32, 32]", "cells = [8, 8, 8]")
         .replace("size = [1.0, 1.0]", "size = [1.0, 1.0, 1.0]")
         .replace("y = \"wall\"", "y = \"wall\"\nz = \"wall\"")

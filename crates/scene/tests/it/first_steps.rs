@@ -58,6 +58,27 @@ fn the_key_that_helps_on_a_stretched_grid_is_named() {
     assert!(found.contains("coupling.forcing = \"hfdib\"") && !found.contains("`Hfdib`"), "{found}");
 }
 
+/// A body that starts where cells are equal and turns or moves to where they are not.
+#[test]
+fn formulas_that_move_a_body_to_unequal_cells_are_refused() {
+    let faces: Vec<String> = (0..=40)
+        .map(|i| f64::from(i) / 40.0)
+        .chain((1..=10).map(|i| 1.0 + 0.05 * f64::from(i)))
+        .map(|x| format!("{x}"))
+        .collect();
+    let axis = format!("{{ spacing = \"faces\", faces = [{}] }}", faces.join(", "));
+    let grid = format!("[grid]\nx = {axis}\ny = {{ spacing = \"uniform\", cells = 40, to = 1.0 }}\n");
+    let text = BOX.replace("[grid]\ncells = [32, 32]\nsize = [1.0, 1.0]\n", &grid);
+    let moved =
+        |shift: &str| disc("[0.5, 0.5]", &format!("{{ type = \"prescribed\", shift = [{shift}, 0.0] }}"));
+    let found = refused(&format!("{text}{}", moved("\"0.4*t\"")));
+    assert!(
+        found.contains("bodies.0: its formulas move body disc at t = ") && found.contains("wide along x")
+    );
+    let plan = Scene::parse("a.toml", &format!("{text}{}", moved("\"0.2*t\"")), &[]).unwrap().plan();
+    plan.unwrap_or_else(|e| panic!("{e}"));
+}
+
 #[test]
 fn references_point_to_numbers_of_the_results() {
     let reference = |pointer: &str| {

@@ -4,7 +4,8 @@
 //! cargo run --release --example scene -- scenes/cavity.toml
 //! cargo run --release --example scene -- scenes/cavity.toml --check
 //! cargo run --release --example scene -- scenes/two_discs.toml --set fluid.nu=2e-6 --set time.end=0.1 --threads 2
-//! cargo run --release --example scene -- scenes/two_discs.toml --resume              # or --overwrite, after Ctrl-C
+//! cargo run --release --example scene -- scenes/two_discs.toml --resume              # or
+//! --overwrite, after Ctrl-C
 //! cargo run --release --example scene -- scenes/*.toml --quiet         # all of them, with a table at the end
 //! ```
 //!
@@ -35,7 +36,8 @@ struct Cli {
     /// Goes on from the state that an interrupted run of this scene saved.
     #[arg(long, conflicts_with = "check")]
     resume: bool,
-    /// Goes on from the state saved before that one, which is dropped: for a last state that is damaged or went wrong.
+    /// Goes on from the state saved before that one, which is dropped: for a last state that is
+    /// damaged or went wrong.
     #[arg(long, conflicts_with_all = ["check", "resume"])]
     resume_previous: bool,
     /// Begins anew where an interrupted run has left its state, which is deleted.

@@ -57,7 +57,7 @@ pub struct RigidBodies<L: ContactLaw = Chen> {
     walls: Vec<Wall>,
     /// Materials of one density: contacts do not depend on it.
     materials: Vec<Material>,
-    /// Of every pair of materials, by [`pair_index`].
+    /// Properties of every pair of materials, by [`pair_index`].
     properties: Vec<PairProperties>,
     /// Where bodies were when pairs were listed, and the boxes that came of it.
     listed: Vec<Listed>,

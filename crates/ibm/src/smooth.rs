@@ -109,8 +109,9 @@ impl SmoothForcing {
         self.kernel.unwrap_or_else(|| Kernel::suited(dim))
     }
 
-    /// Least and largest distance \[m\] of nodes along an axis that the markers of a body within `bounds`
-    /// reach, on the lattices of the velocity's components; whether they are equal, as they have to be.
+    /// Least and largest distance \[m\] of nodes along an axis that the markers of a body within
+    /// `bounds` reach, on the lattices of the velocity's components; whether they are equal, as
+    /// they have to be.
     pub fn spacings<'a>(
         &self,
         lattices: impl Iterator<Item = &'a Lattice> + Clone,
@@ -149,8 +150,8 @@ impl SmoothForcing {
                 nodes.spacings(nodes.place(0), nodes.place(nodes.len() as isize - 1))[0]
             });
             let narrowest = narrowest.fold(f64::INFINITY, f64::min);
-            // The narrowest cells give the same number wherever the body is, to the last bit: a run that
-            // goes on makes the same markers.
+            // The narrowest cells give the same number wherever the body is, to the last bit: a run
+            // that goes on makes the same markers.
             cell *= if least - narrowest <= UNEQUAL * narrowest { narrowest } else { least };
         }
         Ok(cell)

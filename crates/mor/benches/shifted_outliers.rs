@@ -4,8 +4,9 @@
 //! random places of their frame whose amplitudes vary by random laws. A share of the entries (PART,
 //! in per cent) is wrong: ±1.5 or ±0.75 are added to half of them, and replace the other half. One
 //! line per run: ranks, relative error against the field without wrong entries in Frobenius' norm,
-//! wrong entries that are missed and right ones that are rejected, why it stopped, steps, CPU seconds. With
-//! `EXPORT=FOLDER` in the environment it writes `.npy` files for `benches/peers/shifted.py` instead.
+//! wrong entries that are missed and right ones that are rejected, why it stopped, steps, CPU
+//! seconds. With `EXPORT=FOLDER` in the environment it writes `.npy` files for
+//! `benches/peers/shifted.py` instead.
 use cpu_time::ProcessTime;
 use interfaces::{SnapshotSink, Vector};
 use mor::Mat;

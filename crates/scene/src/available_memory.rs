@@ -6,13 +6,14 @@ use std::path::{Path, PathBuf};
 pub(crate) struct AvailableMemory {
     /// \[bytes\].
     pub(crate) bytes: f64,
-    /// Which limit it is.
+    /// Name of the limit.
     pub(crate) limit: &'static str,
 }
 
 impl AvailableMemory {
     /// The smallest of what the system has free, the address space and data of the process
-    /// (`ulimit -v`, `ulimit -d`) and its control groups, version 1 or 2, leave; `None` without `/proc`.
+    /// (`ulimit -v`, `ulimit -d`) and its control groups, version 1 or 2, leave; `None` without
+    /// `/proc`.
     pub(crate) fn now() -> Option<Self> {
         Self::in_root(Path::new("/"))
     }
@@ -49,8 +50,8 @@ fn soft_limit(text: &str, key: &str) -> Option<f64> {
     text.lines().find_map(|line| line.strip_prefix(key))?.split_whitespace().next()?.parse().ok()
 }
 
-/// What each control group of the process with a limit, up to the root, leaves \[bytes\]. Cached files
-/// are given back when memory is short and do not count as used.
+/// Memory that each control group of the process with a limit, up to the root, leaves \[bytes\].
+/// Cached files are given back when memory is short and do not count as used.
 fn groups(root: &Path, memberships: &str) -> Vec<f64> {
     let mut left = Vec::new();
     for line in memberships.lines() {

@@ -55,7 +55,7 @@ pub enum BuildError {
         number: usize,
         /// Its JSON pointer.
         pointer: String,
-        /// What there is.
+        /// Description of what the results have.
         found: String,
     },
     /// A body that its formulas move to where it cannot be.
@@ -71,7 +71,7 @@ pub enum BuildError {
         axis: usize,
         /// Place of its centre along the axis \[m\].
         at: f64,
-        /// What is wrong there.
+        /// Reason why it cannot be there.
         problem: PathProblem,
     },
     /// A formula without a value.
@@ -232,8 +232,8 @@ fn place(axis: usize, at: f64, problem: &PathProblem) -> String {
 
 /// Key of the virtual mass.
 const VIRTUAL_MASS: &str = "coupling.virtual_mass";
-/// Share of the flow's speed from which on a body's own speed is its cause: momentum spreads, but does
-/// not grow.
+/// Share of the flow's speed from which on a body's own speed is its cause: momentum spreads, but
+/// does not grow.
 const BODY_SHARE: f64 = 0.3;
 
 /// The body that an error is about.

@@ -98,9 +98,9 @@ impl Setup {
         if speed.is_finite() { speed } else { 0.0 }
     }
 
-    /// Speed of a body that falls or rises from rest for `time` \[s\], at most the terminal one of a
-    /// sphere (Schiller & Naumann 1935) or a cylinder (c_d = 1 + 10 Re^(−2/3), White 2006) of the same
-    /// volume \[m/s\].
+    /// Speed of a body that falls or rises from rest for `time` \[s\], at most the terminal one of
+    /// a sphere (Schiller & Naumann 1935) or a cylinder (c_d = 1 + 10 Re^(−2/3), White 2006) of the
+    /// same volume \[m/s\].
     fn settling_speed(&self, shape: &dyn dem::Shape, density: f64, time: f64) -> f64 {
         let (fluid, dim) = (self.fluid(), self.dim());
         let gravity = self.gravity.norm();
@@ -138,8 +138,9 @@ impl Setup {
         speed.min(pull / (ratio + 0.5) * time)
     }
 
-    /// Mean speed that the body force has made at `time` \[s\]: at most that of laminar flow in a pipe of
-    /// the hydraulic diameter 4 V/S, and that of smooth friction (Blasius), twice over for its peak \[m/s\].
+    /// Mean speed that the body force has made at `time` \[s\]: at most that of laminar flow in a
+    /// pipe of the hydraulic diameter 4 V/S, and that of smooth friction (Blasius), twice over for
+    /// its peak \[m/s\].
     fn driven_speed(&self, time: f64) -> f64 {
         let Some(force) = &self.force else { return 0.0 };
         let at = force.each_ref().map(|f| f.at(&[time]));
@@ -155,7 +156,7 @@ impl Setup {
         for b in self.bodies.list.iter().filter(|b| self.holds(b)) {
             let (volume, r) = (b.shape.inertia(1.0).volume, b.shape.bounding_radius());
             solid += volume;
-            // Of balls it is this.
+            // Exact for balls.
             surface += self.dim() as f64 * volume / r;
         }
         let free = force * time;
@@ -172,8 +173,8 @@ impl Setup {
         free.min(2.0 * laminar.min(turbulent))
     }
 
-    /// Rate at which the initial speeds decay at least \[1/s\], where nothing drives the flow: that of the
-    /// box's gravest viscous mode.
+    /// Rate at which the initial speeds decay at least \[1/s\], where nothing drives the flow: that
+    /// of the box's gravest viscous mode.
     fn decay(&self) -> f64 {
         let driven = self.expected_rate(self.end) > 0.0 || self.scalars.iter().any(|s| s.buoyancy.is_some());
         if driven {

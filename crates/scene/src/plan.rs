@@ -61,8 +61,8 @@ impl Setup {
         }
     }
 
-    /// Findings about a scene that is too large to be tried: limits of its narrowest cells, of the flow
-    /// alone.
+    /// Findings about a scene that is too large to be tried: limits of its narrowest cells, of the
+    /// flow alone.
     fn untried<const D: usize>(&self) -> Result<Tried, BuildError> {
         let longest = match self.flow.algorithm {
             _ if self.fluid.is_none() => Some(Grains::new(self.cast(self.chen())?).longest_dt()),

@@ -230,8 +230,8 @@ impl Stage<'_> {
     }
 }
 
-/// Whether the results in `folder` are those of a run that came to its end. Reads line by line: results
-/// of many bodies are long.
+/// Whether the results in `folder` are those of a run that came to its end. Reads line by line:
+/// results of many bodies are long.
 fn is_complete(folder: &Path) -> bool {
     let Ok(file) = File::open(folder.join(RESULTS[0])) else { return false };
     let mut lines = BufReader::new(file).lines().map_while(Result::ok);
@@ -248,7 +248,7 @@ impl Execution for Stage<'_> {
         let _lock = self.take_folder()?;
         let state = self.folder().join(STATE);
         let mut extremes = Extremes::default();
-        // That of the flow at its start, also of a run that goes on.
+        // Schedule of the flow at its start, also of a run that goes on.
         let schedule = setup.schedule(&simulation);
         schedule.check()?;
         let mut resume = None;

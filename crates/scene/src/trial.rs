@@ -20,8 +20,8 @@ pub(crate) struct Trial<'a>(pub(crate) &'a Setup);
 
 /// Findings of a trial.
 pub(crate) struct Tried {
-    /// Longest step \[s\] that is stable however slow the flow is, and Courant number per time \[1/s\] at
-    /// the start; none for a steady flow.
+    /// Longest step \[s\] that is stable however slow the flow is, and Courant number per time
+    /// \[1/s\] at the start; none for a steady flow.
     pub(crate) limits: Option<[f64; 2]>,
     /// Pressure solver, and why it is taken.
     pub(crate) pressure: String,

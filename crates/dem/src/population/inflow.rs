@@ -112,7 +112,7 @@ impl Inflow {
         ((whole + 1.0) as u64).min(self.number)
     }
 
-    /// How far from the zone other bodies matter to an entrant \[m\].
+    /// Distance from the zone within which other bodies matter to an entrant \[m\].
     pub(super) fn reach(&self, shape: &dyn Shape) -> f64 {
         2.0 * shape.bounding_radius() + self.gap
     }

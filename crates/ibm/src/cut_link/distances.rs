@@ -221,7 +221,8 @@ mod tests {
     use crate::testing::Balls;
     use std::time::{Duration, Instant};
 
-    /// One cell as wide as a million periods of the other axis: only the nearest images of a body matter.
+    /// One cell as wide as a million periods of the other axis: only the nearest images of a body
+    /// matter.
     #[test]
     fn wide_cells_need_no_far_images() {
         let ticks =

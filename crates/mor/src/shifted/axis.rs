@@ -27,7 +27,7 @@ fn padding(periodic: bool) -> usize {
     if periodic { MARGIN } else { 2 * MARGIN }
 }
 
-/// Where a shifted value comes from.
+/// Origin of a shifted value.
 enum Place {
     /// The first or the last node.
     End(usize),
@@ -105,8 +105,8 @@ impl Axis {
         }
     }
 
-    /// Shift of the even reflection of a bounded line about its ends, which has a period of 2n cells;
-    /// constant beyond the first and the last node.
+    /// Shift of the even reflection of a bounded line about its ends, which has a period of 2n
+    /// cells; constant beyond the first and the last node.
     fn shift_reflected(
         &self,
         transforms: &[Arc<dyn Fft<f64>>; 2],

@@ -116,8 +116,8 @@ fn weigh(weights: Option<&Mat<f64>>, field: &mut Mat<f64>) {
     }
 }
 
-/// Conjugate gradients end at this part of the gradient, or after so many steps: with fewer, frames that
-/// share a constant take up to four times as many outer steps.
+/// Conjugate gradients end at this part of the gradient, or after so many steps: with fewer, frames
+/// that share a constant take up to four times as many outer steps.
 const FORCING: f64 = 0.03;
 const MAX_INNER: usize = 200;
 

@@ -25,8 +25,8 @@ use monomorphic::Mat;
 /// to ±δ; if none does, the level is lowered, to no less than 1.345 deviations of the noise.
 ///
 /// A snapshot that hardly tells frames apart would lend them its wrong entries: where they cancel
-/// one another, it is left out until the modes are known. In the end the amplitudes of all snapshots
-/// are fitted to the modes, which has one minimum only.
+/// one another, it is left out until the modes are known. In the end the amplitudes of all
+/// snapshots are fitted to the modes, which has one minimum only.
 pub(super) struct HuberDescent<'a> {
     problem: &'a Translated<'a>,
     /// Q, zero in snapshots that are left out.
@@ -169,8 +169,8 @@ impl<'a> HuberDescent<'a> {
         Ok((state.fields, state.level))
     }
 
-    /// Amplitudes of all snapshots at these modes, then a least-squares fit without the entries that
-    /// are off by more than noise of the level.
+    /// Amplitudes of all snapshots at these modes, then a least-squares fit without the entries
+    /// that are off by more than noise of the level.
     pub(super) fn finish(
         mut self,
         fields: Fields,

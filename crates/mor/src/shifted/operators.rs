@@ -47,8 +47,8 @@ impl GridFrames {
     ///
     /// # Errors
     /// [`ShiftedError::Empty`], [`ShiftedError::Rows`], [`ShiftedError::Motion`]; [`ShiftedError::OffGrid`] if a frame leaves the
-    /// plane or line; [`ShiftedError::NotPeriodic`] if a frame turns with [`Interpolation::Spectral`] in a
-    /// plane with a bounded axis.
+    /// plane or line; [`ShiftedError::NotPeriodic`] if a frame turns with
+    /// [`Interpolation::Spectral`] in a plane with a bounded axis.
     pub fn new(
         grid: Grid,
         interpolation: Interpolation,

@@ -32,12 +32,12 @@ pub enum Noise {
 
 /// Shifted proper orthogonal decomposition, by the algorithms that suit the snapshots.
 ///
-/// Frames that only move along periodic axes are fitted with [`Interpolation::Spectral`] in the space
-/// of wave vectors by [`Als`](super::fourier::Als), first displaced so that their fields are centred on
-/// cells ([`centred`](super::fourier::centred), [`Decomposition::offsets`]). With another interpolation
-/// [`JointDescent`] goes on from there with shifts by that. All other frames are fitted by
-/// [`JointDescent`] from nothing. A fit of given ranks that ends above 1e-6 is repeated from other starts
-/// ([`Decomposition::attempts`]).
+/// Frames that only move along periodic axes are fitted with [`Interpolation::Spectral`] in the
+/// space of wave vectors by [`Als`](super::fourier::Als), first displaced so that their fields are
+/// centred on cells ([`centred`](super::fourier::centred), [`Decomposition::offsets`]). With
+/// another interpolation [`JointDescent`] goes on from there with shifts by that. All other frames
+/// are fitted by [`JointDescent`] from nothing. A fit of given ranks that ends above 1e-6 is
+/// repeated from other starts ([`Decomposition::attempts`]).
 ///
 /// [`Ranks::Found`]: modes are added that stand out of the noise, and those that are not needed are
 /// removed; first on some of the snapshots if there are many.
@@ -45,9 +45,9 @@ pub enum Noise {
 /// [`Noise::Sparse`], frames in the space of wave vectors: Huber's function of the residual is minimised
 /// with a level that decreases until a least-squares fit without the entries beyond it is exact, or to
 /// the level of the noise. Of more than 200 snapshots 200 tell the modes, and the modes the amplitudes of
-/// the others. [`Decomposition::stopped`] is [`StopReason::Tolerance`] if all entries that are not wrong
-/// are fitted to the tolerance; otherwise the error of the last step tells how far they are off, and
-/// modes that do not stand out of that are left out, though they are given.
+/// the others. [`Decomposition::stopped`] is [`StopReason::Tolerance`] if all entries that are not
+/// wrong are fitted to the tolerance; otherwise the error of the last step tells how far they are
+/// off, and modes that do not stand out of that are left out, though they are given.
 ///
 /// [`Noise::Sparse`], other frames: modes by the augmented Lagrangian of [`Proximal`](super::Proximal),
 /// then by [`JointDescent::huber`]; entries that are off by more than six deviations are wrong, and

@@ -14,10 +14,11 @@ pub enum Interpolation {
     CubicSpline,
     /// Four times continuously differentiable, of fifth degree.
     QuinticSpline,
-    /// The trigonometric polynomial through all values of a period: exact for all waves of more than two
-    /// cells. The wave of two cells, whose phase is not known, is multiplied by cos(π s/h), so that a real
-    /// field stays real. On a bounded axis of n cells, the polynomial through the values and their mirror
-    /// image (a cosine series of period 2n): spectral accuracy for fields with slope 0 at the ends.
+    /// The trigonometric polynomial through all values of a period: exact for all waves of more
+    /// than two cells. The wave of two cells, whose phase is not known, is multiplied by cos(π
+    /// s/h), so that a real field stays real. On a bounded axis of n cells, the polynomial through
+    /// the values and their mirror image (a cosine series of period 2n): spectral accuracy for
+    /// fields with slope 0 at the ends.
     Spectral,
 }
 

@@ -124,8 +124,8 @@ fn bounded_axes_continue_with_the_value_at_the_end() {
     }
 }
 
-/// Errors of a front that moves along a bounded axis of 96 cells: spectral shifts are as accurate there as
-/// on a periodic axis, splines by their order.
+/// Errors of a front that moves along a bounded axis of 96 cells: spectral shifts are as accurate
+/// there as on a periodic axis, splines by their order.
 #[test]
 fn a_front_on_a_bounded_axis_is_shifted_spectrally() {
     let front = |x: f64| 0.5 - 0.5 * ((x - 40.3) / 4.0).tanh();

@@ -5,8 +5,8 @@ use fv_mesh::Sides;
 use interfaces::{Lattice, Pose};
 
 impl Setup {
-    /// Requires that formulas keep bodies within walls and, with the smooth forcing, where cells are
-    /// equal, at instants over the whole run.
+    /// Requires that formulas keep bodies within walls and, with the smooth forcing, where cells
+    /// are equal, at instants over the whole run.
     pub(crate) fn check_paths<const D: usize>(&self) -> Result<(), BuildError> {
         let smooth = self.is_forced()
             && self.flow.algorithm == Algorithm::Projection

@@ -24,7 +24,8 @@ impl Setup {
         all.into_iter().filter(|(_, present, _)| *present).map(|(name, _, count)| (name, count)).collect()
     }
 
-    /// Requires that every reference points to a number of the results; `result` is that of the first steps.
+    /// Requires that every reference points to a number of the results; `result` is that of the
+    /// first steps.
     pub(crate) fn check_references(&self, result: &Value) -> Result<(), BuildError> {
         let late = self.results_of_run();
         for (number, reference) in self.references.iter().enumerate() {

@@ -109,7 +109,8 @@ fn an_initial_velocity_without_a_value_at_a_face_is_refused() {
     assert!(found.contains("initial.velocity"), "{found}");
 }
 
-/// A large scene is checked without its fields, and its steps are those of a grid with as narrow cells.
+/// A large scene is checked without its fields, and its steps are those of a grid with as narrow
+/// cells.
 #[test]
 fn a_large_scene_is_not_tried() {
     let plan = |cells: usize, size: f64| {
@@ -133,8 +134,8 @@ fn a_large_scene_is_not_tried() {
     assert!((1.0..1.25).contains(&ratio), "{} {}", large.steps, small.steps);
 }
 
-/// Estimated steps are within 1.5 of those made: decaying vortices, a lid, a cylinder that swings and
-/// bodies that fall.
+/// Estimated steps are within 1.5 of those made: decaying vortices, a lid, a cylinder that swings
+/// and bodies that fall.
 #[test]
 fn as_many_steps_are_made_as_estimated() {
     for (name, end) in

@@ -120,7 +120,8 @@ fn every_scene_is_checked_in_seconds() {
         let start = Instant::now();
         let scene = Scene::load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
         let plan = scene.plan().unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-        // 3.5 s alone, the first pressure solution of `sphere_les`; other tests run at the same time.
+        // 3.5 s alone, the first pressure solution of `sphere_les`; other tests run at the same
+        // time.
         assert!(start.elapsed() < Duration::from_secs(40), "{}: {:?}", path.display(), start.elapsed());
         assert!(plan.steps > 0.0 && plan.cpu > 0.0, "{plan}");
     }

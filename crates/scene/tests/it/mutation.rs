@@ -112,7 +112,7 @@ fn mutated(text: &str, rng: &mut Pcg64) -> (String, String) {
     }
 }
 
-/// What became of a mutated scene.
+/// Outcome of a mutated scene.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Fate {
     Refused,
@@ -125,7 +125,8 @@ enum Fate {
     Died,
 }
 
-/// Checks mutated scene number `seed`, and runs it for some time if it has no more than so many cells.
+/// Checks mutated scene number `seed`, and runs it for some time if it has no more than so many
+/// cells.
 fn fate(all: &[(std::path::PathBuf, String)], seed: u64, run: Option<(Duration, usize)>) -> (Fate, String) {
     let mut rng = Pcg64::seed_from_u64(seed);
     let (path, text) = &all[rng.random_range(0..all.len())];
@@ -190,7 +191,8 @@ fn number(name: &str, default: u64) -> u64 {
     std::env::var(name).ok().and_then(|n| n.parse().ok()).unwrap_or(default)
 }
 
-/// The scenes FIRST to LAST, each with its fate in a line; a process of its own, as it may be killed.
+/// The scenes FIRST to LAST, each with its fate in a line; a process of its own, as it may be
+/// killed.
 #[test]
 #[ignore = "part of `mutations_at_large`"]
 fn mutations_of_a_range() {
@@ -279,8 +281,8 @@ fn report(fates: &[(u64, Fate, String)]) -> BTreeMap<Fate, usize> {
     table
 }
 
-/// A sample of [`mutations_at_large`]: nothing panics, and what passes runs. Times are those of all tests of
-/// the process and tell nothing.
+/// A sample of [`mutations_at_large`]: nothing panics, and what passes runs. Times are those of all
+/// tests of the process and tell nothing.
 #[test]
 fn mutated_scenes_that_pass_run() {
     let all = inputs();

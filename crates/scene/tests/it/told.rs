@@ -131,7 +131,7 @@ fn what_looks_doubtful_is_told() {
         let told = warnings(more);
         assert!(told.contains(part), "{more:?}: {told}");
     }
-    // What the first step refuses the plan refuses.
+    // The plan refuses as the first step does.
     let told = scene(STREAM, &["time.dt=0.1"]).plan().unwrap_err().to_string();
     assert!(told.contains("time.dt: the flow moved 1.687e0 cells in a step"), "{told}");
     let periodic = ["sides.y=\"periodic\"", fine, &disc(0.2, 0.5)];

@@ -55,7 +55,8 @@ const RESERVED: &str = "000000000000000000000000";
 /// Margins around the plot \[pixels\]: left, above, right, below.
 const MARGINS: [f64; 4] = [96.0, 56.0, 140.0, 66.0];
 
-/// Pixels of the plot of a section of this width and height \[m\]: even numbers, as video encoders need.
+/// Pixels of the plot of a section of this width and height \[m\]: even numbers, as video encoders
+/// need.
 fn plot_of(width: f64, height: f64) -> [f64; 2] {
     let scale = (MOST[0] / width).min(MOST[1] / height);
     [width, height].map(|length| 2.0 * (0.5 * (scale * length).max(LEAST)).round())
@@ -142,7 +143,7 @@ impl Section<'_> {
     /// is room, otherwise wrapped.
     ///
     /// # Errors
-    /// Those of writing the file.
+    /// Errors of writing the file.
     pub fn draw(
         &self,
         sheet: &mut Sheet,
@@ -215,7 +216,8 @@ fn heading([title, state]: [&str; 2], room: f64) -> Vec<String> {
     lines
 }
 
-/// A colour under shares of a body's inside and of its outline; of nothing but solids all else is white.
+/// A colour under shares of a body's inside and of its outline; of nothing but solids all else is
+/// white.
 fn outlined(colour: Colour, [inside, line]: [f64; 2], alone: bool) -> Colour {
     let colour = if alone { mix(WHITE, colour, inside) } else { mix(colour, WHITE, 0.55 * inside) };
     if line > 0.0 { mix(colour, BLACK, 0.9 * line) } else { colour }

@@ -95,7 +95,8 @@ pub(crate) fn width(size: f64, text: &str) -> f64 {
     each_glyph(size, text, |_, _| {})
 }
 
-/// `text` in lines of at most `room` pixels, broken between words; a longer word is broken anywhere.
+/// `text` in lines of at most `room` pixels, broken between words; a longer word is broken
+/// anywhere.
 pub(crate) fn wrapped(size: f64, text: &str, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {

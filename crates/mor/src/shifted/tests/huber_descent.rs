@@ -64,7 +64,7 @@ fn wrong_entries_of_small_sets_are_found_with_the_ranks() {
     }
 }
 
-/// Of 240 snapshots 200 tell the modes. A bump in one of the others is no mode of theirs.
+/// 200 of 240 snapshots tell the modes. A bump in one of the others is no mode of theirs.
 #[test]
 fn an_event_between_the_snapshots_that_tell_modes_is_no_success() {
     let (m, n) = (48, 240);
@@ -98,7 +98,8 @@ fn an_event_between_the_snapshots_that_tell_modes_is_no_success() {
     }
 }
 
-/// Two of five entries are wrong: that they are not found shows in the reason and in the last error.
+/// Two of five entries are wrong: that they are not found shows in the reason and in the last
+/// error.
 #[test]
 fn too_many_wrong_entries_are_no_success() {
     let (shifts, clean) = crossing();

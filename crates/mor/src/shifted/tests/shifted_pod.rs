@@ -318,8 +318,8 @@ fn tolerances_and_sizes_that_are_not_usable() {
     }
 }
 
-/// Two boxes whose edges run apart and a pulse at rest: splines alone stop at an error of 1e-2, from spectral
-/// modes they reach that of their interpolation.
+/// Two boxes whose edges run apart and a pulse at rest: splines alone stop at an error of 1e-2,
+/// from spectral modes they reach that of their interpolation.
 #[test]
 fn splines_start_from_spectral_modes() {
     let (n, n_t, width) = (400, 60, 2.0);

@@ -39,7 +39,7 @@ impl AvailableMemory {
 }
 
 /// An entry in kB of a file of `/proc` \[bytes\].
-fn kilobytes(text: &str, key: &str) -> Option<f64> {
+pub(crate) fn kilobytes(text: &str, key: &str) -> Option<f64> {
     let line = text.lines().find_map(|line| line.strip_prefix(key))?;
     let number: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(1024.0 * number)

@@ -1,5 +1,4 @@
 //! From a setup to what the libraries run.
-use crate::available_memory::AvailableMemory;
 use crate::build_error::BuildError;
 use crate::cast::{Cast, Script};
 use crate::physics::{Physics, Segregated};
@@ -24,9 +23,6 @@ fn within(x: Point, repeats: &[Option<[f64; 2]>; 3]) -> [f64; 3] {
     std::array::from_fn(|a| repeats[a].map_or(x[a], |[from, length]| from + (x[a] - from).rem_euclid(length)))
 }
 
-/// Doubles per cell, in the plane and in space: fields, solvers, what is written.
-const DOUBLES: [f64; 2] = [30.0, 40.0];
-
 impl Setup {
     /// The convection scheme, and why it is the default one.
     fn convection(&self) -> String {
@@ -38,16 +34,6 @@ impl Setup {
             (None, Convection::Quick) => "quick".into(),
             (None, Convection::Limited) => "limited".into(),
         }
-    }
-
-    /// Memory for fields and solvers, roughly \[bytes\].
-    pub(crate) fn memory(&self) -> f64 {
-        if self.fluid.is_none() {
-            // What pictures show.
-            return self.cells() as f64 * 6.0 * 8.0;
-        }
-        let averages = if self.averages.is_some() { 10.0 } else { 0.0 };
-        self.cells() as f64 * (DOUBLES[self.dim() - 2] + averages) * 8.0
     }
 
     pub(crate) fn grid<const D: usize>(&self) -> Result<CartesianGrid<D>, FlowError> {
@@ -88,17 +74,6 @@ impl Setup {
         Ok(Some(value))
     }
 
-    /// Is there room for the grid?
-    pub(crate) fn check_memory(&self) -> Result<(), BuildError> {
-        let (cells, needed) = (self.cells() as f64, self.memory());
-        match AvailableMemory::now() {
-            Some(AvailableMemory { bytes: free, limit }) if needed > free => {
-                Err(BuildError::Memory { cells, needed, free, limit })
-            }
-            _ => Ok(()),
-        }
-    }
-
     /// Whether bodies act on the flow by a forcing, not as walls.
     pub(crate) fn is_forced(&self) -> bool {
         let any = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
@@ -134,7 +109,6 @@ impl Setup {
 
     /// The projection algorithm, without bodies or anything that acts on it.
     pub(crate) fn projection<const D: usize>(&self) -> Result<Projection<D>, BuildError> {
-        self.check_memory()?;
         let grid = self.grid()?;
         let mut flow = Projection::new(grid.clone(), self.all_sides(), self.fluid())?
             .with_convection(self.flow.convection)
@@ -160,7 +134,6 @@ impl Setup {
 
     /// PISO by Euler's scheme in time, as the paper has it.
     pub(crate) fn piso<const D: usize>(&self) -> Result<Segregated<D>, BuildError> {
-        self.check_memory()?;
         let grid = self.grid()?;
         let params = PisoParams { time_scheme: TimeScheme::Euler, ..PisoParams::default() };
         let mut flow = Piso::new(grid.clone(), self.all_sides(), self.fluid())?

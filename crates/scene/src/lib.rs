@@ -38,6 +38,7 @@ mod cast;
 mod deepest;
 mod document;
 mod dry;
+mod estimate;
 mod expression;
 mod folder_lock;
 mod identity;
@@ -45,7 +46,9 @@ mod log;
 mod look;
 mod options;
 mod pace;
+mod peak_memory;
 mod physics;
+mod pile;
 mod plan;
 mod problem;
 mod reader;
@@ -55,6 +58,7 @@ mod run;
 mod sanity;
 mod schema;
 mod setup;
+mod stand_in;
 mod steady;
 mod still;
 mod trial;
@@ -129,8 +133,13 @@ impl Scene {
     /// # Errors
     /// [`BuildError`] if it cannot be put together.
     pub fn plan(&self) -> Result<Plan, BuildError> {
+        self.planned(true)
+    }
+
+    /// Plan, with the cost of `files` or without.
+    fn planned(&self, files: bool) -> Result<Plan, BuildError> {
         self.setup.try_formulas();
-        let plan = self.setup.plan();
+        let plan = self.setup.plan(files);
         match self.unset_formula() {
             Some(problems) => Err(BuildError::Scene(Box::new(problems))),
             None => plan.map_err(|error| error.placed(&self.setup, &self.document)),
@@ -142,23 +151,31 @@ impl Scene {
     /// # Errors
     /// [`RunError`]; states saved before it are whole.
     pub fn run(&self, options: &Options, stop: &AtomicBool) -> Result<RunResult, RunError> {
-        let plan = self.plan()?;
-        self.setup.run(options, &self.identity, &plan.warnings, stop).map_err(|error| {
-            if let Some(problems) = self.unset_formula() {
-                return BuildError::Scene(Box::new(problems)).into();
-            }
-            let placed = |error: BuildError| error.placed(&self.setup, &self.document);
-            match error {
-                RunError::Build(error) => placed(error).into(),
-                // What no key has to do with stays as it is.
-                RunError::Coupling(error) => match placed(error.into()) {
-                    BuildError::Coupling(error) => error.into(),
-                    BuildError::Scene(problems) => RunError::Step(problems),
-                    told => told.into(),
-                },
-                error => error,
-            }
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
+        // First steps and run on the same threads: the run uses their memory again.
+        pool.install(|| {
+            let plan = self.planned(false)?;
+            let ran = self.setup.run(options, &self.identity, &plan.warnings, stop);
+            ran.map_err(|error| self.placed(error))
         })
+    }
+
+    /// The error with the key and the place in the file that it is about.
+    fn placed(&self, error: RunError) -> RunError {
+        if let Some(problems) = self.unset_formula() {
+            return BuildError::Scene(Box::new(problems)).into();
+        }
+        let placed = |error: BuildError| error.placed(&self.setup, &self.document);
+        match error {
+            RunError::Build(error) => placed(error).into(),
+            // What no key has to do with stays as it is.
+            RunError::Coupling(error) => match placed(error.into()) {
+                BuildError::Coupling(error) => error.into(),
+                BuildError::Scene(problems) => RunError::Step(problems),
+                told => told.into(),
+            },
+            error => error,
+        }
     }
 
     /// The first formula that was needed where it has no finite value, with its place.

@@ -101,7 +101,7 @@ impl Setup {
     /// Speed of a body that falls or rises from rest for `time` \[s\], at most the terminal one of
     /// a sphere (Schiller & Naumann 1935) or a cylinder (c_d = 1 + 10 Re^(−2/3), White 2006) of the
     /// same volume \[m/s\].
-    fn settling_speed(&self, shape: &dyn dem::Shape, density: f64, time: f64) -> f64 {
+    pub(crate) fn settling_speed(&self, shape: &dyn dem::Shape, density: f64, time: f64) -> f64 {
         let (fluid, dim) = (self.fluid(), self.dim());
         let gravity = self.gravity.norm();
         if gravity == 0.0 || fluid.density <= 0.0 {

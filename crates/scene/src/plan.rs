@@ -1,10 +1,11 @@
-//! What a scene would do.
+//! Plan of a run.
+use crate::available_memory::AvailableMemory;
 use crate::build_error::BuildError;
-use crate::run::RunError;
+use crate::estimate::one_thread;
+use crate::pace::Pace;
 use crate::setup::{Algorithm, ContactLawChoice, ForcingChoice, Setup};
-use crate::trial::{ANY_COURANT, Trial, Tried};
-use coupling::{Evolving, Grains, check_places};
-use fv_mesh::{Axis, CartesianGrid, Projection, Side};
+use coupling::check_places;
+use fv_mesh::Axis;
 use std::fmt;
 
 /// What running a scene would mean: told before it is run.
@@ -16,14 +17,14 @@ pub struct Plan {
     pub cells: Vec<usize>,
     /// Bodies at the start.
     pub bodies: usize,
-    /// Memory for fields and solvers, roughly \[bytes\].
-    pub memory: f64,
+    /// Most memory that the process holds at once \[bytes\]; none if it is not known.
+    pub memory: Option<f64>,
     /// Mean length of a step \[s\]; none for steady flow.
     pub dt: Option<f64>,
-    /// Steps to the end, or iterations allowed.
+    /// Steps to the end, or iterations as on a coarse grid.
     pub steps: f64,
-    /// CPU time, roughly \[s\].
-    pub cpu: f64,
+    /// CPU time on this machine, without that of reduced models \[s\]; none if it is not known.
+    pub cpu: Option<f64>,
     /// Parts of the libraries: name, whether it is at work, and what it does or why it is skipped.
     pub parts: Vec<(&'static str, bool, String)>,
     /// Whether the first steps were taken: a run may refuse others at its start.
@@ -34,63 +35,20 @@ pub struct Plan {
     pub warnings: Vec<String>,
 }
 
-/// CPU seconds per cell and step of the flow alone in the plane and in space (docs/results.md), and per marker.
-const COST: [f64; 2] = [1.2e-8, 3.5e-8];
-const COST_OF_MARKER: f64 = 1.5e-6;
-/// The same per cell of a model of large eddies (scene `sphere_les`), and of two equations beside bodies (`turbulent_cylinder`).
-const COST_OF_MODEL: [f64; 2] = [2.2e-7, 2.9e-7];
-/// CPU seconds per body and step (of 20 steps of the contacts) without a fluid, of smooth bodies and of polyhedra in a pile.
-const COST_OF_BODY: [f64; 2] = [8e-6, 2e-4];
 /// More steps than this are hardly meant.
 const MANY_STEPS: f64 = 1e8;
-/// CPU seconds per cell and iteration of the steady algorithm.
-const COST_OF_ITERATION: f64 = 4e-7;
-
-/// Memory \[bytes\] and bodies of scenes too large for first steps in a check.
-const LARGE: f64 = 5e8;
-const MANY_BODIES: usize = 100_000;
-/// Cells along each axis of the grid that stands for a large one.
-const WINDOW: usize = 16;
 
 impl Setup {
-    /// Puts the scene together, without running it, and tells what a run would mean.
-    pub(crate) fn plan(&self) -> Result<Plan, BuildError> {
+    /// Puts the scene together, without running it, and tells what a run would mean; with the cost
+    /// of `files`, for which those of a snapshot are written and deleted.
+    pub(crate) fn plan(&self, files: bool) -> Result<Plan, BuildError> {
         match self.dim() {
-            2 => self.plan_in::<2>(),
-            _ => self.plan_in::<3>(),
+            2 => self.plan_in::<2>(files),
+            _ => self.plan_in::<3>(files),
         }
     }
 
-    /// Findings about a scene that is too large to be tried: limits of its narrowest cells, of the
-    /// flow alone.
-    fn untried<const D: usize>(&self) -> Result<Tried, BuildError> {
-        let longest = match self.flow.algorithm {
-            _ if self.fluid.is_none() => Some(Grains::new(self.cast(self.chen())?).longest_dt()),
-            Algorithm::Simple => None,
-            Algorithm::Piso => Some(f64::INFINITY),
-            Algorithm::Projection => {
-                let window = |a: usize| {
-                    let n = WINDOW.min(self.axes[a].cells());
-                    Axis::uniform(n, 0.0, self.axes[a].narrowest() * n as f64)
-                };
-                let axes: Vec<_> = (0..D).map(window).collect::<Result<_, _>>()?;
-                let grid = CartesianGrid::<D>::from_axes(std::array::from_fn(|a| axes[a].clone()))?;
-                let walls = std::array::from_fn(|_| [Side::Wall([0.0; 3]), Side::Wall([0.0; 3])]);
-                let flow = Projection::new(grid, walls, self.fluid())?.with_diffusion(self.diffusion());
-                Some(flow.stable_dt(ANY_COURANT))
-            }
-        };
-        self.initial(&self.grid::<D>()?)?;
-        let initial = self.initial_speed() / self.narrowest();
-        let limits = longest.map(|longest| [longest, initial]);
-        let pressure = "chosen at the start of the run".into();
-        Ok(Tried { limits, pressure, thin: Vec::new(), step: None })
-    }
-
-    fn plan_in<const D: usize>(&self) -> Result<Plan, BuildError> {
-        let cells = self.cells() as f64;
-        let moved = self.bodies.any_moves();
-        self.check_memory()?;
+    fn plan_in<const D: usize>(&self, files: bool) -> Result<Plan, BuildError> {
         // Bodies are put together without a flow, which they do not need for that.
         if self.is_forced() {
             let (grid, periodic) = (self.grid::<D>()?, |a| self.periodic(a));
@@ -106,62 +64,49 @@ impl Setup {
             }
         }
         self.check_paths::<D>()?;
-        let large = self.memory() > LARGE || self.bodies.list.len() > MANY_BODIES;
-        let Tried { limits, pressure, thin, step } = match large {
-            true => self.untried::<D>()?,
-            false => {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(RunError::from);
-                pool.and_then(|pool| pool.install(|| self.execute(&Trial(self))))?
-            }
+        let available = AvailableMemory::now();
+        let large = self.is_large(available.as_ref());
+        let (tried, estimate) = if large {
+            (self.untried::<D>()?, self.estimate_by_smaller(files)?)
+        } else {
+            let (tried, estimate) = self.try_steps(files)?;
+            (tried, Some(estimate))
         };
-        let pace = limits.map(|[longest, rate]| self.expected_steps(longest, rate));
-        let (dt, steps) = (pace.map(|p| p.dt), pace.map_or(self.flow.iterations as f64, |p| p.steps));
-        let h = self.narrowest();
-        let markers: f64 = if moved { self.bodies.list.iter().map(|b| surface(b, h, D)).sum() } else { 0.0 };
-        let model = self.turbulence.as_ref().map_or(0.0, |t| COST_OF_MODEL[usize::from(t.model.averages())]);
-        let cpu = steps
-            * match self.flow.algorithm {
-                _ if step.is_some() => step.unwrap_or(0.0),
-                _ if self.fluid.is_none() => {
-                    let cost = |b: &crate::setup::BodySetup| {
-                        COST_OF_BODY[usize::from(b.shape.polyhedron().is_some())]
-                    };
-                    self.bodies.list.iter().map(cost).sum()
-                }
-                Algorithm::Projection => cells * (COST[D - 2] + model) + markers * COST_OF_MARKER,
-                Algorithm::Piso => 20.0 * cells * COST[D - 2] + markers * COST_OF_MARKER,
-                Algorithm::Simple => cells * COST_OF_ITERATION,
-            };
+        let estimate = estimate.map(|estimate| self.with_later(estimate, files));
+        self.require_memory(estimate.and_then(|estimate| estimate.memory), available)?;
+        let pace = tried.limits.map(|[longest, rate]| self.expected_steps(longest, rate));
+        let iterations = || -> Result<f64, BuildError> {
+            let expected = if files { one_thread(|| self.expected_iterations::<D>())? } else { None };
+            Ok(expected.unwrap_or(self.flow.iterations as f64))
+        };
+        let (dt, steps) = match pace {
+            Some(Pace { dt, steps }) => (Some(dt), steps),
+            None => (None, iterations()?),
+        };
+        let cpu = estimate.map(|estimate| estimate.cost.of_run(steps, &self.output));
         let mut warnings = self.warnings();
-        warnings.extend(self.thin_warnings(&thin));
+        warnings.extend(self.thin_warnings(&tried.thin));
         if steps > MANY_STEPS {
             warnings.push(format!(
-                "{} steps to time.end, {} on one core: is everything in metres and seconds, and no cell far narrower than the others?",
+                "{} steps to time.end{}: is everything in metres and seconds, and no cell far narrower than the others?",
                 count(steps),
-                duration(cpu)
+                cpu.map_or_else(String::new, |cpu| format!(", {} on one core", duration(cpu))),
             ));
         }
         Ok(Plan {
             name: self.name.clone(),
             cells: self.axes.iter().map(Axis::cells).collect(),
             bodies: self.bodies.list.len(),
-            memory: self.memory(),
+            memory: estimate.and_then(|estimate| estimate.memory).map(|[before, taken]| before + taken),
             dt,
             steps,
             cpu,
             parts: self.parts(),
             tried: !large,
-            pressure,
+            pressure: tried.pressure,
             warnings,
         })
     }
-}
-
-/// Markers on a body: elements of its surface a cell wide, by the sphere around it.
-fn surface(body: &crate::setup::BodySetup, h: f64, dim: usize) -> f64 {
-    let r = body.shape.bounding_radius() / h;
-    let pi = std::f64::consts::PI;
-    if dim == 2 { 2.0 * pi * r } else { 4.0 * pi * r * r }
 }
 
 impl fmt::Display for Plan {
@@ -171,12 +116,17 @@ impl fmt::Display for Plan {
         writeln!(f, "{}", self.name)?;
         writeln!(f, "  cells     {} = {total}", cells.join(" × "))?;
         writeln!(f, "  bodies    {}", self.bodies)?;
-        writeln!(f, "  memory    about {}", bytes(self.memory))?;
+        let unknown = || "not known: neither this scene nor a smaller one was tried".into();
+        let memory = self.memory.map_or_else(unknown, |memory| format!("about {}", bytes(memory)));
+        writeln!(f, "  memory    {memory}")?;
         match self.dt {
             Some(dt) => writeln!(f, "  step      {dt:.3e} s, about {} of them", count(self.steps))?,
-            None => writeln!(f, "  steady    up to {:.0} iterations", self.steps)?,
+            None => writeln!(f, "  steady    about {:.0} iterations, as on a coarse grid", self.steps)?,
         }
-        writeln!(f, "  cost      about {} on one core", duration(self.cpu))?;
+        let on_core = |cpu: f64| format!("about {} on one core", duration(cpu));
+        let cost = self.cpu.map_or_else(unknown, on_core);
+        let models = self.parts.iter().any(|(name, active, _)| *active && *name == "reduced models");
+        writeln!(f, "  cost      {cost}{}", if models { ", and that of reduced models" } else { "" })?;
         writeln!(f, "  pressure  {}", self.pressure)?;
         if !self.tried {
             writeln!(

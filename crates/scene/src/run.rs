@@ -11,10 +11,7 @@ use crate::result::{Ending, RunResult};
 use crate::setup::Setup;
 use crate::steady::Steady;
 use crate::view::View;
-use crate::watch::{
-    Audience, AveragesWatch, FieldsWatch, ForcesWatch, ImagesWatch, ModelsWatch, ProbesWatch,
-    TrajectoriesWatch, Watch, output,
-};
+use crate::watch::output;
 use coupling::{CheckpointError, CouplingError, SavedState};
 use example_support::cpu::Stopwatch;
 use example_support::progress::Progress;
@@ -94,9 +91,7 @@ impl Setup {
         warnings: &[String],
         stop: &AtomicBool,
     ) -> Result<RunResult, RunError> {
-        let stage = Stage { setup: self, options, identity, warnings, stop };
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
-        pool.install(|| self.execute(&stage))
+        self.execute(&Stage { setup: self, options, identity, warnings, stop })
     }
 }
 
@@ -117,41 +112,6 @@ pub(crate) const STATE: &str = "state.bin";
 impl Stage<'_> {
     pub(crate) fn folder(&self) -> &Path {
         self.options.out.as_deref().unwrap_or(&self.setup.output.folder)
-    }
-
-    pub(crate) fn audience(&self, resume: Option<f64>) -> Result<Audience, CouplingError> {
-        let (setup, folder) = (self.setup, self.folder());
-        let dim = setup.dim();
-        let names: Vec<String> = setup.bodies.list.iter().map(|b| b.name.clone()).collect();
-        let bodies = !names.is_empty() || !setup.bodies.inflows.is_empty();
-        let moves = setup.bodies.any_moves();
-        let mut watches: Vec<Box<dyn Watch>> = Vec::new();
-        let out = &setup.output;
-        watches.push(Box::new(FieldsWatch::new(
-            folder,
-            [out.fields && setup.fluid.is_some(), out.bodies && moves],
-            resume,
-        )?));
-        if out.bodies && moves {
-            watches.push(Box::new(TrajectoriesWatch::new(folder, names.clone(), resume)?));
-        }
-        if let Some(images) = out.images.clone() {
-            watches.push(Box::new(ImagesWatch::new(folder, setup, images)?));
-        }
-        if !setup.probes.is_empty() {
-            watches.push(Box::new(ProbesWatch::new(folder, &setup.probes, dim, resume)?));
-        }
-        if let Some(forces) = setup.forces.filter(|_| bodies) {
-            watches.push(Box::new(ForcesWatch::new(folder, forces, names, setup.fluid().density, resume)?));
-        }
-        if let Some(averages) = setup.averages {
-            watches.push(Box::new(AveragesWatch::new(folder, averages, dim, setup.cells())));
-        }
-        if !setup.models.is_empty() {
-            let images = setup.output.images.clone();
-            watches.push(Box::new(ModelsWatch::new(folder, &setup.models, images, self.options.quiet)?));
-        }
-        Ok(Audience::new(watches))
     }
 
     /// Whether the run goes on from a saved state.
@@ -266,7 +226,7 @@ impl Execution for Stage<'_> {
             self.reopen()?;
             resume = Some(simulation.time());
         }
-        let mut audience = self.audience(resume)?;
+        let mut audience = setup.audience(self.folder(), resume, self.options.quiet)?;
         if let Some(saved) = saved {
             saved.restore(&mut Kept(&mut audience)).map_err(|e| self.not_resumed(e))?;
         }

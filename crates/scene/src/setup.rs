@@ -38,6 +38,7 @@ use std::path::{Path, PathBuf};
 use time::Span;
 
 /// Everything that a scene says.
+#[derive(Clone)]
 pub(crate) struct Setup {
     /// The scene's name: that of its file.
     pub(crate) name: String,

@@ -11,6 +11,7 @@ use crate::still::Still;
 use crate::view::{Seen, View};
 use crate::watch::{Table, output};
 use coupling::StepInfo;
+use cpu_time::ThreadTime;
 use example_support::cpu::Stopwatch;
 use example_support::progress::Progress;
 use fv_mesh::{FlowError, ScalarTransport, Simple, SimpleInfo, SimpleParams, TransportParams, WallStress};
@@ -77,10 +78,38 @@ impl<const D: usize> Steady<D> {
     }
 }
 
+/// Cells of the coarse grid whose iterations are counted, in the plane and in space, and CPU time
+/// that this may take \[s\].
+const COARSE: [usize; 2] = [2_000, 8_000];
+const TIME: f64 = 1.0;
+
 impl Setup {
+    /// Iterations to convergence on a coarse grid, extrapolated by the last residuals where they
+    /// take long; those allowed if there are not enough, none if it diverges or cannot be built.
+    pub(crate) fn expected_iterations<const D: usize>(&self) -> Option<f64> {
+        let (tolerance, allowed) = (self.flow.tolerance, self.flow.iterations);
+        let mut steady = self.coarser(COARSE[D - 2]).ok()?.steady::<D>().ok()?;
+        let start = ThreadTime::now();
+        let mut residuals = Vec::new();
+        for done in 1..=allowed {
+            let (info, change) = steady.iterate().ok()?;
+            let residual = info.largest().max(change);
+            residuals.push(residual.ln());
+            if residual <= tolerance {
+                return Some(done as f64);
+            }
+            if start.elapsed().as_secs_f64() > TIME {
+                let half = done / 2;
+                let slope = (residuals[half] - residual.ln()) / (done - 1 - half).max(1) as f64;
+                let left = (residual / tolerance).ln() / slope.max(f64::MIN_POSITIVE);
+                return Some((done as f64 + left).ceil().min(allowed as f64));
+            }
+        }
+        Some(allowed as f64)
+    }
+
     /// The steady algorithm with bodies at rest as walls.
     pub(crate) fn steady<const D: usize>(&self) -> Result<Steady<D>, BuildError> {
-        self.check_memory()?;
         let grid = self.grid()?;
         let params =
             if self.turbulence.is_some() { SimpleParams::turbulent() } else { SimpleParams::default() };
@@ -113,6 +142,24 @@ impl Setup {
     }
 }
 
+impl<const D: usize> Checkpoint for Steady<D> {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        self.flow.save(&mut |name, values| sink(&format!("flow.{name}"), values));
+        self.scalars.save(&mut |name, values| sink(&format!("scalars.{name}"), values));
+        if let Some(model) = &self.model {
+            model.save(&mut |name, values| sink(&format!("model.{name}"), values));
+        }
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        self.flow.restore(&|name| source(&format!("flow.{name}")))?;
+        self.scalars.restore(&|name| source(&format!("scalars.{name}")))?;
+        match &mut self.model {
+            Some(model) => model.restore(&|name| source(&format!("model.{name}"))),
+            None => Ok(()),
+        }
+    }
+}
+
 /// All that is saved of a steady run.
 struct Saved<'a, const D: usize> {
     flow: &'a mut Steady<D>,
@@ -124,20 +171,11 @@ impl<const D: usize> Checkpoint for Saved<'_, D> {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         self.identity.save(sink);
         sink("residual", &[*self.residual]);
-        self.flow.flow.save(&mut |name, values| sink(&format!("flow.{name}"), values));
-        self.flow.scalars.save(&mut |name, values| sink(&format!("scalars.{name}"), values));
-        if let Some(model) = &self.flow.model {
-            model.save(&mut |name, values| sink(&format!("model.{name}"), values));
-        }
+        self.flow.save(sink);
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         *self.residual = RestartError::take(source, "residual", 1)?[0];
-        self.flow.flow.restore(&|name| source(&format!("flow.{name}")))?;
-        self.flow.scalars.restore(&|name| source(&format!("scalars.{name}")))?;
-        match &mut self.flow.model {
-            Some(model) => model.restore(&|name| source(&format!("model.{name}"))),
-            None => Ok(()),
-        }
+        self.flow.restore(source)
     }
 }
 
@@ -160,7 +198,7 @@ impl Stage<'_> {
         }
         let begin = flow.flow.iterations();
         let resume = self.resumes().then_some(begin as f64);
-        let mut audience = self.audience(None)?;
+        let mut audience = setup.audience(self.folder(), None, self.options.quiet)?;
         let mut table = Table::open(&self.folder().join("residuals.csv"), RESIDUALS, resume)?;
         let mut log = Log::open(self.folder(), self.resumes())?;
         let (tolerance, allowed) = (setup.flow.tolerance, setup.flow.iterations);

@@ -1,22 +1,28 @@
-//! First steps of a scene, without files.
+//! First steps of a scene.
 use crate::assembly::Execution;
 use crate::build_error::BuildError;
 use crate::look::{Books, Extremes, Show};
 use crate::result::{Ending, RunResult};
-use crate::run::RunError;
+use crate::run::{RunError, STATE};
 use crate::setup::Setup;
 use crate::steady::Steady;
 use crate::still::Still;
 use crate::view::{Seen, View};
 use crate::watch::Audience;
 use coupling::{CouplingError, Observer, StepInfo};
-use interfaces::ThinPart;
+use cpu_time::ThreadTime;
+use interfaces::{Checkpoint, ThinPart};
+use std::io;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Execution of the first steps.
-pub(crate) struct Trial<'a>(pub(crate) &'a Setup);
+pub(crate) struct Trial<'a> {
+    pub(crate) setup: &'a Setup,
+    /// Folder for the files of snapshots and a state; without it none are written.
+    pub(crate) folder: Option<&'a Path>,
+}
 
 /// Findings of a trial.
 pub(crate) struct Tried {
@@ -27,67 +33,167 @@ pub(crate) struct Tried {
     pub(crate) pressure: String,
     /// Parts of bodies that are too thin for the grid.
     pub(crate) thin: Vec<ThinPart>,
-    /// Wall time of a step or an iteration \[s\]; none without one.
-    pub(crate) step: Option<f64>,
+    pub(crate) cost: Cost,
 }
 
-/// Steps of a trial, at most, and the time after which none begins.
-const STEPS: u32 = 4;
+/// CPU time of the parts of a run \[s\].
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Cost {
+    /// Step or iteration.
+    pub(crate) step: f64,
+    /// Files of a snapshot with a picture, and of one without.
+    pub(crate) snapshot: [f64; 2],
+    /// Saved state.
+    pub(crate) state: f64,
+    /// Parts of the run that its first steps do not have.
+    pub(crate) later: f64,
+}
+
+impl Cost {
+    /// Combination of both, part by part.
+    pub(crate) fn with(self, other: Self, combine: impl Fn(f64, f64) -> f64) -> Self {
+        Self {
+            step: combine(self.step, other.step),
+            snapshot: [0, 1].map(|k| combine(self.snapshot[k], other.snapshot[k])),
+            state: combine(self.state, other.state),
+            later: combine(self.later, other.later),
+        }
+    }
+}
+
+/// Steps of a trial, at least and at most, and the time after which no more begin: in the second
+/// what the first has made is replaced, which takes the memory of both.
+const STEPS: [u32; 2] = [2, 4];
 const TIME: Duration = Duration::from_millis(250);
 
 /// Courant number that limits no step.
 pub(crate) const ANY_COURANT: f64 = 1e9;
 
 impl Trial<'_> {
-    /// Findings after the first steps; requires that references point to what a result has.
-    fn found(
-        &self,
-        view: &mut dyn View,
-        limits: Option<[f64; 2]>,
-        step: Option<f64>,
-    ) -> Result<Tried, BuildError> {
-        if !self.0.references.is_empty() {
-            let (extremes, audience) = (Extremes::default(), Audience::new(Vec::new()));
-            let ending = Ending::Stopped;
-            let result = RunResult::new(self.0, view, &extremes, None, &audience, ending, Path::new(""));
-            self.0.check_references(&result.result)?;
+    /// Requires that references point to what a result has.
+    fn check_references(&self, view: &mut dyn View) -> Result<(), BuildError> {
+        if self.setup.references.is_empty() {
+            return Ok(());
         }
-        Ok(Tried { limits, pressure: view.pressure_solver(), thin: view.thin().to_vec(), step })
+        let (extremes, audience) = (Extremes::default(), Audience::new(Vec::new()));
+        let (ending, folder) = (Ending::Stopped, Path::new(""));
+        let result = RunResult::new(self.setup, view, &extremes, None, &audience, ending, folder);
+        self.setup.check_references(&result.result)
     }
 }
 
-/// Observer that times steps and stops after some.
-struct FirstSteps<'a> {
-    stop: &'a AtomicBool,
-    begin: Instant,
-    last: Instant,
-    steps: u32,
-    shortest: Option<f64>,
+/// Files of a trial.
+struct Files<'a> {
+    folder: Option<&'a Path>,
+    audience: Option<Audience>,
+    written: bool,
 }
 
-impl<'a> FirstSteps<'a> {
-    fn new(stop: &'a AtomicBool) -> Self {
-        let now = Instant::now();
-        Self { stop, begin: now, last: now, steps: 0, shortest: None }
+impl<'a> Files<'a> {
+    fn new(trial: &Trial<'a>) -> Result<Self, CouplingError> {
+        let audience = trial.folder.map(|folder| trial.setup.audience(folder, None, true)).transpose()?;
+        Ok(Self { folder: trial.folder, audience, written: false })
+    }
+
+    /// Shows a step.
+    fn step(&mut self, view: &mut dyn View, info: &StepInfo) -> Result<(), CouplingError> {
+        let Some(audience) = &mut self.audience else { return Ok(()) };
+        disk_fails(audience.step(view, info)).map(drop)
+    }
+
+    /// Saves a state.
+    fn save(&self, of: &impl Checkpoint, cost: &mut Cost) {
+        let Some(folder) = self.folder else { return };
+        let start = ThreadTime::now();
+        // A disk that fails is no matter of the scene.
+        let _ = coupling::save(&folder.join(STATE), of);
+        cost.state = start.elapsed().as_secs_f64();
+    }
+
+    /// Writes snapshots.
+    fn write(&mut self, view: &mut dyn View, cost: &mut Cost) -> Result<(), CouplingError> {
+        self.written = true;
+        let Some(audience) = &mut self.audience else { return Ok(()) };
+        let info = StepInfo { step: view.steps(), time: view.time(), dt: 1.0, courant: 0.0, snapshot: None };
+        for (index, cost) in cost.snapshot.iter_mut().enumerate() {
+            let start = ThreadTime::now();
+            if !disk_fails(audience.snapshot(view, index, &info))? {
+                *cost = start.elapsed().as_secs_f64();
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether files could not be written for a reason that is no matter of the scene.
+///
+/// # Errors
+/// Other reasons.
+fn disk_fails(written: Result<(), CouplingError>) -> Result<bool, CouplingError> {
+    match written {
+        Ok(()) => Ok(false),
+        Err(CouplingError::Output { source, .. }) if source.kind() != io::ErrorKind::InvalidInput => Ok(true),
+        Err(error) => Err(error),
+    }
+}
+
+/// Observer that times steps, stops after some and writes files.
+struct FirstSteps<'a, K> {
+    setup: &'a Setup,
+    books: K,
+    files: Files<'a>,
+    stop: &'a AtomicBool,
+    timer: Timer,
+    cost: Cost,
+}
+
+impl<K> FirstSteps<'_, K> {
+    /// Writes files while the memory of a step is held.
+    fn write<S: Show>(&mut self, simulation: &mut S) -> Result<(), CouplingError> {
+        self.cost.step = self.timer.shortest();
+        self.files.write(&mut simulation.see(self.setup), &mut self.cost)?;
+        self.files.save(simulation, &mut self.cost);
+        Ok(())
+    }
+}
+
+/// Clock of the first steps.
+struct Timer {
+    begin: Instant,
+    last: ThreadTime,
+    steps: u32,
+    shortest: f64,
+}
+
+impl Timer {
+    fn start() -> Self {
+        Self { begin: Instant::now(), last: ThreadTime::now(), steps: 0, shortest: f64::INFINITY }
     }
 
     /// Notes a step; returns whether another may begin.
     fn note(&mut self) -> bool {
-        let time = self.last.elapsed().as_secs_f64();
-        self.last = Instant::now();
-        self.shortest = Some(self.shortest.map_or(time, |shortest| shortest.min(time)));
+        self.shortest = self.shortest.min(self.last.elapsed().as_secs_f64());
+        self.last = ThreadTime::now();
         self.steps += 1;
-        self.steps < STEPS && self.begin.elapsed() < TIME
+        self.steps < STEPS[0] || self.steps < STEPS[1] && self.begin.elapsed() < TIME
+    }
+
+    /// Shortest step that was noted; 0 without one.
+    fn shortest(&self) -> f64 {
+        if self.steps > 0 { self.shortest } else { 0.0 }
     }
 }
 
-impl<S> Observer<S> for FirstSteps<'_> {
-    fn begin(&mut self, _: &mut S) {
-        self.begin = Instant::now();
-        self.last = self.begin;
+impl<S: Show, K: Books<S>> Observer<S> for FirstSteps<'_, K> {
+    fn begin(&mut self, simulation: &mut S) {
+        self.books.begin(simulation);
+        self.timer = Timer::start();
     }
-    fn step(&mut self, _: &mut S, _: &StepInfo) -> Result<(), CouplingError> {
-        if !self.note() {
+    fn step(&mut self, simulation: &mut S, info: &StepInfo) -> Result<(), CouplingError> {
+        self.books.step(simulation, info)?;
+        self.files.step(&mut simulation.see(self.setup), info)?;
+        if !self.timer.note() {
+            self.write(simulation)?;
             self.stop.store(true, Ordering::Relaxed);
         }
         Ok(())
@@ -97,28 +203,37 @@ impl<S> Observer<S> for FirstSteps<'_> {
 impl Execution for Trial<'_> {
     type Output = Tried;
 
-    fn march<S: Show, K: Books<S>>(&self, mut simulation: S, _: K) -> Result<Tried, RunError> {
-        let setup = self.0;
+    fn march<S: Show, K: Books<S>>(&self, mut simulation: S, books: K) -> Result<Tried, RunError> {
+        let setup = self.setup;
         let schedule = setup.schedule(&simulation);
         // Without regard to convection: implicit viscous terms do not limit it.
-        let limits = [simulation.stable_dt(ANY_COURANT), simulation.courant(1.0)];
-        let stop = AtomicBool::new(false);
-        let mut first = FirstSteps::new(&stop);
+        let limits = Some([simulation.stable_dt(ANY_COURANT), simulation.courant(1.0)]);
+        let (files, stop, timer) = (Files::new(self)?, AtomicBool::new(false), Timer::start());
+        let mut first = FirstSteps { setup, books, files, stop: &stop, timer, cost: Cost::default() };
         coupling::run(&mut simulation, &schedule, &mut first, &stop)?;
-        Ok(self.found(&mut simulation.see(setup), Some(limits), first.shortest)?)
+        if !first.files.written {
+            first.write(&mut simulation)?;
+        }
+        let mut view = simulation.see(setup);
+        self.check_references(&mut view)?;
+        let (pressure, thin) = (view.pressure_solver(), view.thin().to_vec());
+        Ok(Tried { limits, pressure, thin, cost: first.cost })
     }
 
     fn converge<const D: usize>(&self, mut steady: Steady<D>) -> Result<Tried, RunError> {
-        let stop = AtomicBool::new(false);
-        let mut first = FirstSteps::new(&stop);
+        let mut timer = Timer::start();
         loop {
             steady.iterate().map_err(BuildError::from)?;
-            if !first.note() {
+            if !timer.note() {
                 break;
             }
         }
-        let still = Still { bodies: self.0.still(), thin: std::mem::take(&mut steady.thin) };
+        let (mut files, mut cost) = (Files::new(self)?, Cost { step: timer.shortest(), ..Cost::default() });
+        files.save(&steady, &mut cost);
+        let still = Still { bodies: self.setup.still(), thin: std::mem::take(&mut steady.thin) };
         let mut view = Seen { flow: &mut steady, guests: &still, timings: coupling::Timings::default() };
-        Ok(self.found(&mut view, None, first.shortest)?)
+        files.write(&mut view, &mut cost)?;
+        self.check_references(&mut view)?;
+        Ok(Tried { limits: None, pressure: view.pressure_solver(), thin: still.thin.clone(), cost })
     }
 }

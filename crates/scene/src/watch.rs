@@ -8,15 +8,16 @@ mod probes;
 mod table;
 mod trajectories;
 
-pub(crate) use averages::AveragesWatch;
-pub(crate) use fields::FieldsWatch;
-pub(crate) use forces::ForcesWatch;
-pub(crate) use images::ImagesWatch;
-pub(crate) use models::ModelsWatch;
-pub(crate) use probes::ProbesWatch;
+use averages::AveragesWatch;
+use fields::FieldsWatch;
+use forces::ForcesWatch;
+use images::ImagesWatch;
+use models::ModelsWatch;
+use probes::ProbesWatch;
 pub(crate) use table::Table;
-pub(crate) use trajectories::TrajectoriesWatch;
+use trajectories::TrajectoriesWatch;
 
+use crate::setup::Setup;
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
 use ibm::SolidFraction;
@@ -144,6 +145,43 @@ impl Audience {
     pub(crate) fn finish(&mut self, view: &mut dyn View, stop: &AtomicBool) -> Result<(), CouplingError> {
         self.watches.iter_mut().try_for_each(|watch| watch.finish(view, stop))?;
         self.flush()
+    }
+}
+
+impl Setup {
+    /// Those who look on, with files in `folder` that go on from time `resume` \[s\] if it is
+    /// given.
+    pub(crate) fn audience(
+        &self,
+        folder: &Path,
+        resume: Option<f64>,
+        quiet: bool,
+    ) -> Result<Audience, CouplingError> {
+        let names: Vec<String> = self.bodies.list.iter().map(|b| b.name.clone()).collect();
+        let bodies = !names.is_empty() || !self.bodies.inflows.is_empty();
+        let moves = self.bodies.any_moves();
+        let out = &self.output;
+        let fields = [out.fields && self.fluid.is_some(), out.bodies && moves];
+        let mut watches: Vec<Box<dyn Watch>> = vec![Box::new(FieldsWatch::new(folder, fields, resume)?)];
+        if out.bodies && moves {
+            watches.push(Box::new(TrajectoriesWatch::new(folder, names.clone(), resume)?));
+        }
+        if let Some(images) = out.images.clone() {
+            watches.push(Box::new(ImagesWatch::new(folder, self, images)?));
+        }
+        if !self.probes.is_empty() {
+            watches.push(Box::new(ProbesWatch::new(folder, &self.probes, self.dim(), resume)?));
+        }
+        if let Some(forces) = self.forces.filter(|_| bodies) {
+            watches.push(Box::new(ForcesWatch::new(folder, forces, names, self.fluid().density, resume)?));
+        }
+        if let Some(averages) = self.averages {
+            watches.push(Box::new(AveragesWatch::new(folder, averages, self.dim(), self.cells())));
+        }
+        if !self.models.is_empty() {
+            watches.push(Box::new(ModelsWatch::new(folder, &self.models, out.images.clone(), quiet)?));
+        }
+        Ok(Audience::new(watches))
     }
 }
 

@@ -81,6 +81,7 @@ impl Motion {
 }
 
 /// All about bodies.
+#[derive(Clone)]
 pub(crate) struct Bodies {
     pub(crate) list: Vec<BodySetup>,
     pub(crate) inflows: Vec<InflowSetup>,
@@ -180,6 +181,7 @@ pub(crate) enum ForcingChoice {
     CutLinks,
 }
 
+#[derive(Clone)]
 pub(crate) struct CouplingSetup {
     pub(crate) strategy: StrategyChoice,
     forcing: ForcingChoice,

@@ -22,6 +22,7 @@ pub(super) struct Place<'a> {
 }
 
 /// Bodies that come in while a run is on its way.
+#[derive(Clone)]
 pub(crate) struct InflowSetup {
     /// The key that made it: `factories.0`.
     pub(crate) origin: String,

@@ -21,6 +21,16 @@ pub(crate) struct ModelSetup {
     pub(crate) every: usize,
 }
 
+impl ModelSetup {
+    /// Memory of its fit \[bytes\]: all snapshots of the field, those that make the model, and a
+    /// decomposition of these.
+    pub(crate) fn memory(&self, cells: usize, dim: usize, snapshots: usize) -> f64 {
+        let components = if self.field == "velocity" { dim } else { 1 };
+        let all = (cells * components * (snapshots + 1) * size_of::<f64>()) as f64;
+        all * (1.0 + 2.0 / self.every as f64)
+    }
+}
+
 /// The functions of time.
 #[derive(Clone, Debug)]
 pub(crate) enum Coefficients {

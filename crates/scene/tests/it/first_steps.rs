@@ -128,7 +128,7 @@ fn a_large_scene_is_not_tried() {
         Scene::parse("a.toml", &text, &more).unwrap_or_else(|e| panic!("{e}")).plan().unwrap()
     };
     let (large, small) = (plan(96_000, 3_000.0), plan(32, 1.0));
-    assert!(!large.tried && small.tried, "{} {}", large.memory, small.memory);
+    assert!(!large.tried && small.tried, "{large}{small}");
     // Waves of the longer box decay more slowly.
     let ratio = large.steps / small.steps;
     assert!((1.0..1.25).contains(&ratio), "{} {}", large.steps, small.steps);

@@ -1,0 +1,109 @@
+//! Cost of bodies that will lie on each other.
+use crate::build_error::BuildError;
+use crate::peak_memory::PeakMemory;
+use crate::setup::{Bodies, BodySetup, ContactLawChoice, Motion, Setup};
+use coupling::{Evolving, Grains};
+use cpu_time::ThreadTime;
+use fv_mesh::{Axis, Side};
+use interfaces::{Point, Twist};
+
+/// Bodies along each axis of the pile that is timed.
+const ROW: usize = 5;
+/// Distance of its bodies over the diameter of a ball or disc of the same volume: they touch.
+const CLOSE: f64 = 0.97;
+/// Steps that are timed.
+const STEPS: u32 = 3;
+
+/// CPU time \[s\] and memory \[bytes\] of piles.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Pile {
+    pub(crate) cpu: f64,
+    pub(crate) memory: f64,
+}
+
+impl Setup {
+    /// Cost of contacts of bodies that settle on a floor during the run, by that of a periodic pile
+    /// of some of them: in proportion to their number and their time on the floor.
+    pub(crate) fn pile(&self) -> Pile {
+        let settled: Vec<f64> = self.bodies.list.iter().filter_map(|b| self.time_on_floor(b)).collect();
+        let time: f64 = settled.iter().sum();
+        if time <= 0.0 {
+            return Pile::default();
+        }
+        let free: Vec<_> = self.bodies.list.iter().filter(|b| is_free(b)).collect();
+        let sample = free.iter().cycle().take(ROW.pow(self.dim() as u32)).map(|&b| b.clone()).collect();
+        // Bodies of very different sizes may not fit into the period.
+        let Pile { cpu, memory } = self.sampled(sample).unwrap_or_default();
+        Pile { cpu: time * cpu, memory: settled.iter().filter(|&&t| t > 0.0).count() as f64 * memory }
+    }
+
+    /// Time of the run after which a free body has fallen or risen to a wall \[s\].
+    fn time_on_floor(&self, body: &BodySetup) -> Option<f64> {
+        if !is_free(body) || self.bodies.law == ContactLawChoice::None || self.gravity.norm() == 0.0 {
+            return None;
+        }
+        let fluid = self.fluid().density;
+        let down = self.gravity.normalize() * if body.material.density < fluid { -1.0 } else { 1.0 };
+        let to_end = |a: usize| {
+            let end = if down[a] < 0.0 { self.axes[a].lower() } else { self.axes[a].upper() };
+            ((end - body.pose.position[a]) / down[a], a)
+        };
+        let (height, axis) =
+            (0..self.dim()).filter(|&a| down[a] != 0.0).map(to_end).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let wall = self.bodies.touch_walls && self.sides[axis][usize::from(down[axis] > 0.0)].is_wall();
+        if !wall && self.bodies.walls.iter().all(|w| w.plane.normal().dot(&down) >= 0.0) {
+            return None;
+        }
+        let speed = self.settling_speed(&*body.shape, body.material.density, self.end);
+        let fall = match speed > 0.0 {
+            true => height / speed,
+            false => (2.0 * height / self.gravity.norm()).sqrt(),
+        };
+        Some((self.end - fall).max(0.0))
+    }
+
+    /// CPU time for each body and second, and memory for each body, of a pile of such bodies.
+    fn sampled(&self, mut sample: Vec<BodySetup>) -> Result<Pile, BuildError> {
+        let n = sample.len() as f64;
+        let (dim, pi) = (self.dim(), std::f64::consts::PI);
+        let volume = sample.iter().map(|b| b.shape.inertia(1.0).volume).sum::<f64>() / n;
+        let size = if dim == 2 { (4.0 * volume / pi).sqrt() } else { (6.0 * volume / pi).cbrt() };
+        let pitch = CLOSE * size;
+        for (i, body) in sample.iter_mut().enumerate() {
+            let place = [i % ROW, i / ROW % ROW, i / (ROW * ROW)];
+            body.pose.position = Point::from(place.map(|k| k as f64 * pitch));
+            (body.twist, body.tether, body.surface) = (Twist::default(), None, None);
+        }
+        let axis = || Axis::uniform(ROW, -0.5 * pitch, (ROW as f64 - 0.5) * pitch);
+        let bodies = Bodies {
+            list: sample,
+            inflows: Vec::new(),
+            exits: Vec::new(),
+            walls: Vec::new(),
+            overlaps: true,
+            ..self.bodies.clone()
+        };
+        let pile = Self {
+            axes: (0..dim).map(|_| axis()).collect::<Result<_, _>>()?,
+            sides: vec![[Side::Periodic, Side::Periodic]; dim],
+            fluid: None,
+            gravity: self.gravity * 0.0,
+            bodies,
+            ..self.clone()
+        };
+        let mut grains = Grains::new(pile.cast(pile.chen())?);
+        let dt = grains.longest_dt();
+        let peak = PeakMemory::start();
+        let start = ThreadTime::now();
+        for _ in 0..STEPS {
+            grains.begin()?;
+            grains.step(dt)?;
+        }
+        let cpu = start.elapsed().as_secs_f64() / (f64::from(STEPS) * dt * n);
+        Ok(Pile { cpu, memory: peak.map_or(0.0, |peak| peak.taken()) / n })
+    }
+}
+
+fn is_free(body: &BodySetup) -> bool {
+    matches!(body.motion, Motion::Free(_)) && body.tether.is_none()
+}

@@ -1,0 +1,62 @@
+//! Estimates of plans against what runs take.
+use crate::{folder, quiet, root};
+use example_support::cpu::{Stopwatch, peak_memory};
+use scene::Scene;
+use std::process::Command;
+use std::sync::atomic::AtomicBool;
+
+/// Variable that tells a child process its task, `plan` or `run`, a scene file and values to set.
+const CHILD: &str = "PLAN_OF";
+
+/// CPU time \[s\] and memory \[bytes\] that a process of its own finds.
+fn child(task: &str, scene: &str) -> [f64; 2] {
+    let child = Command::new(std::env::current_exe().unwrap())
+        .args(["--ignored", "--exact", "plan::figures", "--nocapture"])
+        .env(CHILD, format!("{task} {scene}"))
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&child.stdout);
+    let figure = |key: &str| -> f64 {
+        let found = told.lines().find_map(|line| line.strip_prefix(key)?.trim().parse().ok());
+        found.unwrap_or_else(|| panic!("{scene}: no {key}: {told}"))
+    };
+    ["cpu", "memory"].map(figure)
+}
+
+/// Steady and unsteady flow, walls by cut links in the plane and in space, a moved body, a pile:
+/// memory within 1.3, CPU time within 3, as other tests run at the same time (2 without them).
+#[test]
+fn runs_take_what_plans_tell() {
+    for scene in [
+        "taylor_green.toml",
+        "bent_channel.toml",
+        "oscillating_cylinder.toml time.end=3",
+        "packed_bed.toml time.end=0.02",
+        "hopper.toml time.end=1.0 output.snapshots=5",
+    ] {
+        let [told, used] = ["plan", "run"].map(|task| child(task, scene));
+        let [cpu, memory] = [0, 1].map(|k| told[k] / used[k]);
+        assert!((1.0 / 3.0..3.0).contains(&cpu), "{scene}: CPU time {cpu} of that used");
+        assert!((1.0 / 1.3..1.3).contains(&memory), "{scene}: memory {memory} of that used");
+    }
+}
+
+#[test]
+#[ignore = "part of `runs_take_what_plans_tell`"]
+fn figures() {
+    let child = std::env::var(CHILD).unwrap();
+    let mut words = child.split(' ').map(String::from);
+    let (task, name) = (words.next().unwrap(), words.next().unwrap());
+    let scene = Scene::load(&root().join("scenes").join(name), &words.collect::<Vec<_>>()).unwrap();
+    let (cpu, memory) = if task == "plan" {
+        let plan = scene.plan().unwrap();
+        (plan.cpu.unwrap(), plan.memory.unwrap())
+    } else {
+        let (out, watch) = (folder("plan"), Stopwatch::start());
+        scene.run(&quiet(&out), &AtomicBool::new(false)).unwrap();
+        let cpu = watch.elapsed().cpu;
+        std::fs::remove_dir_all(&out).unwrap();
+        (cpu, peak_memory().unwrap() as f64)
+    };
+    println!("\ncpu {cpu}\nmemory {memory}");
+}

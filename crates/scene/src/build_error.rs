@@ -137,11 +137,12 @@ impl BuildError {
                 | FlowError::ScalarDiverged { .. }
                 | FlowError::Scalar { .. } => Some("scalars".into()),
                 FlowError::Closure { .. } => Some("turbulence".into()),
-                FlowError::Diverged { .. } => Some(setup.pace()),
+                // Automatic steps are no cause.
+                FlowError::Diverged { .. } => Some(setup.pace()).filter(|key| key != COURANT),
                 _ => None,
             },
             Self::Coupling(CouplingError::Courant { .. }) => Some(setup.pace()),
-            Self::Coupling(CouplingError::Collapsed { .. }) => Some(setup.light().unwrap_or(setup.pace())),
+            Self::Coupling(CouplingError::Collapsed { .. }) => setup.light(),
             _ => None,
         }
     }
@@ -177,6 +178,10 @@ impl BuildError {
         if let Some((key, speed)) = self.too_fast_at().and_then(|time| setup.rush(time)) {
             let message = format!("{self}; what enters or moves here has come to {speed:.3e} m/s by then");
             return Self::Scene(Box::new(document.problem(&key, message)));
+        }
+        if let Some(force) = self.too_fast_at().and_then(|time| setup.grown_force(time)) {
+            let message = format!("{self}; the force has come to {force:.3e} m/s² by then");
+            return Self::Scene(Box::new(document.problem("force", message)));
         }
         if let (Some(flow), Some((key, speed))) = (self.flow_speed(setup.narrowest()), setup.fastest_body())
             && speed > BODY_SHARE * flow
@@ -230,6 +235,8 @@ fn place(axis: usize, at: f64, problem: &PathProblem) -> String {
     }
 }
 
+/// Key of the Courant number.
+const COURANT: &str = "time.courant";
 /// Key of the virtual mass.
 const VIRTUAL_MASS: &str = "coupling.virtual_mass";
 /// Share of the flow's speed from which on a body's own speed is its cause: momentum spreads, but
@@ -258,7 +265,7 @@ impl Setup {
         match self.flow.algorithm {
             Algorithm::Simple => "flow",
             _ if self.dt.is_some() => "time.dt",
-            _ => "time.courant",
+            _ => COURANT,
         }
         .into()
     }

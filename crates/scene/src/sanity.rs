@@ -84,6 +84,14 @@ impl Setup {
         self.faces().filter_map(grown).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
+    /// Body force per mass \[m/s²\] at `time` \[s\], if it has grown to several times that at the
+    /// start.
+    pub(crate) fn grown_force(&self, time: f64) -> Option<f64> {
+        let force = self.force.as_ref()?;
+        let [start, now] = [0.0, time].map(|t| norm(force.each_ref().map(|f| f.at(&[t]))));
+        (now > 3.0 * start).then_some(now)
+    }
+
     /// A speed \[m/s\] that the scene is likely to see: of inlets and walls at any time, of bodies, of what falls or is driven.
     pub(crate) fn speed(&self) -> f64 {
         let of_side = |(_, side, at): (String, &Side, [f64; 3])| {

@@ -4,7 +4,7 @@ use crate::setup::{Bodies, Setup};
 use fv_mesh::{Axis, FlowError};
 
 /// Cells and bodies of a stand-in, at most.
-const CELLS: usize = 200_000;
+const CELLS: usize = 100_000;
 const BODIES: usize = 10_000;
 /// Cells that each axis keeps, if it has them.
 const FEWEST: usize = 8;

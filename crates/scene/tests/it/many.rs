@@ -102,3 +102,13 @@ fn long_values_are_shown_in_part() {
     let message = line.split("fluid.density: ").last().unwrap_or_default();
     assert!(message.starts_with("[1.0, 1.0") && message.len() < 300, "{message}");
 }
+
+/// A share of a region that takes more bodies than can be is refused before they are made.
+#[test]
+fn too_many_bodies_are_refused_at_once() {
+    let text = balls(1)
+        .replace("\"lattice\"\ndistance = 2.2e-3\nnumber = 1\n", "\"random\"\nfraction = 0.3\n")
+        .replace("radius = 1e-3", "radius = 1e-6");
+    let (taken, told) = seconds(|| problems(&text, ""));
+    assert!(told.contains("fraction: this takes about") && taken < 5.0, "{taken} s: {told}");
+}

@@ -238,3 +238,15 @@ fn models_without_a_sublayer_want_wide_first_cells() {
     }
     assert!(!warnings("sst", "fluid.nu=1e-3").contains("no terms for the viscous sublayer"));
 }
+
+#[test]
+fn a_force_that_grows_without_end_is_named() {
+    let free = STREAM
+        .replace(
+            "x_min = { type = \"inlet\", velocity = [1.0, 0.0] }\nx_max = \"outlet\"",
+            "x = \"periodic\"",
+        )
+        .replace("y = \"wall\"", "y = \"symmetry\"");
+    let told = ends_with(&free, &["force=[\"exp(60*t)\", 0.0]"]);
+    assert!(told.contains("force: ") && told.contains("m/s² by then"), "{told}");
+}

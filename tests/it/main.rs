@@ -1,6 +1,7 @@
 //! Tests across crates, in one binary. Their scene is that of the example `falling_discs` (crate `example-support`).
 mod bad_input;
 mod bluff_body;
+mod command;
 mod edges;
 mod files;
 mod flow_alone;

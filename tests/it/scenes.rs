@@ -1,17 +1,15 @@
 //! Scenes that are killed and go on.
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// The example that runs scenes: cargo builds examples before tests.
-fn program() -> PathBuf {
-    let test = std::env::current_exe().unwrap();
-    test.parent().unwrap().parent().unwrap().join("examples/scene")
-}
+const PROGRAM: &str = env!("CARGO_BIN_EXE_siltflow");
 
-fn command(scene: &str, set: &[&str], out: &Path) -> Command {
-    let mut command = Command::new(program());
+/// `task` of the command, `run` or `resume`, for a scene.
+fn command(task: &str, scene: &str, set: &[&str], out: &Path) -> Command {
+    let mut command = Command::new(PROGRAM);
     command
+        .arg(task)
         .arg(format!("{}/scenes/{scene}.toml", env!("CARGO_MANIFEST_DIR")))
         .args(["--quiet", "--out"])
         .arg(out);
@@ -34,18 +32,16 @@ fn killed(scene: &str, set: &[&str]) {
         let _ = std::fs::remove_dir_all(folder);
     }
     let start = Instant::now();
-    let run = command(scene, set, &whole).output().unwrap();
+    let run = command("run", scene, set, &whole).output().unwrap();
     // An eighth of a whole run at first, however quick the machine is; less if it held this test up so long that the run came to its end.
     let mut first = start.elapsed() / 8;
     assert!(run.status.success(), "{scene}: {}", String::from_utf8_lossy(&run.stderr));
     let mut kills = 0;
     let mut wait = first;
     loop {
-        let mut command = command(scene, set, &pieces);
         // Killed before it had saved anything, it begins anew.
-        if pieces.join("state.bin").exists() {
-            command.arg("--resume");
-        }
+        let task = if pieces.join("state.bin").exists() { "resume" } else { "run" };
+        let mut command = command(task, scene, set, &pieces);
         let mut child = command.spawn().unwrap();
         // Longer each time, so that it comes to its end on slow machines, too.
         std::thread::sleep(wait);
@@ -69,7 +65,7 @@ fn killed(scene: &str, set: &[&str]) {
     }
     assert!(kills > 0, "{scene} was too quick to be killed");
     // Killed between its last step and its results, a run has nothing left to do but to tell them.
-    let told = command(scene, set, &pieces).arg("--resume").output().unwrap();
+    let told = command("resume", scene, set, &pieces).output().unwrap();
     assert!(told.status.success(), "{scene}: {}", String::from_utf8_lossy(&told.stderr));
     let mut compared = 0;
     for name in [
@@ -145,16 +141,15 @@ fn grains_without_a_fluid_that_are_killed_go_on() {
     killed("hopper", &["time.end=0.2"]);
 }
 
-/// Who reads the plan or the results may leave: no panic, and what had to be done is done.
+/// A reader of the plan or the results that leaves is no error, and what had to be done is done.
 #[test]
 fn nobody_has_to_read() {
     let out = std::env::temp_dir().join(format!("siltflow-unread-{}", std::process::id()));
-    for (arguments, done) in
-        [(&["--check"][..], None), (&["--json", "--set", "time.end=0.05"], Some("result.json"))]
-    {
-        let mut command = Command::new(program());
-        command.arg(format!("{}/scenes/taylor_green.toml", env!("CARGO_MANIFEST_DIR"))).args(arguments);
-        command.arg("--out").arg(&out).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let folder = out.display().to_string();
+    let run = ["run", "taylor_green", "--json", "--set", "time.end=0.05", "--out", &folder];
+    for (arguments, done) in [(&["check", "taylor_green"][..], None), (&run, Some("result.json"))] {
+        let mut command = Command::new(PROGRAM);
+        command.args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
         drop(child.stdout.take());
         let ended = child.wait_with_output().unwrap();
@@ -170,12 +165,7 @@ fn nobody_has_to_read() {
 #[test]
 fn results_that_cannot_be_printed_are_told() {
     let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-    let ended = Command::new(program())
-        .arg(format!("{}/scenes/taylor_green.toml", env!("CARGO_MANIFEST_DIR")))
-        .arg("--check")
-        .stdout(full)
-        .output()
-        .unwrap();
+    let ended = Command::new(PROGRAM).args(["check", "taylor_green"]).stdout(full).output().unwrap();
     let told = String::from_utf8_lossy(&ended.stderr);
     assert!(ended.status.code() == Some(1) && told.contains("could not be: "), "{told}");
 }

@@ -63,7 +63,7 @@ impl RunResult {
             Ending::Stopped => {
                 let end = shown(&r["end"], |x| format!(" of {x} s"));
                 let time = shown(&r["time"], |x| format!("{x:.4} s"));
-                notes.push(format!("**stopped** at {time}{end}, `--resume` goes on"));
+                notes.push(format!("**stopped** at {time}{end}, `siltflow resume` goes on"));
             }
             Ending::NotConverged => notes.push(format!("**not converged**, {residual}")),
             Ending::Done if r.get("residual").is_some() => notes.push(residual),

@@ -55,7 +55,7 @@ pub enum RunError {
         found: u64,
     },
     /// The folder holds the state of a run that is not at its end.
-    #[error("{} holds the state of a run that was stopped, killed or not converged; --resume goes on from it, --overwrite deletes it and begins anew, and --out gives another folder", .0.display())]
+    #[error("{} holds the state of a run that was stopped, killed or not converged; `siltflow resume` goes on from it, --overwrite deletes it and begins anew, and --out gives another folder", .0.display())]
     Unfinished(PathBuf),
     /// Another run writes to the folder.
     #[error("the folder {} is in use by another run ({}); wait for its end or stop it, or give another folder (--out)", folder.display(), if process.is_empty() { "of an unknown process".to_owned() } else { format!("process {process}") })]
@@ -73,10 +73,10 @@ pub enum RunError {
 /// Remedy for a state that cannot be loaded.
 fn remedy(error: &CheckpointError) -> &'static str {
     match error {
-        CheckpointError::Corrupt { older: Some(_), .. } => "--resume-previous goes on from it",
+        CheckpointError::Corrupt { older: Some(_), .. } => "`siltflow resume --previous` goes on from it",
         CheckpointError::Corrupt { .. } => "--overwrite does so",
         CheckpointError::Io { .. } => {
-            "without an interrupted run of this scene in the folder, leave out --resume and --resume-previous"
+            "without an interrupted run of this scene in the folder, begin with `siltflow run`"
         }
         CheckpointError::Mismatch(_) => "--overwrite begins anew and deletes the state",
     }
@@ -286,7 +286,7 @@ impl Execution for Stage<'_> {
                 summary.repeats
             ))?;
         }
-        log.line(if stopped { "stopped; --resume goes on" } else { "done" })?;
+        log.line(if stopped { "stopped; `siltflow resume` goes on" } else { "done" })?;
         let seconds = [audience.seconds + output, ledger];
         let result =
             RunResult::new(setup, &mut seen, &extremes, books.report(), &audience, ending, self.folder());

@@ -312,7 +312,7 @@ pub(crate) static SCENE: Table = Table {
             "checkpoint",
             Kind::Table(&run::CHECKPOINT),
             "all its defaults",
-            "Saved states, from which `--resume` goes on.",
+            "Saved states, from which `siltflow resume` goes on.",
             "{ every = 60.0 }",
         ),
     ],

@@ -5,8 +5,8 @@ use std::fmt::Write;
 /// The manual of all keys, of what a run leaves, and of limits, as Markdown: docs/scene.md is this text.
 pub fn manual() -> String {
     let mut out = String::from(
-        "# Scene files\n\n<!-- Made of crates/scene/src/schema by `cargo run --release --example scene -- --manual`; do not edit. -->\n\n\
-         `cargo run --release --example scene -- scenes/NAME.toml` runs a scene; `--check` tells what would be run, `--set key.key=value` changes a value, \
+        "# Scene files\n\n<!-- Made of crates/scene/src/schema by `cargo run --release -- manual`; do not edit. -->\n\n\
+         `siltflow run scenes/NAME.toml` runs a scene (`cargo run --release -- run scenes/NAME.toml` from a checkout); `siltflow check` tells what would be run, `--set key.key=value` changes a value, \
          `--help` tells the rest. `scenes/schema.json` is this page for editors.\n\n",
     );
     let mut queue: Vec<(String, &'static Table, Option<&'static str>)> = vec![("".into(), &SCENE, None)];

@@ -105,7 +105,7 @@ fn problems(text: &str, more: &str) -> String {
 
 #[test]
 fn the_manual_and_the_schema_are_those_of_the_code() {
-    let told = "run `cargo run --release --example scene -- --manual > docs/scene.md` and `-- --schema > scenes/schema.json`";
+    let told = "run `cargo run --release -- manual > docs/scene.md` and `cargo run --release -- schema > scenes/schema.json`";
     assert!(std::fs::read_to_string(root().join("docs/scene.md")).unwrap_or_default() == manual(), "{told}");
     assert!(
         std::fs::read_to_string(root().join("scenes/schema.json")).unwrap_or_default() == json_schema(),

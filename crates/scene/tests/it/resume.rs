@@ -146,7 +146,7 @@ fn unfinished_states_are_kept() {
         let error = go(&small(&[]), &quiet(&out), false).err().unwrap();
         assert!(matches!(&error, RunError::Unfinished(folder) if *folder == out), "{error}");
         let told = error.to_string();
-        assert!(["--resume", "--overwrite", "--out"].iter().all(|flag| told.contains(flag)), "{told}");
+        assert!(["siltflow resume", "--overwrite", "--out"].iter().all(|flag| told.contains(flag)), "{told}");
         assert!(fs::read(&state).unwrap() == before);
     };
     assert_eq!(go(&small(&[]), &quiet(&out), true).unwrap().ending, Ending::Stopped);
@@ -181,7 +181,7 @@ fn a_run_goes_on_from_the_state_before_the_last() {
     let older = fs::read(&previous).unwrap();
     fs::write(&last, "not a state").unwrap();
     let told = go(&small(&["time.end=3"]), &resume, false).err().unwrap().to_string();
-    assert!(told.contains("--resume-previous"), "{told}");
+    assert!(told.contains("siltflow resume --previous"), "{told}");
     let from_previous = Options { resume_previous: true, ..quiet(&out) };
     let stopped = go(&small(&["time.end=3"]), &from_previous, true).unwrap();
     assert_eq!((stopped.ending, &stopped.result["time"]), (Ending::Stopped, &1.0.into()));

@@ -1,0 +1,74 @@
+//! The command: scenes by name, checks, templates, exit codes.
+use serde_json::Value;
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+fn siltflow(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_siltflow")).args(arguments).output().unwrap()
+}
+
+fn printed(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// Path for a file or folder of this process.
+fn fresh(name: &str) -> PathBuf {
+    let path = std::env::temp_dir().join(format!("siltflow-command-{}-{name}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&path);
+    let _ = std::fs::remove_file(&path);
+    path
+}
+
+/// `rock_in_channel` names a mesh that comes with it.
+#[test]
+fn scenes_that_come_with_the_command_are_checked_by_name() {
+    let names: Vec<Value> = serde_json::from_slice(&siltflow(&["list", "--json"]).stdout).unwrap();
+    assert!(names.iter().any(|scene| scene["name"] == "two_discs" && scene["title"] != ""));
+    let rock = ["check", "rock_in_channel", "taylor_green", "--json", "--set", "output.images=false"];
+    let plans: Vec<Value> = serde_json::from_slice(&siltflow(&rock).stdout).unwrap();
+    assert_eq!(plans.len(), 2);
+    assert!(plans[1]["scene"] == "taylor_green" && plans[1]["steps"].as_f64().unwrap() > 10.0, "{plans:?}");
+}
+
+#[test]
+fn a_new_scene_passes_its_check_and_is_not_overwritten() {
+    let path = fresh("first.toml");
+    let name = path.to_str().unwrap();
+    let [first, second] = [siltflow(&["new", name]), siltflow(&["new", name])];
+    assert!(first.status.success() && second.status.code() == Some(1), "{second:?}");
+    let checked = siltflow(&["check", name]);
+    std::fs::remove_file(&path).unwrap();
+    assert!(checked.status.success() && !printed(&checked).contains("warning"), "{}", printed(&checked));
+}
+
+/// Exit codes 0, 1, 2, 3; the worst of several scenes counts.
+#[test]
+fn exit_codes_are_those_of_the_help() {
+    let help = printed(&siltflow(&["--help"]));
+    assert!(help.contains("Exit codes: 0 done; 1 an error of a run; 2 an error of a scene"), "{help}");
+    let out = fresh("codes");
+    let folder = out.to_str().unwrap();
+    let run = |scene: &str, more: &[&str]| {
+        let common = ["run", scene, "--quiet", "--out", folder, "--overwrite"];
+        siltflow(&[&common[..], more].concat()).status.code()
+    };
+    assert_eq!(run("taylor_green", &["--set", "time.end=0.05"]), Some(0));
+    assert_eq!(run("backward_step", &["--set", "flow.iterations=3"]), Some(3));
+    assert_eq!(run("no_such_scene", &[]), Some(2));
+    assert_eq!(run("taylor_green", &["--set", "fluid.nu=-1"]), Some(2));
+    let both = siltflow(&["check", "taylor_green", "no_such_scene"]);
+    assert!(both.status.code() == Some(2) && printed(&both).starts_with("taylor_green"), "{both:?}");
+    std::fs::remove_dir_all(&out).unwrap();
+}
+
+#[test]
+fn a_stopped_run_is_resumed() {
+    let out = fresh("resumed");
+    let folder = out.to_str().unwrap();
+    let arguments = |task| [task, "taylor_green", "--quiet", "--out", folder];
+    let unstarted = siltflow(&arguments("resume"));
+    assert_eq!(unstarted.status.code(), Some(1), "{unstarted:?}");
+    assert!(siltflow(&arguments("run")).status.success());
+    assert!(siltflow(&arguments("resume")).status.success());
+    std::fs::remove_dir_all(&out).unwrap();
+}

@@ -1,6 +1,8 @@
 //! Particle-resolved direct numerical simulation of flow laden with solids of any shape.
 //!
-//! A thin facade: each crate can be used alone, and this one re-exports them.
+//! A thin facade: each crate can be used alone, and this one re-exports them. The command of this
+//! name is behind the feature `cli`, which is on by default: libraries take this crate with
+//! `default-features = false` and the features that they need.
 //!
 //! | module | what it holds | feature |
 //! |---|---|---|

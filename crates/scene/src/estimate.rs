@@ -2,7 +2,6 @@
 use crate::available_memory::AvailableMemory;
 use crate::build_error::BuildError;
 use crate::peak_memory::PeakMemory;
-use crate::pile::Pile;
 use crate::run::RunError;
 use crate::setup::{Algorithm, ModelSetup, Output, Setup};
 use crate::trial::{ANY_COURANT, Cost, Trial, Tried};
@@ -100,13 +99,12 @@ impl Setup {
             || available.is_some_and(|available| needed > available.bytes)
     }
 
-    /// The estimate with what comes later than the first steps: piles, if costs are asked for, and
-    /// fits of models.
+    /// The estimate with what comes later than the first steps: contacts of piles, if costs are
+    /// asked for, and fits of models.
     pub(crate) fn with_later(&self, Estimate { mut cost, memory }: Estimate, costs: bool) -> Estimate {
-        let pile = if costs { self.pile() } else { Pile::default() };
-        cost.later = pile.cpu;
-        let later = pile.memory + self.memory_of_models();
-        Estimate { cost, memory: memory.map(|[before, taken]| [before, taken + later]) }
+        cost.later = if costs { self.cost_of_piles() } else { 0.0 };
+        let memory = memory.map(|[before, taken]| [before, taken + self.memory_of_models()]);
+        Estimate { cost, memory }
     }
 
     /// Memory of the largest fit of a model, behind the run's last step \[bytes\].

@@ -1,6 +1,5 @@
 //! Cost of bodies that will lie on each other.
 use crate::build_error::BuildError;
-use crate::peak_memory::PeakMemory;
 use crate::setup::{Bodies, BodySetup, ContactLawChoice, Motion, Setup};
 use coupling::{Evolving, Grains};
 use cpu_time::ThreadTime;
@@ -14,27 +13,18 @@ const CLOSE: f64 = 0.97;
 /// Steps that are timed.
 const STEPS: u32 = 3;
 
-/// CPU time \[s\] and memory \[bytes\] of piles.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Pile {
-    pub(crate) cpu: f64,
-    pub(crate) memory: f64,
-}
-
 impl Setup {
-    /// Cost of contacts of bodies that settle on a floor during the run, by that of a periodic pile
-    /// of some of them: in proportion to their number and their time on the floor.
-    pub(crate) fn pile(&self) -> Pile {
-        let settled: Vec<f64> = self.bodies.list.iter().filter_map(|b| self.time_on_floor(b)).collect();
-        let time: f64 = settled.iter().sum();
+    /// CPU time of contacts of bodies that settle on a floor during the run \[s\], by that of a
+    /// periodic pile of some of them: in proportion to their number and their time on the floor.
+    pub(crate) fn cost_of_piles(&self) -> f64 {
+        let time: f64 = self.bodies.list.iter().filter_map(|b| self.time_on_floor(b)).sum();
         if time <= 0.0 {
-            return Pile::default();
+            return 0.0;
         }
         let free: Vec<_> = self.bodies.list.iter().filter(|b| is_free(b)).collect();
         let sample = free.iter().cycle().take(ROW.pow(self.dim() as u32)).map(|&b| b.clone()).collect();
         // Bodies of very different sizes may not fit into the period.
-        let Pile { cpu, memory } = self.sampled(sample).unwrap_or_default();
-        Pile { cpu: time * cpu, memory: settled.iter().filter(|&&t| t > 0.0).count() as f64 * memory }
+        time * self.cost_of_pile(sample).unwrap_or(0.0)
     }
 
     /// Time of the run after which a free body has fallen or risen to a wall \[s\].
@@ -62,8 +52,8 @@ impl Setup {
         Some((self.end - fall).max(0.0))
     }
 
-    /// CPU time for each body and second, and memory for each body, of a pile of such bodies.
-    fn sampled(&self, mut sample: Vec<BodySetup>) -> Result<Pile, BuildError> {
+    /// CPU time for each body and second of a pile of such bodies.
+    fn cost_of_pile(&self, mut sample: Vec<BodySetup>) -> Result<f64, BuildError> {
         let n = sample.len() as f64;
         let (dim, pi) = (self.dim(), std::f64::consts::PI);
         let volume = sample.iter().map(|b| b.shape.inertia(1.0).volume).sum::<f64>() / n;
@@ -76,7 +66,7 @@ impl Setup {
         }
         let axis = || Axis::uniform(ROW, -0.5 * pitch, (ROW as f64 - 0.5) * pitch);
         let bodies = Bodies {
-            list: sample,
+            list: sample.into(),
             inflows: Vec::new(),
             exits: Vec::new(),
             walls: Vec::new(),
@@ -93,14 +83,12 @@ impl Setup {
         };
         let mut grains = Grains::new(pile.cast(pile.chen())?);
         let dt = grains.longest_dt();
-        let peak = PeakMemory::start();
         let start = ThreadTime::now();
         for _ in 0..STEPS {
             grains.begin()?;
             grains.step(dt)?;
         }
-        let cpu = start.elapsed().as_secs_f64() / (f64::from(STEPS) * dt * n);
-        Ok(Pile { cpu, memory: peak.map_or(0.0, |peak| peak.taken()) / n })
+        Ok(start.elapsed().as_secs_f64() / (f64::from(STEPS) * dt * n))
     }
 }
 

@@ -2,6 +2,7 @@
 use crate::build_error::BuildError;
 use crate::setup::{Bodies, Setup};
 use fv_mesh::{Axis, FlowError};
+use std::sync::Arc;
 
 /// Cells and bodies of a stand-in, at most.
 const CELLS: usize = 100_000;
@@ -13,13 +14,13 @@ impl Setup {
     /// Scene with wider cells and fewer bodies, which the cells may not resolve.
     pub(crate) fn smaller(&self) -> Result<Self, BuildError> {
         let mut small = self.coarser(CELLS)?;
-        small.bodies.list.truncate(BODIES);
+        small.bodies.list = self.bodies.list.iter().take(BODIES).cloned().collect();
         Ok(small)
     }
 
     /// This flow without bodies.
     pub(crate) fn without_bodies(mut self) -> Self {
-        self.bodies = Bodies { list: Vec::new(), inflows: Vec::new(), exits: Vec::new(), ..self.bodies };
+        self.bodies = Bodies { list: Arc::new([]), inflows: Vec::new(), exits: Vec::new(), ..self.bodies };
         self.forces = None;
         self
     }

@@ -14,7 +14,7 @@ impl Setup {
         let (grid, sides) = (self.grid::<D>()?, Sides::new(self.all_sides::<D>())?);
         let lattices: Vec<Lattice> =
             if smooth { (0..D).map(|c| grid.lattice(Some(c), &sides)).collect() } else { Vec::new() };
-        for body in &self.bodies.list {
+        for body in self.bodies.list.iter() {
             let Some(motion) = body.motion.prescribed(body.pose.position) else { continue };
             for time in self.instants() {
                 self.check_place(body, time, &motion.pose(&body.pose, time), &lattices)?;

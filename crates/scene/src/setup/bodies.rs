@@ -83,7 +83,8 @@ impl Motion {
 /// All about bodies.
 #[derive(Clone)]
 pub(crate) struct Bodies {
-    pub(crate) list: Vec<BodySetup>,
+    /// Shared by copies of the scene, as there may be a million.
+    pub(crate) list: Arc<[BodySetup]>,
     pub(crate) inflows: Vec<InflowSetup>,
     pub(crate) exits: Vec<HalfSpace>,
     pub(crate) law: ContactLawChoice,
@@ -269,7 +270,7 @@ pub(super) fn read(
     let materials = root.named("materials").into_iter().filter(too_plastic);
     let too_plastic = materials.map(|(name, _)| format!("materials.{name}.restitution")).collect();
     let bodies = Bodies {
-        list,
+        list: list.into(),
         inflows,
         exits,
         law,

@@ -34,12 +34,12 @@ fn status(key: &str) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Other tests of the process take memory meanwhile.
+    /// Other tests take memory meanwhile, and the system counts pages with some delay.
     #[test]
     fn an_array_is_seen_after_it_is_gone() {
         let Some(memory) = PeakMemory::start() else { return };
         drop(std::hint::black_box(vec![1u8; 200_000_000]));
         let taken = memory.taken();
-        assert!(memory.before() > 1e6 && (2e8..1e9).contains(&taken), "{taken}");
+        assert!(memory.before() > 1e6 && (1.9e8..1e9).contains(&taken), "{taken}");
     }
 }

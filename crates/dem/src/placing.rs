@@ -32,6 +32,9 @@ mod region;
 mod size_distribution;
 mod source;
 
+/// Points and bodies that are made at once, at most: several gigabytes as bodies.
+const MOST: usize = 10_000_000;
+
 pub use body_table::{BodyRow, BodyTableError, read_bodies, write_bodies};
 pub use crystal_lattice::{CrystalLattice, LatticeKind};
 pub(crate) use error::not_negative;

@@ -137,11 +137,12 @@ impl BuildError {
                 | FlowError::ScalarDiverged { .. }
                 | FlowError::Scalar { .. } => Some("scalars".into()),
                 FlowError::Closure { .. } => Some("turbulence".into()),
-                // Automatic steps are no cause.
-                FlowError::Diverged { .. } => Some(setup.pace()).filter(|key| key != COURANT),
+                FlowError::Diverged { .. } => setup.given_pace().map(Into::into),
                 _ => None,
             },
-            Self::Coupling(CouplingError::Courant { .. }) => Some(setup.pace()),
+            Self::Coupling(CouplingError::Courant { .. }) => {
+                Some(setup.given_pace().unwrap_or("time.courant").into())
+            }
             Self::Coupling(CouplingError::Collapsed { .. }) => setup.light(),
             _ => None,
         }
@@ -175,16 +176,22 @@ impl BuildError {
 
     /// The same with its place in the file, if a key has to do with it.
     pub(crate) fn placed(self, setup: &Setup, document: &Document) -> Self {
-        if let Some((key, speed)) = self.too_fast_at().and_then(|time| setup.rush(time)) {
-            let message = format!("{self}; what enters or moves here has come to {speed:.3e} m/s by then");
-            return Self::Scene(Box::new(document.problem(&key, message)));
+        let flow = self.flow_speed(setup.narrowest());
+        // Momentum spreads, but does not grow: slower causes are none.
+        let is_cause = |speed: f64| flow.is_none_or(|flow| speed > CAUSE * flow);
+        if let Some(time) = self.too_fast_at() {
+            if let Some((key, speed)) = setup.rush(time).filter(|rush| is_cause(rush.1)) {
+                let message =
+                    format!("{self}; what enters or moves here has come to {speed:.3e} m/s by then");
+                return Self::Scene(Box::new(document.problem(&key, message)));
+            }
+            if let Some(force) = setup.grown_force(time).filter(|force| is_cause(force * time)) {
+                let message = format!("{self}; the force has come to {force:.3e} m/s² by then");
+                return Self::Scene(Box::new(document.problem("force", message)));
+            }
         }
-        if let Some(force) = self.too_fast_at().and_then(|time| setup.grown_force(time)) {
-            let message = format!("{self}; the force has come to {force:.3e} m/s² by then");
-            return Self::Scene(Box::new(document.problem("force", message)));
-        }
-        if let (Some(flow), Some((key, speed))) = (self.flow_speed(setup.narrowest()), setup.fastest_body())
-            && speed > BODY_SHARE * flow
+        if flow.is_some()
+            && let Some((key, speed)) = setup.fastest_body().filter(|body| is_cause(body.1))
         {
             let message = format!("{self}; the surface of this body begins with {speed:.3e} m/s");
             return Self::Scene(Box::new(document.problem(&key, message)));
@@ -235,13 +242,10 @@ fn place(axis: usize, at: f64, problem: &PathProblem) -> String {
     }
 }
 
-/// Key of the Courant number.
-const COURANT: &str = "time.courant";
 /// Key of the virtual mass.
 const VIRTUAL_MASS: &str = "coupling.virtual_mass";
-/// Share of the flow's speed from which on a body's own speed is its cause: momentum spreads, but
-/// does not grow.
-const BODY_SHARE: f64 = 0.3;
+/// Share of the flow's speed from which on another speed is its cause.
+const CAUSE: f64 = 0.3;
 
 /// The body that an error is about.
 fn body_of(error: &DemError) -> Option<BodyId> {
@@ -260,14 +264,12 @@ fn body_of(error: &DemError) -> Option<BodyId> {
 }
 
 impl Setup {
-    /// The key that says how fast the flow goes on.
-    fn pace(&self) -> String {
+    /// Key of the steps that are given; none where they are automatic.
+    fn given_pace(&self) -> Option<&'static str> {
         match self.flow.algorithm {
-            Algorithm::Simple => "flow",
-            _ if self.dt.is_some() => "time.dt",
-            _ => COURANT,
+            Algorithm::Simple => Some("flow"),
+            Algorithm::Projection | Algorithm::Piso => self.dt.map(|_| "time.dt"),
         }
-        .into()
     }
     /// Key of the body whose surface is fastest at the start, and its speed \[m/s\].
     fn fastest_body(&self) -> Option<(String, f64)> {
@@ -286,5 +288,36 @@ impl Setup {
             matches!(b.motion, Motion::Free(_)) && b.material.density < least * self.fluid().density
         };
         self.bodies.list.iter().any(light).then(|| VIRTUAL_MASS.into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Scene;
+
+    const BOX: &str = r#"
+        grid = { cells = [8, 8], size = [1.0, 1.0] }
+        sides = { x = "wall", y = "wall" }
+        fluid = { density = 1.0, nu = 0.01 }
+        time = { end = 1.0 }
+        force = ["sin(t)", 0.0]
+    "#;
+
+    /// Places the error of a flow of `speed` \[m/s\] at 0.5 s.
+    fn placed(more: &[&str], speed: f64) -> BuildError {
+        let more: Vec<String> = more.iter().map(|s| (*s).into()).collect();
+        let scene = Scene::parse("box.toml", BOX, &more).unwrap();
+        let dt = 0.4 * scene.setup.narrowest() / speed;
+        let error = BuildError::Coupling(CouplingError::Collapsed { dt, time: 0.5, courant: 0.4 });
+        error.placed(&scene.setup, &scene.document)
+    }
+
+    /// A force of 0.48 m/s² makes 0.2 m/s in 0.5 s, and not 1e6.
+    #[test]
+    fn a_key_is_named_only_if_it_can_be_the_cause() {
+        let told = placed(&[], 0.2).to_string();
+        assert!(told.contains("force: ") && told.contains("the force has come to 4.794e-1"), "{told}");
+        assert!(matches!(placed(&[], 1e6), BuildError::Coupling(_)));
     }
 }

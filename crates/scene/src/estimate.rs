@@ -27,13 +27,16 @@ pub(crate) struct Estimate {
     pub(crate) cost: Cost,
     /// Memory of the process before, and beyond that at the peak \[bytes\]; none without `/proc`.
     pub(crate) memory: Option<[f64; 2]>,
+    /// Whether files could not be written, so that cost and memory lack them.
+    pub(crate) unwritten: bool,
 }
 
 impl Estimate {
     /// Combination of both, number by number.
     fn with(self, other: Self, combine: impl Fn(f64, f64) -> f64) -> Self {
         let memory = self.memory.zip(other.memory).map(|(a, b)| [a[0], combine(a[1], b[1])]);
-        Self { cost: self.cost.with(other.cost, &combine), memory }
+        let unwritten = self.unwritten || other.unwritten;
+        Self { cost: self.cost.with(other.cost, &combine), memory, unwritten }
     }
     fn times(self, factor: f64) -> Self {
         self.with(self, |own, _| own * factor)
@@ -64,14 +67,21 @@ impl Setup {
         let folder = if files { tempfile::tempdir().ok() } else { None };
         let trial = Trial { setup: self, folder: folder.as_ref().map(tempfile::TempDir::path) };
         let tried = if files { one_thread(|| self.execute(&trial))? } else { self.execute(&trial) }?;
-        let estimate = Estimate { cost: tried.cost, memory: memory.map(|m| [m.before(), m.taken()]) };
+        let memory = memory.map(|memory| [memory.before(), memory.taken()]);
+        let unwritten = tried.unwritten || files && folder.is_none();
+        let estimate = Estimate { cost: tried.cost, memory, unwritten };
         Ok((tried, estimate))
     }
 
     /// Estimate by smaller scenes, with and without bodies: what a flow takes grows with its cells,
     /// what bodies add to it with the cells at their surfaces, and bodies alone with their number.
-    pub(crate) fn estimate_by_smaller(&self, files: bool) -> Result<Option<Estimate>, BuildError> {
-        let small = self.smaller()?;
+    pub(crate) fn estimate_by_smaller(
+        &self,
+        files: bool,
+        available: Option<&AvailableMemory>,
+    ) -> Result<Option<Estimate>, BuildError> {
+        let room = available.map_or(f64::INFINITY, |available| available.bytes / self.memory_of_cell());
+        let small = self.smaller(room as usize)?;
         let cells = self.cells() as f64 / small.cells() as f64;
         let bodies = self.bodies.list.len() as f64 / small.bodies.list.len().max(1) as f64;
         if self.fluid.is_none() {
@@ -90,10 +100,13 @@ impl Setup {
         })
     }
 
+    fn memory_of_cell(&self) -> f64 {
+        MEMORY_OF_CELL[usize::from(self.fluid.is_none())]
+    }
+
     /// Whether first steps take too long or too much memory for a check.
     pub(crate) fn is_large(&self, available: Option<&AvailableMemory>) -> bool {
-        let of_cell = MEMORY_OF_CELL[usize::from(self.fluid.is_none())];
-        let needed = self.cells() as f64 * of_cell;
+        let needed = self.cells() as f64 * self.memory_of_cell();
         needed > MANY_CELLS as f64 * MEMORY_OF_CELL[0]
             || self.bodies.list.len() > MANY_BODIES
             || available.is_some_and(|available| needed > available.bytes)
@@ -101,10 +114,12 @@ impl Setup {
 
     /// The estimate with what comes later than the first steps: contacts of piles, if costs are
     /// asked for, and fits of models.
-    pub(crate) fn with_later(&self, Estimate { mut cost, memory }: Estimate, costs: bool) -> Estimate {
-        cost.later = if costs { self.cost_of_piles() } else { 0.0 };
-        let memory = memory.map(|[before, taken]| [before, taken + self.memory_of_models()]);
-        Estimate { cost, memory }
+    pub(crate) fn with_later(&self, mut estimate: Estimate, costs: bool) -> Estimate {
+        estimate.cost.later = if costs { self.cost_of_piles() } else { 0.0 };
+        if let Some([_, taken]) = &mut estimate.memory {
+            *taken += self.memory_of_models();
+        }
+        estimate
     }
 
     /// Memory of the largest fit of a model, behind the run's last step \[bytes\].
@@ -150,6 +165,6 @@ impl Setup {
         let initial = self.initial_speed() / self.narrowest();
         let limits = longest.map(|longest| [longest, initial]);
         let pressure = "chosen at the start of the run".into();
-        Ok(Tried { limits, pressure, thin: Vec::new(), cost: Cost::default() })
+        Ok(Tried { limits, pressure, thin: Vec::new(), cost: Cost::default(), unwritten: false })
     }
 }

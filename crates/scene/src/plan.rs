@@ -21,8 +21,11 @@ pub struct Plan {
     pub memory: Option<f64>,
     /// Mean length of a step \[s\]; none for steady flow.
     pub dt: Option<f64>,
-    /// Steps to the end, or iterations as on a coarse grid.
+    /// Steps to the end; of steady flow iterations, as on a coarse grid.
     pub steps: f64,
+    /// Whether `steps` and `cpu` are those of all iterations that are allowed, as the flow did not
+    /// converge on a coarse grid.
+    pub at_most: bool,
     /// CPU time on this machine, without that of reduced models \[s\]; none if it is not known.
     pub cpu: Option<f64>,
     /// Parts of the libraries: name, whether it is at work, and what it does or why it is skipped.
@@ -67,7 +70,7 @@ impl Setup {
         let available = AvailableMemory::now();
         let large = self.is_large(available.as_ref());
         let (tried, estimate) = if large {
-            (self.untried::<D>()?, self.estimate_by_smaller(files)?)
+            (self.untried::<D>()?, self.estimate_by_smaller(files, available.as_ref())?)
         } else {
             let (tried, estimate) = self.try_steps(files)?;
             (tried, Some(estimate))
@@ -75,17 +78,21 @@ impl Setup {
         let estimate = estimate.map(|estimate| self.with_later(estimate, files));
         self.require_memory(estimate.and_then(|estimate| estimate.memory), available)?;
         let pace = tried.limits.map(|[longest, rate]| self.expected_steps(longest, rate));
-        let iterations = || -> Result<f64, BuildError> {
-            let expected = if files { one_thread(|| self.expected_iterations::<D>())? } else { None };
-            Ok(expected.unwrap_or(self.flow.iterations as f64))
+        let (dt, expected) = match pace {
+            Some(Pace { dt, steps }) => (Some(dt), Some(steps)),
+            None if files => (None, one_thread(|| self.expected_iterations::<D>())?),
+            None => (None, None),
         };
-        let (dt, steps) = match pace {
-            Some(Pace { dt, steps }) => (Some(dt), steps),
-            None => (None, iterations()?),
-        };
-        let cpu = estimate.map(|estimate| estimate.cost.of_run(steps, &self.output));
+        let steps = expected.unwrap_or(self.flow.iterations as f64);
+        let cpu = estimate.filter(|_| files).map(|estimate| estimate.cost.of_run(steps, &self.output));
         let mut warnings = self.warnings();
         warnings.extend(self.thin_warnings(&tried.thin));
+        if estimate.is_some_and(|estimate| estimate.unwritten) {
+            warnings.push(format!(
+                "files could not be written to the temporary folder {}: cost and memory are told without them",
+                std::env::temp_dir().display()
+            ));
+        }
         if steps > MANY_STEPS {
             warnings.push(format!(
                 "{} steps to time.end{}: is everything in metres and seconds, and no cell far narrower than the others?",
@@ -100,6 +107,7 @@ impl Setup {
             memory: estimate.and_then(|estimate| estimate.memory).map(|[before, taken]| before + taken),
             dt,
             steps,
+            at_most: expected.is_none(),
             cpu,
             parts: self.parts(),
             tried: !large,
@@ -116,14 +124,18 @@ impl fmt::Display for Plan {
         writeln!(f, "{}", self.name)?;
         writeln!(f, "  cells     {} = {total}", cells.join(" × "))?;
         writeln!(f, "  bodies    {}", self.bodies)?;
-        let unknown = || "not known: neither this scene nor a smaller one was tried".into();
-        let memory = self.memory.map_or_else(unknown, |memory| format!("about {}", bytes(memory)));
-        writeln!(f, "  memory    {memory}")?;
+        let unknown = || "not known: neither this scene nor a smaller one could be tried".into();
+        match self.memory {
+            Some(memory) => writeln!(f, "  memory    about {}", bytes(memory))?,
+            None if self.cpu.is_some() => writeln!(f, "  memory    not known: this system does not tell it")?,
+            None => writeln!(f, "  memory    {}", unknown())?,
+        }
+        let about = if self.at_most { "up to" } else { "about" };
         match self.dt {
             Some(dt) => writeln!(f, "  step      {dt:.3e} s, about {} of them", count(self.steps))?,
-            None => writeln!(f, "  steady    about {:.0} iterations, as on a coarse grid", self.steps)?,
+            None => writeln!(f, "  steady    {about} {} iterations", count(self.steps))?,
         }
-        let on_core = |cpu: f64| format!("about {} on one core", duration(cpu));
+        let on_core = |cpu: f64| format!("{about} {} on one core", duration(cpu));
         let cost = self.cpu.map_or_else(unknown, on_core);
         let models = self.parts.iter().any(|(name, active, _)| *active && *name == "reduced models");
         writeln!(f, "  cost      {cost}{}", if models { ", and that of reduced models" } else { "" })?;

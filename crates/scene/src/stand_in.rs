@@ -11,9 +11,10 @@ const BODIES: usize = 10_000;
 const FEWEST: usize = 8;
 
 impl Setup {
-    /// Scene with wider cells and fewer bodies, which the cells may not resolve.
-    pub(crate) fn smaller(&self) -> Result<Self, BuildError> {
-        let mut small = self.coarser(CELLS)?;
+    /// Scene with fewer bodies and wider cells, which may not resolve them: at most those for which
+    /// there is `room`.
+    pub(crate) fn smaller(&self, room: usize) -> Result<Self, BuildError> {
+        let mut small = self.coarser(CELLS.min(room))?;
         small.bodies.list = self.bodies.list.iter().take(BODIES).cloned().collect();
         Ok(small)
     }

@@ -85,7 +85,7 @@ const TIME: f64 = 1.0;
 
 impl Setup {
     /// Iterations to convergence on a coarse grid, extrapolated by the last residuals where they
-    /// take long; those allowed if there are not enough, none if it diverges or cannot be built.
+    /// take long; none if it needs more than are allowed, diverges or cannot be built.
     pub(crate) fn expected_iterations<const D: usize>(&self) -> Option<f64> {
         let (tolerance, allowed) = (self.flow.tolerance, self.flow.iterations);
         let mut steady = self.coarser(COARSE[D - 2]).ok()?.steady::<D>().ok()?;
@@ -102,10 +102,10 @@ impl Setup {
                 let half = done / 2;
                 let slope = (residuals[half] - residual.ln()) / (done - 1 - half).max(1) as f64;
                 let left = (residual / tolerance).ln() / slope.max(f64::MIN_POSITIVE);
-                return Some((done as f64 + left).ceil().min(allowed as f64));
+                return Some((done as f64 + left).ceil()).filter(|&expected| expected <= allowed as f64);
             }
         }
-        Some(allowed as f64)
+        None
     }
 
     /// The steady algorithm with bodies at rest as walls.

@@ -34,6 +34,8 @@ pub(crate) struct Tried {
     /// Parts of bodies that are too thin for the grid.
     pub(crate) thin: Vec<ThinPart>,
     pub(crate) cost: Cost,
+    /// Whether a disk failed, so that the cost lacks files.
+    pub(crate) unwritten: bool,
 }
 
 /// CPU time of the parts of a run \[s\].
@@ -82,58 +84,65 @@ impl Trial<'_> {
     }
 }
 
-/// Files of a trial.
+/// Files of a trial. A disk that fails is no matter of the scene.
 struct Files<'a> {
     folder: Option<&'a Path>,
     audience: Option<Audience>,
     written: bool,
+    failed: bool,
 }
 
 impl<'a> Files<'a> {
     fn new(trial: &Trial<'a>) -> Result<Self, CouplingError> {
-        let audience = trial.folder.map(|folder| trial.setup.audience(folder, None, true)).transpose()?;
-        Ok(Self { folder: trial.folder, audience, written: false })
+        let mut files = Self { folder: trial.folder, audience: None, written: false, failed: false };
+        if let Some(folder) = trial.folder {
+            files.audience = files.unless_disk_fails(trial.setup.audience(folder, None, true))?;
+        }
+        Ok(files)
+    }
+
+    /// The output, or none if a disk fails.
+    ///
+    /// # Errors
+    /// Other reasons.
+    fn unless_disk_fails<T>(&mut self, output: Result<T, CouplingError>) -> Result<Option<T>, CouplingError> {
+        match output {
+            Ok(output) => Ok(Some(output)),
+            Err(CouplingError::Output { source, .. }) if source.kind() != io::ErrorKind::InvalidInput => {
+                self.failed = true;
+                Ok(None)
+            }
+            Err(error) => Err(error),
+        }
     }
 
     /// Shows a step.
     fn step(&mut self, view: &mut dyn View, info: &StepInfo) -> Result<(), CouplingError> {
         let Some(audience) = &mut self.audience else { return Ok(()) };
-        disk_fails(audience.step(view, info)).map(drop)
+        let shown = audience.step(view, info);
+        self.unless_disk_fails(shown).map(drop)
     }
 
     /// Saves a state.
-    fn save(&self, of: &impl Checkpoint, cost: &mut Cost) {
+    fn save(&mut self, of: &impl Checkpoint, cost: &mut Cost) {
         let Some(folder) = self.folder else { return };
         let start = ThreadTime::now();
-        // A disk that fails is no matter of the scene.
-        let _ = coupling::save(&folder.join(STATE), of);
+        self.failed |= coupling::save(&folder.join(STATE), of).is_err();
         cost.state = start.elapsed().as_secs_f64();
     }
 
     /// Writes snapshots.
     fn write(&mut self, view: &mut dyn View, cost: &mut Cost) -> Result<(), CouplingError> {
         self.written = true;
-        let Some(audience) = &mut self.audience else { return Ok(()) };
         let info = StepInfo { step: view.steps(), time: view.time(), dt: 1.0, courant: 0.0, snapshot: None };
         for (index, cost) in cost.snapshot.iter_mut().enumerate() {
+            let Some(audience) = &mut self.audience else { return Ok(()) };
             let start = ThreadTime::now();
-            if !disk_fails(audience.snapshot(view, index, &info))? {
-                *cost = start.elapsed().as_secs_f64();
-            }
+            let shown = audience.snapshot(view, index, &info);
+            self.unless_disk_fails(shown)?;
+            *cost = start.elapsed().as_secs_f64();
         }
         Ok(())
-    }
-}
-
-/// Whether files could not be written for a reason that is no matter of the scene.
-///
-/// # Errors
-/// Other reasons.
-fn disk_fails(written: Result<(), CouplingError>) -> Result<bool, CouplingError> {
-    match written {
-        Ok(()) => Ok(false),
-        Err(CouplingError::Output { source, .. }) if source.kind() != io::ErrorKind::InvalidInput => Ok(true),
-        Err(error) => Err(error),
     }
 }
 
@@ -217,7 +226,7 @@ impl Execution for Trial<'_> {
         let mut view = simulation.see(setup);
         self.check_references(&mut view)?;
         let (pressure, thin) = (view.pressure_solver(), view.thin().to_vec());
-        Ok(Tried { limits, pressure, thin, cost: first.cost })
+        Ok(Tried { limits, pressure, thin, cost: first.cost, unwritten: first.files.failed })
     }
 
     fn converge<const D: usize>(&self, mut steady: Steady<D>) -> Result<Tried, RunError> {
@@ -229,11 +238,12 @@ impl Execution for Trial<'_> {
             }
         }
         let (mut files, mut cost) = (Files::new(self)?, Cost { step: timer.shortest(), ..Cost::default() });
-        files.save(&steady, &mut cost);
         let still = Still { bodies: self.setup.still(), thin: std::mem::take(&mut steady.thin) };
         let mut view = Seen { flow: &mut steady, guests: &still, timings: coupling::Timings::default() };
         files.write(&mut view, &mut cost)?;
         self.check_references(&mut view)?;
-        Ok(Tried { limits: None, pressure: view.pressure_solver(), thin: still.thin.clone(), cost })
+        let pressure = view.pressure_solver();
+        files.save(&steady, &mut cost);
+        Ok(Tried { limits: None, pressure, thin: still.thin, cost, unwritten: files.failed })
     }
 }

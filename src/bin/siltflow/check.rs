@@ -55,6 +55,7 @@ fn value(plan: &Plan) -> Value {
         "memory": plan.memory,
         "dt": plan.dt,
         "steps": plan.steps,
+        "at_most": plan.at_most,
         "cpu": plan.cpu,
         "tried": plan.tried,
         "pressure": plan.pressure,

@@ -75,21 +75,21 @@ impl Common {
         let several = scenes.len() > 1;
         let (mut table, mut worst) = (String::new(), 0);
         for scene in scenes {
-            let path = shipped.path(scene)?;
-            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            let name = Path::new(scene).file_stem().unwrap_or_default().to_string_lossy();
             if stop.load(Ordering::Relaxed) {
                 table += &empty_row(&name, "**not run**: stopped before");
                 continue;
             }
             let out = self.out.as_ref().map(|out| if several { out.join(&*name) } else { out.clone() });
             let options = Options { threads: self.threads.into(), quiet: self.quiet, out, ..options.clone() };
-            let code = self.run_one(&path, &options, &mut table, &stop).unwrap_or_else(|failure| {
+            let ran = shipped.path(scene).and_then(|path| self.run_one(&path, &options, &mut table, &stop));
+            let code = ran.unwrap_or_else(|failure| {
                 table += &empty_row(&name, &format!("**error**: {}", failure.message()));
                 failure.report()
             });
             worst = worst.max(code);
         }
-        if several {
+        if several && !self.json {
             print(&format!("{TABLE_HEAD}{table}"))?;
         }
         Ok(worst)

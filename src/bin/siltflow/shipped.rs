@@ -54,13 +54,26 @@ impl Shipped {
     pub(crate) fn path(&self, scene: &str) -> Result<PathBuf, Failure> {
         let path = PathBuf::from(scene);
         let file = format!("{scene}.toml");
-        if path.exists() || SCENES.iter().all(|(name, _)| *name != file) {
+        if path.exists() {
             return Ok(path);
+        }
+        if SCENES.iter().all(|(name, _)| *name != file) {
+            let message = format!(
+                "there is no file {scene}, and no scene of that name comes with the command; `siltflow list` tells the names"
+            );
+            return Err(Failure::of_input(message));
         }
         let folder = match self.folder.get() {
             Some(folder) => folder,
             None => {
-                let folder = write().map_err(Failure::of_output)?;
+                let failed = |error| {
+                    let place = std::env::temp_dir();
+                    Failure::of_output(format!(
+                        "{file} could not be written to the temporary folder {} (TMPDIR): {error}",
+                        place.display()
+                    ))
+                };
+                let folder = write().map_err(failed)?;
                 self.folder.get_or_init(|| folder)
             }
         };

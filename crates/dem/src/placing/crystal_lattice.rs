@@ -1,4 +1,5 @@
 //! Places in order.
+use super::MOST;
 use super::error::{PlacingError, not_negative, positive};
 use super::source::Source;
 use interfaces::{Aabb, Point, Vector};
@@ -45,9 +46,6 @@ pub struct CrystalLattice {
     basis: Vec<Vector>,
 }
 
-/// So many points are made at once, and no more.
-const MOST: f64 = 1e8;
-
 impl CrystalLattice {
     /// One whose nearest neighbours are `distance` \[m\] apart.
     ///
@@ -90,7 +88,7 @@ impl CrystalLattice {
     /// All points of so many cells along each axis, the first point at the origin, layer by layer along z.
     ///
     /// # Errors
-    /// [`PlacingError::TooMany`] from 10⁸ points on.
+    /// [`PlacingError::TooMany`] from 10⁷ points on.
     pub fn cells(&self, counts: [usize; 3]) -> Result<Vec<Point>, PlacingError> {
         let counts = [counts[0], counts[1], if self.plane { 1 } else { counts[2] }];
         let number = counts.iter().map(|&n| n as f64).product::<f64>() * self.basis.len() as f64;
@@ -109,7 +107,7 @@ impl CrystalLattice {
     /// `number` points in a block of cells about as long as wide and high, filled layer by layer from the origin.
     ///
     /// # Errors
-    /// [`PlacingError::TooMany`] from 10⁸ points on.
+    /// [`PlacingError::TooMany`] from 10⁷ points on.
     pub fn number(&self, number: usize) -> Result<Vec<Point>, PlacingError> {
         check_number(number as f64)?;
         let axes = if self.plane { 2 } else { 3 };
@@ -129,7 +127,7 @@ impl CrystalLattice {
     ///
     /// # Errors
     /// [`PlacingError::Parameter`] for a negative margin, [`PlacingError::Region`] for a box that is not finite,
-    /// [`PlacingError::TooMany`] from 10⁸ points on. A box without room for any point has none, which is no error.
+    /// [`PlacingError::TooMany`] from 10⁷ points on. A box without room for any point has none, which is no error.
     pub fn in_box(&self, bounds: &Aabb, margin: f64) -> Result<Vec<Point>, PlacingError> {
         let margin = not_negative("margin between lattice and box", margin)?;
         let (min, max) = (bounds.min, bounds.max);
@@ -192,9 +190,10 @@ impl CrystalLattice {
 }
 
 fn check_number(number: f64) -> Result<(), PlacingError> {
-    if number < MOST {
+    let most = MOST as f64;
+    if number < most {
         Ok(())
     } else {
-        Err(PlacingError::TooMany { what: "points of a lattice", number, most: MOST })
+        Err(PlacingError::TooMany { what: "points of a lattice", number, most })
     }
 }

@@ -1,4 +1,5 @@
 //! How sizes are distributed.
+use super::MOST;
 use super::error::{PlacingError, finite, positive};
 use super::source::Source;
 
@@ -83,8 +84,6 @@ struct Bin {
 
 /// Bounds must hold at least this share of a distribution that is drawn again outside of them.
 const SHARE: f64 = 1e-3;
-/// So many sizes are drawn at once, and no more.
-const MOST: usize = 100_000_000;
 /// After so many sizes it is known whether there would be more, if they would be so many times too many.
 const SAMPLE: usize = 10_000;
 const CERTAIN: f64 = 100.0;
@@ -239,7 +238,7 @@ impl SizeDistribution {
     /// Sizes, drawn with `seed`, as long as the sum of their `measure`s, volumes for instance, stays within `total`.
     ///
     /// # Errors
-    /// [`PlacingError::Parameter`] for a total or a measure that is not positive and finite, [`PlacingError::TooMany`] from 10⁸ sizes on.
+    /// [`PlacingError::Parameter`] for a total or a measure that is not positive and finite, [`PlacingError::TooMany`] from 10⁷ sizes on.
     pub fn until(
         &self,
         total: f64,

@@ -41,8 +41,6 @@ pub(crate) struct InflowSetup {
     pub(crate) unit: Option<f64>,
 }
 
-/// Bodies that a factory makes, at most, as by the key `number`.
-const MOST_BODIES: f64 = 1e7;
 /// Share of a region that random addition may be asked to fill.
 const MOST_FILLED: f64 = 0.6;
 /// So many shapes stand for a distribution of sizes of an inflow.
@@ -277,13 +275,6 @@ impl Factory<'_> {
             (None, Some(fraction)) => {
                 let volume = self.shapes(&[1.0])?[0].shape.inertia(1.0).volume;
                 let dim = self.context.dim as i32;
-                let expected = fraction * region.volume() / volume;
-                if expected > MOST_BODIES {
-                    let message = format!(
-                        "this takes about {expected:.1e} bodies, and there are {MOST_BODIES:.0e} at most; give a smaller share, a smaller region or larger bodies"
-                    );
-                    return Err(t.fail("fraction", message));
-                }
                 scale
                     .until(fraction * region.volume(), |factor| volume * factor.powi(dim), self.seed())
                     .map_err(|e| t.fail("fraction", e))?

@@ -57,15 +57,6 @@ pub enum FlowError {
         /// The longest stable one \[s\].
         limit: f64,
     },
-    /// The immersed walls leave no pressure equation that can be solved.
-    #[error(
-        "the pressure equation of the {cells} cells that immersed walls cut is singular to round-off; check \
-         that no cell is cut twice, or refine the grid there"
-    )]
-    Walls {
-        /// Cells of the fluid with faces that are not wholly open.
-        cells: usize,
-    },
     /// The velocity is no longer finite, or grew beyond what a step can carry.
     #[error(
         "the velocity diverged in {}, first or most in cell {cell:?}; {}",

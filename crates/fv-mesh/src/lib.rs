@@ -71,6 +71,7 @@ pub use algebra::GridMismatch;
 pub use axis::{Axis, Cluster};
 pub use boundary::{Patch, Profile, Side, Sides, VelocityFunction};
 pub use convection::Convection;
+pub use cut::InverseOutlook;
 pub use diffusion::Diffusion;
 pub use eddy_stress::EddyStress;
 pub use error::FlowError;

@@ -56,7 +56,11 @@ impl Cost {
         let snapshots = (output.snapshots + 1) as f64;
         let pictures = output.images.as_ref().map_or(0.0, |i| (output.snapshots / i.every + 1) as f64);
         let [with, without] = self.snapshot;
-        steps * self.step + pictures * with + (snapshots - pictures) * without + self.state + self.later
+        let marched = match self.iterations {
+            Some(iterations) => iterations.cost_of(steps, self.step),
+            None => steps * self.step,
+        };
+        marched + pictures * with + (snapshots - pictures) * without + self.state + self.later
     }
 }
 
@@ -95,7 +99,14 @@ impl Setup {
         let all = small.try_steps(files).ok().map(|(_, estimate)| estimate);
         let flow = small.without_bodies().try_steps(files).ok().map(|(_, estimate)| estimate);
         Ok(match (all, flow) {
-            (Some(all), Some(flow)) => Some(flow.times(cells).plus(all.beyond(flow).times(surface))),
+            (Some(all), Some(flow)) => {
+                let mut larger = flow.times(cells).plus(all.beyond(flow).times(surface));
+                larger.cost.iterations = all
+                    .cost
+                    .iterations
+                    .and_then(|iterations| iterations.scaled(cells, self.cells(), surface));
+                Some(larger)
+            }
             (all, flow) => all.or(flow).map(|estimate| estimate.times(cells)),
         })
     }
@@ -113,11 +124,12 @@ impl Setup {
     }
 
     /// The estimate with what comes later than the first steps: contacts of piles, if costs are
-    /// asked for, and fits of models.
+    /// asked for, the inverse at immersed walls and fits of models.
     pub(crate) fn with_later(&self, mut estimate: Estimate, costs: bool) -> Estimate {
         estimate.cost.later = if costs { self.cost_of_piles() } else { 0.0 };
         if let Some([_, taken]) = &mut estimate.memory {
-            *taken += self.memory_of_models();
+            let inverse = estimate.cost.iterations.map_or(0.0, |iterations| iterations.memory());
+            *taken += inverse.max(self.memory_of_models());
         }
         estimate
     }

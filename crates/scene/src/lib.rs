@@ -52,6 +52,7 @@ mod pile;
 mod plan;
 mod problem;
 mod reader;
+mod rehearsal;
 mod report;
 mod result;
 mod run;
@@ -63,6 +64,7 @@ mod steady;
 mod still;
 mod trial;
 mod view;
+mod wall_iterations;
 mod watch;
 
 pub use build_error::{BuildError, PathProblem};

@@ -1,4 +1,5 @@
 //! Steps of an unsteady run, estimated before it.
+use crate::rehearsal::Rehearsal;
 use crate::sanity::speed_at;
 use crate::setup::{BodySetup, Motion, Setup};
 use fv_mesh::Axis;
@@ -14,6 +15,12 @@ const RAMP: f64 = 15.0;
 /// Σ|u_a| of the components across the main flow, over its speed: next to bodies, and without any.
 const ACROSS: [f64; 2] = [1.0, 0.5];
 
+/// Diameter of the disc or ball with this area or volume \[m\].
+pub(crate) fn equivalent_diameter(volume: f64, dim: usize) -> f64 {
+    let pi = std::f64::consts::PI;
+    if dim == 2 { (4.0 * volume / pi).sqrt() } else { (6.0 * volume / pi).cbrt() }
+}
+
 /// Mean length and number of steps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pace {
@@ -23,15 +30,20 @@ pub(crate) struct Pace {
 }
 
 impl Setup {
-    /// Steps of at most `longest` \[s\]; `rate` is the initial field's Σ max|u_a|/h_a \[1/s\].
-    pub(crate) fn expected_steps(&self, longest: f64, rate: f64) -> Pace {
+    /// Steps of at most `longest` \[s\] with the speeds of a rehearsal; without one with those that
+    /// sides, forces and bodies are likely to make, `rate` being the initial field's Σ max|u_a|/h_a
+    /// \[1/s\].
+    pub(crate) fn expected_steps(&self, longest: f64, rate: f64, rehearsal: Option<&Rehearsal>) -> Pace {
         let intervals = self.output.snapshots.max(1);
         let parts = PARTS.div_ceil(intervals);
         let decay = self.decay();
         let full = |time: f64| match self.dt {
             Some(dt) => dt,
             None => {
-                let rate = self.expected_rate(time).max(rate * (-decay * time).exp());
+                let rate = match rehearsal {
+                    Some(rehearsal) => rehearsal.rate(time),
+                    None => self.expected_rate(time).max(rate * (-decay * time).exp()),
+                };
                 longest.min(self.courant / rate).min(self.end)
             }
         };
@@ -109,17 +121,8 @@ impl Setup {
         }
         let ratio = density / fluid.density;
         let volume = shape.inertia(1.0).volume;
-        let pi = std::f64::consts::PI;
-        let (size, area) = match dim {
-            2 => {
-                let d = (4.0 * volume / pi).sqrt();
-                (d, d)
-            }
-            _ => {
-                let d = (6.0 * volume / pi).cbrt();
-                (d, 0.25 * pi * d * d)
-            }
-        };
+        let size = equivalent_diameter(volume, dim);
+        let area = if dim == 2 { size } else { 0.25 * std::f64::consts::PI * size * size };
         let pull = (ratio - 1.0).abs() * gravity;
         let mut speed = (size * pull).sqrt();
         if speed == 0.0 {

@@ -1,5 +1,6 @@
 //! Cost of bodies that will lie on each other.
 use crate::build_error::BuildError;
+use crate::pace::equivalent_diameter;
 use crate::setup::{Bodies, BodySetup, ContactLawChoice, Motion, Setup};
 use coupling::{Evolving, Grains};
 use cpu_time::ThreadTime;
@@ -55,10 +56,9 @@ impl Setup {
     /// CPU time for each body and second of a pile of such bodies.
     fn cost_of_pile(&self, mut sample: Vec<BodySetup>) -> Result<f64, BuildError> {
         let n = sample.len() as f64;
-        let (dim, pi) = (self.dim(), std::f64::consts::PI);
+        let dim = self.dim();
         let volume = sample.iter().map(|b| b.shape.inertia(1.0).volume).sum::<f64>() / n;
-        let size = if dim == 2 { (4.0 * volume / pi).sqrt() } else { (6.0 * volume / pi).cbrt() };
-        let pitch = CLOSE * size;
+        let pitch = CLOSE * equivalent_diameter(volume, dim);
         for (i, body) in sample.iter_mut().enumerate() {
             let place = [i % ROW, i / ROW % ROW, i / (ROW * ROW)];
             body.pose.position = Point::from(place.map(|k| k as f64 * pitch));
@@ -92,6 +92,7 @@ impl Setup {
     }
 }
 
-fn is_free(body: &BodySetup) -> bool {
+/// Whether nothing prescribes the motion of the body or ties it.
+pub(crate) fn is_free(body: &BodySetup) -> bool {
     matches!(body.motion, Motion::Free(_)) && body.tether.is_none()
 }

@@ -77,7 +77,14 @@ impl Setup {
         };
         let estimate = estimate.map(|estimate| self.with_later(estimate, files));
         self.require_memory(estimate.and_then(|estimate| estimate.memory), available)?;
-        let pace = tried.limits.map(|[longest, rate]| self.expected_steps(longest, rate));
+        let pace = tried.limits.map(|[longest, rate]| {
+            let pace = self.expected_steps(longest, rate, None);
+            let cost = estimate.filter(|_| files).map(|estimate| estimate.cost.step * pace.steps);
+            match cost.and_then(|cost| self.rehearse(cost)) {
+                Some(rehearsal) => self.expected_steps(longest, rate, Some(&rehearsal)),
+                None => pace,
+            }
+        });
         let (dt, expected) = match pace {
             Some(Pace { dt, steps }) => (Some(dt), Some(steps)),
             None if files => (None, one_thread(|| self.expected_iterations::<D>())?),

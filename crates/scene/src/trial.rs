@@ -8,6 +8,7 @@ use crate::setup::Setup;
 use crate::steady::Steady;
 use crate::still::Still;
 use crate::view::{Seen, View};
+use crate::wall_iterations::WallIterations;
 use crate::watch::Audience;
 use coupling::{CouplingError, Observer, StepInfo};
 use cpu_time::ThreadTime;
@@ -49,6 +50,8 @@ pub(crate) struct Cost {
     pub(crate) state: f64,
     /// Parts of the run that its first steps do not have.
     pub(crate) later: f64,
+    /// Iterations that end during the run.
+    pub(crate) iterations: Option<WallIterations>,
 }
 
 impl Cost {
@@ -59,6 +62,7 @@ impl Cost {
             snapshot: [0, 1].map(|k| combine(self.snapshot[k], other.snapshot[k])),
             state: combine(self.state, other.state),
             later: combine(self.later, other.later),
+            iterations: self.iterations.or(other.iterations),
         }
     }
 }
@@ -160,7 +164,10 @@ impl<K> FirstSteps<'_, K> {
     /// Writes files while the memory of a step is held.
     fn write<S: Show>(&mut self, simulation: &mut S) -> Result<(), CouplingError> {
         self.cost.step = self.timer.shortest();
-        self.files.write(&mut simulation.see(self.setup), &mut self.cost)?;
+        let mut view = simulation.see(self.setup);
+        self.cost.iterations = WallIterations::of(&view);
+        self.files.write(&mut view, &mut self.cost)?;
+        drop(view);
         self.files.save(simulation, &mut self.cost);
         Ok(())
     }

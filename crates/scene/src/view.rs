@@ -8,8 +8,8 @@ use coupling::{Particles, StepInfo, Strategy, Timings};
 use dem::{BodyFrames, ContactLaw, Depth, Population, RigidDynamics};
 use example_support::progress::Status;
 use fv_mesh::{
-    Axis, CartesianGrid, CellWriter, Field, FlowStatistics, Hooked, OutputError, SampleError, Sampler, Sides,
-    Velocity,
+    Axis, CartesianGrid, CellWriter, Field, FlowStatistics, Hooked, InverseOutlook, OutputError, SampleError,
+    Sampler, Sides, Velocity,
 };
 use ibm::{FluidSampler, Forcing};
 use interfaces::{Bodies, BodyId, Checkpoint, Closure, Kinematics, Lattice, Point, ThinPart, Wrench};
@@ -71,6 +71,10 @@ pub(crate) trait View {
     /// Iterations of the last pressure solution.
     fn pressure_iterations(&self) -> usize {
         0
+    }
+    /// Progress to the inverse of the pressure equation at immersed walls, if one is to come.
+    fn inverse_outlook(&self) -> Option<InverseOutlook> {
+        None
     }
     /// Pressure solver, and why it is taken.
     fn pressure_solver(&self) -> String {
@@ -141,6 +145,10 @@ pub(crate) trait Flow<const D: usize> {
     fn time(&self) -> f64;
     fn steps(&self) -> u64;
     fn pressure_iterations(&self) -> usize;
+    /// Progress to the inverse of the pressure equation at immersed walls, if one is to come.
+    fn inverse_outlook(&self) -> Option<InverseOutlook> {
+        None
+    }
     /// Pressure solver, and why it is taken.
     fn pressure_solver(&self) -> String {
         "multigrid".into()
@@ -191,6 +199,9 @@ impl<const D: usize> Flow<D> for Physics<D> {
     }
     fn pressure_iterations(&self) -> usize {
         self.flow.pressure_info().iterations
+    }
+    fn inverse_outlook(&self) -> Option<InverseOutlook> {
+        self.flow.inverse_outlook()
     }
     fn pressure_solver(&self) -> String {
         self.flow.pressure_solver().to_owned()
@@ -416,6 +427,9 @@ impl<const D: usize, A: Flow<D>, P: Guests> View for Seen<'_, D, A, P> {
     }
     fn pressure_iterations(&self) -> usize {
         self.flow.pressure_iterations()
+    }
+    fn inverse_outlook(&self) -> Option<InverseOutlook> {
+        self.flow.inverse_outlook()
     }
     fn pressure_solver(&self) -> String {
         self.flow.pressure_solver()

@@ -8,11 +8,11 @@ mod regions;
 mod tests;
 
 pub(crate) use check::check;
+pub use pressure::InverseOutlook;
 
 use crate::boundary::Boundaries;
 use crate::metrics::Metrics;
-use crate::pressure::Pressure;
-use crate::{CartesianGrid, Field, FlowError};
+use crate::{CartesianGrid, Field};
 use interfaces::{CutWalls, RestartError, Wrench};
 use links::Links;
 use pressure::CutPressure;
@@ -41,28 +41,23 @@ pub(crate) struct Step {
 }
 
 impl<const D: usize> Walls<D> {
-    /// Walls that [`check`] has found to be of this grid; `phi` is scratch of the box's solver.
-    ///
-    /// # Errors
-    /// Those of the solver; [`FlowError::Walls`].
+    /// Walls that [`check`] has found to be of this grid.
     pub(crate) fn new(
         cuts: CutWalls,
         grid: &CartesianGrid<D>,
         metrics: &Metrics<D>,
         boundaries: &Boundaries<D>,
-        solver: &mut Pressure<D>,
-        phi: &mut [f64],
-    ) -> Result<Self, FlowError> {
+    ) -> Self {
         let mut pressure = CutPressure::new(&cuts, grid, metrics, boundaries);
-        pressure.prepare(solver, phi)?;
-        Ok(Self {
+        pressure.prepare(grid.n_cells());
+        Self {
             links: std::array::from_fn(|c| Links::new(&cuts.components[c], grid, metrics, c)),
             pressure,
             impulses: vec![Wrench::default(); cuts.n_bodies],
             nodes: std::array::from_fn(|c| vec![0.0; cuts.components[c].faces.len()]),
             projected: false,
             cuts,
-        })
+        }
     }
 
     /// Tells the nodes inside the solid its velocity; there is no pressure in it.
@@ -147,6 +142,7 @@ impl<const D: usize> Walls<D> {
         }
         sink("walls projected", &[f64::from(u8::from(self.projected))]);
         sink("walls", &self.pressure.missing);
+        sink("walls iterations", &[self.pressure.all_iterations as f64]);
         if let Some(recent) = &self.pressure.recent {
             recent.save(sink);
         }
@@ -164,6 +160,6 @@ impl<const D: usize> Walls<D> {
         }
         self.projected = RestartError::take(source, "walls projected", 1)?[0] != 0.0;
         RestartError::fill(source, "walls", &mut self.pressure.missing)?;
-        self.pressure.recent.as_mut().map_or(Ok(()), |recent| recent.restore(source))
+        self.pressure.restore_iterations(source)
     }
 }

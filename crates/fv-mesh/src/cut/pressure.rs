@@ -6,11 +6,12 @@ use crate::metrics::Metrics;
 use crate::parts::least_parts;
 use crate::poisson::{PoissonError, Rows};
 use crate::pressure::Pressure;
-use crate::{CartesianGrid, Field, FlowError};
-use interfaces::CutWalls;
+use crate::{CartesianGrid, Field};
+use interfaces::{CutWalls, RestartError};
 use monomorphic::Mat;
 use rayon::prelude::*;
 use std::ops::Range;
+use std::time::{Duration, Instant};
 
 /// Σ_f open_f g_f (φ_N − φ_P) = V f with g_f = A_f/d_f, by the solver of the box and a system of the cells of the fluid with
 /// faces that are not wholly open.
@@ -28,9 +29,10 @@ use std::ops::Range;
 /// Equations*, § 1.4). So the condition number of K does not depend on the cells' size. (Dipoles on the closed faces, whose matrix is
 /// symmetric, have one that grows with the number of cells along the walls.)
 ///
-/// Few cells: K⁻¹ is kept, and a solution takes two of the box's (the capacitance matrix method: Buzbee, Dorr, George & Golub
-/// 1971). Many: [`Recent`] starts from the last σ and what is known of K from the last solutions, one of the box's for each new
-/// direction.
+/// [`Recent`] starts from the last σ and what is known of K from the last solutions, one solution of the box's solver for each new
+/// direction. K⁻¹ takes one for each cell, and a solution with it two (the capacitance matrix method: Buzbee, Dorr, George & Golub
+/// 1971, SIAM J. Numer. Anal. 8, 722). If it is worth keeping, it is made when iterations have taken as many solutions as it
+/// takes: short runs never pay for it, and no run takes more than twice the cheaper way.
 pub(crate) struct CutPressure {
     cells: Vec<CutCell>,
     /// The cells of every row of the grid, and how long a row is.
@@ -38,15 +40,20 @@ pub(crate) struct CutPressure {
     row: usize,
     /// No pressure is given at any side: the sum of the sources is zero.
     floating: bool,
-    /// K⁻¹, row after row, where it is kept.
+    /// K⁻¹, row after row, once it is made.
     inverse: Option<Vec<f64>>,
+    /// Whether K⁻¹ is worth keeping.
+    invertible: bool,
+    /// Iterations of all solutions, and the time that they took.
+    pub(super) all_iterations: usize,
+    iteration_time: Duration,
     /// σ.
     pub(super) missing: Vec<f64>,
     residual: Vec<f64>,
     change: Vec<f64>,
     direction: Vec<f64>,
     product: Vec<f64>,
-    /// What the last solutions tell of the next one, where K⁻¹ is not kept.
+    /// Directions of the last solutions, unless K⁻¹ is made.
     pub(super) recent: Option<Recent>,
     /// Of the last solution.
     pub(crate) iterations: usize,
@@ -58,8 +65,7 @@ pub(crate) struct CutPressure {
     passages: Vec<Vec<Passage>>,
 }
 
-/// K⁻¹ is kept if it has at most so many entries per cell of the grid: its product then costs less than a few of the box's
-/// solutions.
+/// Entries of K⁻¹ for each cell of the grid, at most.
 const DENSE: usize = 40;
 
 /// Residuals of K σ, over its terms, below which σ is good …
@@ -69,6 +75,26 @@ const TOLERANCE: f64 = 1e-6;
 const MOST: usize = 200;
 /// … unless what is found then is so many times worse.
 const SLACK: f64 = 10.0;
+
+/// Iterations of the pressure equation at immersed walls, which the inverse of its matrix replaces
+/// when there have been as many as unknowns.
+#[derive(Clone, Copy, Debug)]
+pub struct InverseOutlook {
+    /// Cells that the walls cut.
+    pub unknowns: usize,
+    /// Iterations so far, each with one solution of the box's Poisson equation.
+    pub iterations: usize,
+    /// Wall time of these iterations \[s\].
+    pub seconds: f64,
+}
+
+impl InverseOutlook {
+    /// Whether the inverse is worth keeping: its product then costs less than a few solutions of the
+    /// box's equation.
+    pub fn pays(unknowns: usize, cells: usize) -> bool {
+        unknowns > 0 && unknowns.saturating_mul(unknowns) <= DENSE.saturating_mul(cells)
+    }
+}
 
 impl CutPressure {
     pub(super) fn new<const D: usize>(
@@ -88,6 +114,9 @@ impl CutPressure {
             row,
             floating,
             inverse: None,
+            invertible: false,
+            all_iterations: 0,
+            iteration_time: Duration::ZERO,
             missing: vec![0.0; m],
             residual: vec![0.0; m],
             change: vec![0.0; m],
@@ -101,29 +130,51 @@ impl CutPressure {
         }
     }
 
-    /// Makes K⁻¹ with the box's solver if it is worth keeping; `phi` is scratch.
-    ///
-    /// # Errors
-    /// Those of the solver; [`FlowError::Walls`] if K is singular.
-    pub(super) fn prepare<const D: usize>(
-        &mut self,
-        solver: &mut Pressure<D>,
-        phi: &mut [f64],
-    ) -> Result<(), FlowError> {
+    /// Decides whether K⁻¹ is worth keeping on a grid of so many cells.
+    pub(super) fn prepare(&mut self, cells: usize) {
         let m = self.cells.len();
-        if m * m <= DENSE * phi.len() {
-            return self.invert(solver, phi);
-        }
+        self.invertible = InverseOutlook::pays(m, cells);
         self.recent = Some(Recent::new(m));
-        Ok(())
     }
 
-    /// Makes K⁻¹.
+    /// Whether K⁻¹ replaces iterations from now on.
+    pub(super) fn inverse_is_due(&self) -> bool {
+        self.invertible && self.all_iterations >= self.cells.len()
+    }
+
+    /// Progress of the iterations to K⁻¹; none if it is made or not worth keeping.
+    pub(crate) fn inverse_outlook(&self) -> Option<InverseOutlook> {
+        let awaited = self.invertible && self.inverse.is_none() && self.all_iterations > 0;
+        awaited.then(|| InverseOutlook {
+            unknowns: self.cells.len(),
+            iterations: self.all_iterations,
+            seconds: self.iteration_time.as_secs_f64(),
+        })
+    }
+
+    /// Takes back the iterations that a saved state holds.
+    pub(super) fn restore_iterations<'a>(
+        &mut self,
+        source: &dyn Fn(&str) -> Option<&'a [f64]>,
+    ) -> Result<(), RestartError> {
+        self.all_iterations = RestartError::take(source, "walls iterations", 1)?[0] as usize;
+        self.iteration_time = Duration::ZERO;
+        if self.inverse_is_due() {
+            return Ok(());
+        }
+        self.inverse = None;
+        self.recent.get_or_insert_with(|| Recent::new(self.cells.len())).restore(source)
+    }
+
+    /// Makes K⁻¹ with the box's solver; `phi` is scratch.
+    ///
+    /// # Errors
+    /// Those of the solver.
     pub(super) fn invert<const D: usize>(
         &mut self,
         solver: &mut Pressure<D>,
         phi: &mut [f64],
-    ) -> Result<(), FlowError> {
+    ) -> Result<(), PoissonError> {
         let m = self.cells.len();
         let mut matrix = Mat::<f64>::zeros(m, m);
         for j in 0..m {
@@ -135,10 +186,12 @@ impl CutPressure {
         phi.fill(0.0);
         let inverse = monomorphic::inverse(matrix.as_ref());
         let inverse: Vec<f64> = (0..m * m).map(|k| inverse[(k / m, k % m)]).collect();
-        if !inverse.iter().all(|value| value.is_finite()) {
-            return Err(FlowError::Walls { cells: m });
+        // A matrix that is singular to round-off is left to iterations.
+        self.invertible = inverse.iter().all(|value| value.is_finite());
+        if self.invertible {
+            self.inverse = Some(inverse);
+            self.recent = None;
         }
-        self.inverse = Some(inverse);
         Ok(())
     }
 
@@ -179,7 +232,12 @@ impl CutPressure {
             };
             solver.solve_rows(&rows, phi)
         };
+        if self.inverse.is_none() && self.inverse_is_due() {
+            self.invert(solver, phi)?;
+        }
         self.iterations = 0;
+        // Accuracy does not change when K⁻¹ takes over, unless the box's solver iterates itself.
+        let tolerance = if self.invertible && !solver.remembers() { EXACT } else { TOLERANCE };
         let mut corrections = 0;
         loop {
             whole(self, solver, phi)?;
@@ -187,7 +245,7 @@ impl CutPressure {
             // What is asked is reached but for round-off, or known pairs have lost theirs.
             let (goal, enough) = match &self.recent {
                 None => (EXACT, corrections == 1),
-                Some(_) => (if corrections == 0 { TOLERANCE } else { SLACK * TOLERANCE }, false),
+                Some(_) => (if corrections == 0 { tolerance } else { SLACK * tolerance }, false),
             };
             let goal = goal * goal * scale;
             if enough || square(&self.residual) <= goal {
@@ -198,7 +256,7 @@ impl CutPressure {
             if corrections > 0 {
                 self.recent.as_mut().map(Recent::forget);
             }
-            self.find_change(solver, scale, phi)?;
+            self.find_change(solver, tolerance, scale, phi)?;
             take_mean(self.floating, &self.cells, &mut self.change);
             self.missing.iter_mut().zip(&self.change).for_each(|(source, change)| *source += change);
             corrections += 1;
@@ -237,6 +295,7 @@ impl CutPressure {
     fn find_change<const D: usize>(
         &mut self,
         solver: &mut Pressure<D>,
+        tolerance: f64,
         scale: f64,
         phi: &mut [f64],
     ) -> Result<(), PoissonError> {
@@ -253,12 +312,13 @@ impl CutPressure {
         self.change.fill(0.0);
         let mut recent = self.recent.take().unwrap_or_else(|| Recent::new(self.cells.len()));
         recent.reduce(&mut self.residual, &mut self.change);
-        let goal = TOLERANCE * TOLERANCE * scale;
+        let goal = tolerance * tolerance * scale;
+        let start = Instant::now();
         let mut solved = Ok(());
         while square(&self.residual) > goal && solved.is_ok() {
             if self.iterations == MOST {
                 let residual = (square(&self.residual) / scale).sqrt();
-                let (iterations, tolerance) = (MOST, TOLERANCE);
+                let iterations = MOST;
                 solved = Err(PoissonError::NotConverged { iterations, residual, tolerance });
                 break;
             }
@@ -267,7 +327,9 @@ impl CutPressure {
             recent.learn(&mut self.direction, &mut self.product);
             recent.reduce_last(&mut self.residual, &mut self.change);
             self.iterations += 1;
+            self.all_iterations += 1;
         }
+        self.iteration_time += start.elapsed();
         self.recent = Some(recent);
         solved
     }

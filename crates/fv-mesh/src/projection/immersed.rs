@@ -1,6 +1,6 @@
 //! Immersed walls in a flow.
 use super::Projection;
-use crate::cut::{Walls, check};
+use crate::cut::{InverseOutlook, Walls, check};
 use crate::flow_state::FlowState;
 use crate::per_dimension::per_dimension;
 use crate::{FlowError, FlowStatistics};
@@ -12,12 +12,12 @@ impl<const D: usize> Projection<D> {
     /// viscosities do not see the walls. The pressure solver should be the direct one: an iterative one has to be as exact as
     /// the faces' equation is to be solved.
     ///
-    /// Walls that are where the last ones were cost nothing; new ones take a solution of the pressure equation per cut cell,
-    /// unless there are many.
+    /// Walls that are where the last ones were cost nothing. The first solutions with new ones iterate,
+    /// until the inverse of their equation pays (see [`inverse_outlook`](Self::inverse_outlook)).
     ///
     /// # Errors
-    /// [`FlowError::Parameter`] for walls on another grid and for [`Diffusion::Implicit`](crate::Diffusion::Implicit),
-    /// [`FlowError::Walls`], and those of the pressure solver. The walls are then what they were.
+    /// [`FlowError::Parameter`] for walls on another grid and for
+    /// [`Diffusion::Implicit`](crate::Diffusion::Implicit). The walls are then as before the call.
     pub fn set_walls(&mut self, walls: Option<CutWalls>) -> Result<(), FlowError> {
         per_dimension!(self, Projection, set_walls_here(walls: Option<CutWalls>) -> Result<(), FlowError>)
     }
@@ -38,11 +38,7 @@ impl<const D: usize> Projection<D> {
         check(&cuts, grid, metrics)?;
         match &mut self.walls {
             Some(walls) if walls.cuts.same_shape(&cuts) => walls.cuts = cuts,
-            walls => {
-                let made =
-                    Walls::new(cuts, grid, metrics, boundaries, &mut self.pressure_solver, &mut self.phi)?;
-                *walls = Some(Box::new(made));
-            }
+            walls => *walls = Some(Box::new(Walls::new(cuts, grid, metrics, boundaries))),
         }
         if let Some(walls) = &mut self.walls {
             walls.projected = false;
@@ -64,6 +60,13 @@ impl<const D: usize> Projection<D> {
                 state.fill_velocity();
             }),
         }
+    }
+
+    /// Progress of the iterations at immersed walls to the inverse that replaces them, which takes
+    /// as many solutions of the box's equation as there are cut cells and leaves two for each step;
+    /// none if the inverse is made, or if so many cells are cut that none will be.
+    pub fn inverse_outlook(&self) -> Option<InverseOutlook> {
+        self.walls.as_ref().and_then(|walls| walls.pressure.inverse_outlook())
     }
 
     /// Impulse of the fluid on each body of the walls in the last step \[N s, N m s\], about the body's centre of mass.

@@ -1,8 +1,8 @@
 //! What bodies cost: a step with 5 % of the box solid over one without. A ball as a wall at rest, with what it takes to set it up;
 //! balls about ten cells wide by forcings, at rest and moving.
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
 use example_support::prescribed_bodies::{PrescribedBodies, forced_step};
+use render::cpu::Stopwatch;
 use siltflow::dem::{Disc, Sphere};
 use siltflow::flow::{CartesianGrid, Fluid, Projection, Side};
 use siltflow::ibm::{Forcing, Hfdib, SmoothForcing, cut_walls};

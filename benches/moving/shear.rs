@@ -1,8 +1,8 @@
 //! Free bodies in creeping shear against Jeffery (1922).
-use example_support::cpu::Stopwatch;
 use example_support::reference_curve::passes;
 use example_support::sheared_body::{Shear, jeffery_angle, jeffery_period, orbit, settled_spin};
 use example_support::{Outcome, sheared_body};
+use render::cpu::Stopwatch;
 use siltflow::ibm::Kernel;
 use std::f64::consts::FRAC_PI_2;
 

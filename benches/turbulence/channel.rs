@@ -1,8 +1,8 @@
 //! Developed flow between two walls.
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
-use example_support::picture::profiles::{Curve, Panel, draw};
 use example_support::turbulent_flows::{ChannelProfile, Drive, between_walls, developed_channel, numbers};
+use render::cpu::Stopwatch;
+use render::profiles::{Curve, Panel, draw};
 use siltflow::flow::Axis;
 use std::path::Path;
 use turb::{Inflow, Law, Realizable, Sst, StandardKEpsilon, Sublayer, WallFunctions, Wilcox};

@@ -1,7 +1,7 @@
 //! Turbulent plane Couette flow: a plate that slides through the box against a wall of the box.
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
 use example_support::sliding_plate::{Couette, Lower};
+use render::cpu::Stopwatch;
 use turb::{Inflow, Law, Realizable, Sst, StandardKEpsilon, Wilcox};
 
 pub(crate) fn sliding_plate() -> Outcome<()> {

@@ -1,8 +1,8 @@
 //! Large-eddy simulation of the channel at Re_τ 178.
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
-use example_support::picture::profiles::{Curve, Panel, draw};
 use example_support::turbulent_flows::numbers;
+use render::cpu::Stopwatch;
+use render::profiles::{Curve, Panel, draw};
 use siltflow::flow::{
     Axis, CartesianGrid, ClosureSlot, Cluster, Fluid, Hooked, Hooks, Modelled, Projection, Side,
     TransportParams,

@@ -1,6 +1,6 @@
 //! Large-eddy simulation.
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
+use render::cpu::Stopwatch;
 use siltflow::flow::{CartesianGrid, ClosureSlot, Fluid, Hooks, Modelled, Projection, Side, TransportParams};
 use std::f64::consts::TAU;
 use turb::{Wale, WaleConstants};

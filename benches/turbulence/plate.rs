@@ -1,8 +1,8 @@
 //! A flat plate at no pressure gradient.
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
-use example_support::picture::profiles::{Curve, Panel, draw};
 use example_support::turbulent_flows::{growing, numbers};
+use render::cpu::Stopwatch;
+use render::profiles::{Curve, Panel, draw};
 use siltflow::flow::{
     Axis, CartesianGrid, Convection, Fluid, Modelled, Patch, Profile, Side, Simple, SimpleParams,
     TransportParams,

@@ -1,7 +1,7 @@
 //! What models cost, and what they bear.
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
 use example_support::turbulent_flows::{duct, iterate};
+use render::cpu::Stopwatch;
 use turb::{Inflow, Law, Realizable, Sst, StandardKEpsilon, Wilcox};
 
 /// Of the reference runs.

@@ -1,9 +1,9 @@
 //! A cylinder that swings in fluid at rest, with models of two equations that see it.
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
 use example_support::moved_body::{Noise, Swinging};
-use example_support::picture::section::{Layer, Section, Sheet};
 use example_support::sliding_plate::with_model;
+use render::cpu::Stopwatch;
+use render::section::{Layer, Section, Sheet};
 use siltflow::flow::Projection;
 use siltflow::ibm::SmoothForcing;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! A backward-facing step.
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
 use example_support::turbulent_flows::growing;
+use render::cpu::Stopwatch;
 use siltflow::flow::{
     Axis, CartesianGrid, Convection, Fluid, Modelled, Patch, Profile, Side, Simple, SimpleParams,
     TransportParams,

@@ -1,8 +1,8 @@
 //! Developed flow between immersed walls that are turned against the grid.
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
 use example_support::developed_duct::DevelopedDuct;
 use example_support::turbulent_flows::{Drive, between_walls, developed_channel, numbers};
+use render::cpu::Stopwatch;
 use turb::{Inflow, Law, Sst, WallFunctions, Wilcox};
 
 const VISCOSITY: f64 = 1e-6;

@@ -1,8 +1,8 @@
 //! The paper's algorithm beside ours: the falling discs by both, with what their books do not account for.
 use crate::discs::{at, percent, theory};
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
 use example_support::scene::FLUID;
+use render::cpu::Stopwatch;
 use siltflow::coupling::{
     self, CouplingError, Exchange, FlowSolver, Ledger, Observer, Particles, Schedule, Simulation, StepInfo,
 };

@@ -4,8 +4,8 @@
 //! 2. Speeds at 0.2 s on 10, 15, 20 and 30 cells per diameter against 60 (takes about two minutes), and the order.
 //! 3. Half and double the time step at 15 cells per diameter.
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
 use example_support::scene::{FLUID, Scene};
+use render::cpu::Stopwatch;
 use siltflow::coupling::{self, Exchange, FlowSolver, Particles, Schedule, Simulation};
 use siltflow::dem::RigidBodies;
 use siltflow::ibm::{Forcing, Hfdib, SmoothForcing};

@@ -7,7 +7,7 @@
 //! 3. The cavity at Re 400, t 4, against the finest grid; with the lid gathering the cells too.
 use crate::{Point, Runs, Table};
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
+use render::cpu::Stopwatch;
 use siltflow::flow::{
     Axis, CartesianGrid, Cluster, FlowError, Fluid, GridMismatch, Integrals, Projection, Sampler, Side,
 };

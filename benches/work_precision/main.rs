@@ -16,7 +16,7 @@ mod flows;
 mod settling;
 
 use example_support::Outcome;
-use example_support::picture::plot::{self, Panel, Series};
+use render::plot::{self, Panel, Series};
 use std::path::Path;
 
 /// What a run costs and what it is worth.

@@ -4,9 +4,9 @@
 //! 2. 64 spheres in 8 × 8 × 8 d: their mean speed, and what a body costs.
 use super::{Point, Runs, Table};
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
 use example_support::free_body::{FreeBody, Speeds};
-use example_support::picture::plot;
+use render::cpu::Stopwatch;
+use render::plot;
 use siltflow::coupling::{Exchange, Explicit, Iterated, Module, OneSolve, Schedule, Timings, run as run_to};
 use siltflow::flow::Projection;
 use std::path::Path;

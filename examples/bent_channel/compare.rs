@@ -1,8 +1,8 @@
 //! Profiles across the duct beside those of the body-fitted solution.
 use crate::duct::Duct;
 use example_support::Outcome;
-use example_support::picture::Domain;
-use example_support::picture::comparison::{Comparison, Curve, Panel};
+use render::Domain;
+use render::comparison::{Comparison, Curve, Panel};
 use siltflow::flow::{CartesianGrid, Simple};
 use siltflow::interfaces::WallPiece;
 use std::path::Path;

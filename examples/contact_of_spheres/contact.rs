@@ -1,7 +1,7 @@
 //! One contact, from the start to the parting.
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
 use example_support::prescribed_bodies::PrescribedBodies;
+use render::cpu::Stopwatch;
 use siltflow::dem::{CellOverlap, Material, OverlapSolver, PairProperties, Refinement, Route, Shape, Sphere};
 use siltflow::flow::CartesianGrid;
 use siltflow::ibm::SolidFraction;

@@ -1,9 +1,9 @@
 //! Table, files and pictures.
 use crate::contact::{Contact, DIAMETER, Way};
 use example_support::Outcome;
-use example_support::picture::plot::{self, Panel, Series};
-use example_support::picture::sketch::{self, Drawing, Paint};
 use example_support::table::{Table, number};
+use render::plot::{self, Panel, Series};
+use render::sketch::{self, Drawing, Paint};
 use std::fmt::Write;
 use std::path::Path;
 

@@ -1,10 +1,10 @@
 //! The closing table, `result.json` and the figure of the run.
 use example_support::Outcome;
 use example_support::coupled::{Fall, Plan, Record};
-use example_support::cpu;
-use example_support::picture::sketch::{Drawing, Paint, draw};
 use example_support::suspension::{Diary, Suspension};
 use example_support::table::{Table, grouped, number, write_json};
+use render::cpu;
+use render::sketch::{Drawing, Paint, draw};
 use serde_json::json;
 use siltflow::dem::ContactLaw;
 use siltflow::interfaces::{Bodies, Kinematics};

@@ -1,10 +1,10 @@
 //! Closing tables, `result.json` and summary figures.
 use example_support::Outcome;
 use example_support::coupled::{Plan, Record, State};
-use example_support::picture::comparison::{Comparison, Curve, Panel};
 use example_support::reference_curve::{Distance, at, passes, read};
 use example_support::sinking_discs::{BOX, DIAMETER, SinkingDiscs};
 use example_support::table::{Table, grouped, number, write_json};
+use render::comparison::{Comparison, Curve, Panel};
 use serde_json::json;
 use siltflow::dem::ContactLaw;
 

@@ -2,7 +2,7 @@
 use crate::{Cli, Colour};
 use example_support::Outcome;
 use example_support::granular::{GRAVITY, Grain, Granulate, Law, Scene, line, ring_of_staves};
-use example_support::picture::solids::View;
+use render::solids::View;
 use siltflow::dem::placing::{CrystalLattice, LatticeKind, Orientations};
 use siltflow::dem::{Part, RigidBodies, Rolling, Union};
 use siltflow::interfaces::{

@@ -23,9 +23,9 @@ mod report;
 
 use clap::Parser;
 use cli::{BalanceChoice, Cli, ForcingChoice};
-use example_support::cpu::Stopwatch;
 use example_support::scene::{FLUID, Scene};
 use observers::{History, Pictures, Resumable, Save, Show};
+use render::cpu::Stopwatch;
 use siltflow::coupling::{self, FileOutput, Ledger, Schedule, WeightBalance};
 use siltflow::ibm::{Forcing, Hfdib, SmoothForcing};
 use std::error::Error;

@@ -1,9 +1,9 @@
 //! Who looks on while the discs fall.
-use example_support::picture::summary::{Moment, Summary, Track};
-use example_support::picture::{Disc, Domain, Frames, Scalar};
-use example_support::progress::{Progress, Status};
 use example_support::scene::{BOX, FLUID, GRAVITY, Scene};
 use example_support::startup_theory;
+use render::progress::{Progress, Status};
+use render::summary::{Moment, Summary, Track};
+use render::{Disc, Domain, Frames, Scalar};
 use siltflow::coupling::{
     self, CouplingError, Observer, Particles, Schedule, Simulation, StepInfo, WeightBalance,
 };

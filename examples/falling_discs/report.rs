@@ -1,8 +1,8 @@
 //! The closing table and `result.json`.
 use crate::observers::{Fall, History};
-use example_support::cpu::{self, Elapsed};
 use example_support::scene::{FLUID, Scene};
 use example_support::table::{Table, grouped, number, write_json};
+use render::cpu::{self, Elapsed};
 use serde_json::json;
 use siltflow::coupling::{LedgerReport, Module, RunSummary, Schedule};
 use siltflow::ibm::Forcing;

@@ -24,8 +24,8 @@ use example_support::Outcome;
 use example_support::granular::{
     Ending, GRAVITY, GrainOptions, History, RunOptions, Start, line, main_of, run,
 };
-use example_support::picture::sketch::{Drawing, Paint, draw};
 use example_support::table::{Table, number, write_json};
+use render::sketch::{Drawing, Paint, draw};
 use silo::Silo;
 use std::path::Path;
 use std::process::ExitCode;

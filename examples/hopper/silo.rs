@@ -4,7 +4,7 @@ use example_support::Outcome;
 use example_support::granular::{
     GRAVITY, Grain, Granulate, Law, Scene, Stave, ring_of_staves, solid_fraction, starts,
 };
-use example_support::picture::solids::View;
+use render::solids::View;
 use siltflow::dem::{Cuboid, HalfSpace, RigidBodies, Rolling, Shape};
 use siltflow::interfaces::{
     Aabb, Bodies, BodyId, Dynamics, Freedom, Kinematics, Periods, Point, Pose, Twist, Vector,

@@ -6,9 +6,9 @@
 //! Sample run: `cargo run --release --example immersed_body -- --out pictures`, a second or two; without `--out` the pictures
 //! go to `target/immersed_body`.
 use example_support::files::make_folder;
-use example_support::picture::sketch::{Drawing, Paint, draw};
 use example_support::prescribed_bodies::{PrescribedBodies, forced_step};
 use example_support::{Outcome, told};
+use render::sketch::{Drawing, Paint, draw};
 use siltflow::flow::{CartesianGrid, Fluid, Profile, Projection, Side};
 use siltflow::ibm::{
     FractionRule, Given, Hfdib, Profile as Along, Reconstruction, SolidFraction, SurfaceCell,

@@ -12,12 +12,12 @@ mod study;
 
 use clap::Parser;
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
 use example_support::granular::{Ending, main_of};
-use example_support::picture::Scalar;
-use example_support::picture::gallery::{Gallery, Row, Tile};
 use example_support::scene::Scene;
 use example_support::table::{Table, number, write_json};
+use render::Scalar;
+use render::cpu::Stopwatch;
+use render::gallery::{Gallery, Row, Tile};
 use serde_json::json;
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -1,12 +1,12 @@
 //! Models of runs with parameters.
 use crate::fall::Fallen;
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
 use mor::interpolation::{Degree, Kernel, ProductParams, RbfParams, SplineParams};
 use mor::models::{Assessment, Podiann, Spodiann, SpodiannParams};
 use mor::pod::{Pod, PodParams};
 use mor::shifted::{Grid, Interpolation, Motion, Motions, Noise, Ranks, ShiftedPod, Shifts};
 use mor::{Mat, MatRef};
+use render::cpu::Stopwatch;
 use siltflow::interfaces::Vector;
 use std::ops::ControlFlow;
 use std::path::Path;

@@ -1,12 +1,12 @@
 //! A cylinder of diameter 1 in a stream of speed 1 whose wake swings.
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
 use example_support::prescribed_bodies::PrescribedBodies;
-use example_support::progress::Progress;
 use example_support::walled_flows::put_walls;
 use mor::galerkin::{Basis, DormandPrince, Ode, QuadraticModel};
 use mor::pod::{Pod, PodParams, Rank};
 use mor::{Mat, MatRef};
+use render::cpu::Stopwatch;
+use render::progress::Progress;
 use siltflow::dem::Disc;
 use siltflow::flow::{CartesianGrid, Convection, Diffusion, Fluid, Profile, Projection, Side};
 use std::cell::RefCell;

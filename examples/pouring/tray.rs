@@ -2,7 +2,7 @@
 use crate::Cli;
 use example_support::Outcome;
 use example_support::granular::{GRAVITY, Grain, Granulate, Law, Scene, Stave, cone_slope, ring_of_staves};
-use example_support::picture::solids::View;
+use render::solids::View;
 use siltflow::dem::placing::{CrystalLattice, LatticeKind, Orientations};
 use siltflow::dem::{ConvexPolyhedron, HalfSpace, Material, RigidBodies, Rolling, Shape};
 use siltflow::interfaces::{

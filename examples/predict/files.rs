@@ -1,9 +1,9 @@
 //! Predictions in files.
 use example_support::Outcome;
-use example_support::picture::Scalar;
-use example_support::picture::gallery::{Gallery, Row, Tile};
 use mor::shifted::Grid;
 use mor::snapshots::NpyWriter;
+use render::Scalar;
+use render::gallery::{Gallery, Row, Tile};
 use siltflow::interfaces::SnapshotSink;
 use siltflow::interfaces::vtk::{self, DataArray};
 use std::fs::File;

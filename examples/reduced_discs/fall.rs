@@ -1,8 +1,8 @@
 //! The full model: two discs fall, and every snapshot is handed on while they do.
 use example_support::Outcome;
-use example_support::cpu::{Elapsed, Stopwatch};
-use example_support::progress::{Progress, Status};
 use example_support::scene::{FLUID, Scene};
+use render::cpu::{Elapsed, Stopwatch};
+use render::progress::{Progress, Status};
 use siltflow::coupling::{
     self, BodyPaths, CouplingError, Observer, Particles, Quantity, Schedule, Simulation, SnapshotFeed,
     StepInfo,

@@ -2,9 +2,9 @@
 use crate::fall::Fallen;
 use crate::study::{Kind, Quantity, Study};
 use example_support::Outcome;
-use example_support::picture::Scalar;
-use example_support::picture::gallery::{Gallery, Row, Tile};
-use example_support::picture::plot::{self, Panel, Series};
+use render::Scalar;
+use render::gallery::{Gallery, Row, Tile};
+use render::plot::{self, Panel, Series};
 use std::path::Path;
 
 /// Singular values, of the snapshots as they are and in the frames of the discs.

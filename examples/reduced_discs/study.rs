@@ -1,7 +1,6 @@
 //! Reduced models of one quantity, and how far they are off.
 use crate::fall::Fallen;
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
 use mor::interpolation::{
     Degree, FitProgress, FitStage, Kernel, Method, NetworkParams, RbfParams, SplineParams,
 };
@@ -10,6 +9,7 @@ use mor::pod::{Pod, PodParams};
 use mor::shifted::fourier::Als;
 use mor::shifted::{Grid, Interpolation, Motion, Motions};
 use mor::{Mat, MatRef};
+use render::cpu::Stopwatch;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -2,7 +2,7 @@
 use crate::{Cli, Colour};
 use example_support::Outcome;
 use example_support::granular::{GRAVITY, Grain, Granulate, Law, Scene, solid_fraction, starts};
-use example_support::picture::solids::View;
+use render::solids::View;
 use siltflow::dem::placing::read_bodies;
 use siltflow::dem::{Cuboid, HalfSpace, RigidBodies, Rolling, Shape};
 use siltflow::interfaces::{Aabb, BodyId, Freedom, Kinematics, Periods, Point, Pose, Twist, Vector};

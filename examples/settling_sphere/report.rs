@@ -1,10 +1,10 @@
 //! The closing table, `result.json` and the summary figure.
 use example_support::Outcome;
 use example_support::coupled::{Plan, Record};
-use example_support::picture::comparison::{Comparison, Curve, Panel};
 use example_support::reference_curve::{Distance, at, passes};
 use example_support::settling_sphere::{Case, DIAMETER, SettlingSphere};
 use example_support::table::{Table, grouped, number, write_json};
+use render::comparison::{Comparison, Curve, Panel};
 use serde_json::json;
 use siltflow::dem::ContactLaw;
 

@@ -2,10 +2,10 @@
 use crate::Options;
 use clap::ValueEnum;
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
 use example_support::files::make_folder;
 use example_support::free_body::{FreeBody, Speeds};
 use example_support::rock::{Rock, stl};
+use render::cpu::Stopwatch;
 use siltflow::coupling::{OneSolve, Schedule, run};
 use siltflow::dem::{Shape, TriangleMesh};
 use siltflow::flow::Diffusion;

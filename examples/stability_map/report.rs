@@ -2,8 +2,8 @@
 use crate::Options;
 use crate::map::{Case, FINEST, Kind, Map, Run};
 use example_support::Outcome;
-use example_support::picture::sketch::{self, Drawing, Paint};
 use example_support::table::{Table, number};
+use render::sketch::{self, Drawing, Paint};
 
 pub(crate) fn write(options: &Options, map: &Map) -> Outcome<()> {
     let picture = options.out.join("stability_map.png");

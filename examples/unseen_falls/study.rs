@@ -1,13 +1,13 @@
 //! Models by each method, and their errors.
 use crate::fall::Fallen;
 use example_support::Outcome;
-use example_support::cpu::Stopwatch;
 use example_support::table::{Table, number};
 use mor::Mat;
 use mor::interpolation::{Degree, Kernel, Method, NetworkParams, RbfParams, SplineParams};
 use mor::models::{Assessment, Spodiann, SpodiannParams};
 use mor::shifted::fourier::Als;
 use mor::shifted::{Grid, Interpolation, Motion, Motions, Shifts};
+use render::cpu::Stopwatch;
 
 /// A simulated run and its parameter.
 pub(crate) struct Run {

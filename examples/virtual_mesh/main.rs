@@ -8,9 +8,9 @@
 //! `--out FOLDER` says.
 
 use example_support::files::make_folder;
-use example_support::picture::sketch::{Drawing, Paint, draw};
 use example_support::rock::Rock;
 use example_support::{Outcome, told};
+use render::sketch::{Drawing, Paint, draw};
 use siltflow::dem::{BoxKind, Implicit, Normal, Overlap, OverlapSolver, Refinement, Route, SubBox};
 use siltflow::interfaces::{Point, Pose, Rotation, Solid, Vector};
 use std::path::PathBuf;

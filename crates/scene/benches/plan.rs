@@ -5,7 +5,7 @@
 //! cargo bench -p scene --bench plan                           # every file in scenes/
 //! cargo bench -p scene --bench plan -- cavity hopper          # some of them
 //! ```
-use example_support::cpu::{Stopwatch, peak_memory};
+use render::cpu::{Stopwatch, peak_memory};
 use scene::{Options, Scene};
 use std::error::Error;
 use std::path::{Path, PathBuf};

@@ -8,8 +8,8 @@ use crate::watch::{Audience, output};
 use coupling::{
     CouplingError, Evolving, FlowSolver, Immersed, Ledger, LedgerReport, Observer, Simulation, StepInfo,
 };
-use example_support::progress::Progress;
 use interfaces::{Checkpoint, RestartError};
+use render::progress::Progress;
 use std::io;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};

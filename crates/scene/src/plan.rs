@@ -180,5 +180,5 @@ fn duration(seconds: f64) -> String {
         return format!("{} years", count(seconds / YEAR));
     }
     let duration = std::time::Duration::try_from_secs_f64(seconds).unwrap_or(std::time::Duration::MAX);
-    example_support::cpu::readable(duration)
+    render::cpu::readable(duration)
 }

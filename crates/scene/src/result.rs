@@ -4,9 +4,9 @@ use crate::setup::{Algorithm, Setup};
 use crate::view::View;
 use crate::watch::{Audience, output};
 use coupling::{CouplingError, LedgerReport, Module};
-use example_support::cpu::Elapsed;
 use ibm::SolidFraction;
 use interfaces::BodyId;
+use render::cpu::Elapsed;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 

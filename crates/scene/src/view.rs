@@ -6,13 +6,13 @@ use crate::still::Still;
 use crate::watch::Solids;
 use coupling::{Particles, StepInfo, Strategy, Timings};
 use dem::{BodyFrames, ContactLaw, Depth, Population, RigidDynamics};
-use example_support::progress::Status;
 use fv_mesh::{
     Axis, CartesianGrid, CellWriter, Field, FlowStatistics, Hooked, InverseOutlook, OutputError, SampleError,
     Sampler, Sides, Velocity,
 };
 use ibm::{FluidSampler, Forcing};
 use interfaces::{Bodies, BodyId, Checkpoint, Closure, Kinematics, Lattice, Point, ThinPart, Wrench};
+use render::progress::Status;
 use std::io::{self, Write};
 use turb::YPlus;
 

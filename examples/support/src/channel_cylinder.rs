@@ -2,13 +2,13 @@
 //! steady, by all ways to immerse it.
 use crate::Outcome;
 use crate::axes::{gathered, moved};
-use crate::cpu::Stopwatch;
 use crate::prescribed_bodies::{PrescribedBodies, forced_step};
 use crate::walled_flows::{load_between, put_walls, surface_loads};
 use dem::Disc;
 use fv_mesh::{CartesianGrid, Convection, Diffusion, Fluid, Profile, Projection, Side};
 use ibm::{Forcing, Hfdib, SmoothForcing};
 use interfaces::{BodyId, Point, Vector};
+use render::cpu::Stopwatch;
 use std::fmt;
 
 const DIAMETER: f64 = 0.1;

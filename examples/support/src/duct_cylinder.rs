@@ -2,12 +2,12 @@
 //! cut links on cells gathered round it. The flow is the same on both sides of the duct's middle plane: one half is computed.
 use crate::Outcome;
 use crate::axes::gathered;
-use crate::cpu::Stopwatch;
 use crate::prescribed_bodies::{Post, PrescribedBodies};
 use crate::unfolded::Unfolded;
 use crate::walled_flows::put_walls;
 use fv_mesh::{Axis, CartesianGrid, Convection, Diffusion, Fluid, Profile, Projection, Sampler, Side};
 use interfaces::Vector;
+use render::cpu::Stopwatch;
 
 const DIAMETER: f64 = 0.1;
 const LENGTH: f64 = 2.5;

@@ -1,7 +1,5 @@
-//! Files that are written again and again.
+//! Folders of results.
 use crate::Outcome;
-use std::fs::{File, OpenOptions};
-use std::io::{self, BufWriter, Seek, Write};
 use std::path::Path;
 
 /// Makes a folder for what is written, if it is not there.
@@ -10,38 +8,4 @@ use std::path::Path;
 /// What the file system answers, and of which folder.
 pub fn make_folder(path: &Path) -> Outcome<()> {
     std::fs::create_dir_all(path).map_err(|e| format!("making the folder {}: {e}", path.display()).into())
-}
-
-/// Writes a file: over the one that is there, if any, which costs less than to empty it first (ext4 then waits for the disk) or to make another one.
-///
-/// # Errors
-/// What the file system or `write` answers.
-pub fn write_over<T>(
-    path: &Path,
-    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<T>,
-) -> io::Result<T> {
-    let mut out = BufWriter::new(OpenOptions::new().write(true).create(true).truncate(false).open(path)?);
-    let told = write(&mut out)?;
-    out.flush()?;
-    let end = out.stream_position()?;
-    let file = out.get_ref();
-    if file.metadata()?.len() > end {
-        file.set_len(end)?;
-    }
-    Ok(told)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_was_there_is_gone() {
-        let path = std::env::temp_dir().join(format!("siltflow-over-{}", std::process::id()));
-        for text in ["long enough", "short", "longer than before"] {
-            write_over(&path, |out| out.write_all(text.as_bytes())).unwrap();
-            assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
-        }
-        std::fs::remove_file(&path).unwrap();
-    }
 }

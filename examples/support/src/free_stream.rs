@@ -1,12 +1,12 @@
 //! A cylinder of diameter 1 in a stream of speed 1, at least 30 diameters from every side, by cut links on cells gathered round it.
 use crate::Outcome;
 use crate::axes::gathered;
-use crate::cpu::Stopwatch;
 use crate::prescribed_bodies::PrescribedBodies;
 use crate::wake::wake_length;
 use crate::walled_flows::{put_walls, surface_loads};
 use dem::Disc;
 use fv_mesh::{CartesianGrid, Convection, Diffusion, Fluid, Profile, Projection, Sampler, Side};
+use render::cpu::Stopwatch;
 
 const LENGTHS: [f64; 2] = [68.0, 60.0];
 const PLACE: [f64; 2] = [30.0, 30.0];

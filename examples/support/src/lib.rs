@@ -1,13 +1,11 @@
 //! What the examples, benches and tests share and what is no part of the library: the scene of the falling discs, bodies that are
-//! and move where they are told, flows with them; pictures, progress, tables, time and memory of the process; the start-up theory the
-//! runs are held against.
+//! and move as prescribed, flows with them; tables; the start-up theory that runs are compared with.
 
 use std::process::ExitCode;
 
 pub mod axes;
 pub mod channel_cylinder;
 pub mod coupled;
-pub mod cpu;
 pub mod developed_duct;
 pub mod duct_cylinder;
 pub mod eccentric_cylinders;
@@ -19,10 +17,9 @@ pub mod free_stream;
 pub mod granular;
 pub mod moved_body;
 pub mod periodic_cube;
-pub mod picture;
 pub mod plane_duct;
+pub mod portrait_shape;
 pub mod prescribed_bodies;
-pub mod progress;
 pub mod reference_curve;
 pub mod rock;
 pub mod scene;

@@ -2,7 +2,6 @@
 use crate::Outcome;
 use crate::axes::gathered;
 use crate::coupled::{Fall, Slice, View};
-use crate::picture::{Disc, Domain};
 use crate::prescribed_bodies::{PrescribedBodies, forced_step};
 use crate::reference_curve;
 use clap::ValueEnum;
@@ -11,6 +10,7 @@ use dem::{Chen, ContactLaw, HalfSpace, Lubricated, Material, RigidBodies, Sphere
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Sampler, Side};
 use ibm::{Forcing, SmoothFilm, SmoothForcing};
 use interfaces::{BodyId, Freedom, Kinematics, Periods, Point, Pose, Twist, Vector};
+use render::{Disc, Domain};
 use std::f64::consts::PI;
 
 /// Edges of the box \[m\]; gravity acts along −z.

@@ -2,12 +2,12 @@
 //! alone (Glowinski, Pan, Hesla, Joseph & Périaux 2001, J. Comput. Phys. 169, 363; Wan & Turek 2006, Int. J. Numer. Meth. Fluids 51, 531).
 use crate::Outcome;
 use crate::coupled::{Fall, Slice, View};
-use crate::picture::{Disc as Outline, Domain};
 use coupling::{Particles, Simulation, WeightBalance};
 use dem::{Chen, ContactLaw, Disc, HalfSpace, Material, Repulsive, RigidBodies};
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Side};
 use ibm::SmoothForcing;
 use interfaces::{BodyId, Freedom, Kinematics, Periods, Point, Pose, Twist, Vector};
+use render::{Disc as Outline, Domain};
 use std::f64::consts::PI;
 
 /// Edges of the box \[m\]; gravity acts along −y.

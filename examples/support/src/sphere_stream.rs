@@ -2,7 +2,6 @@
 //! steady and the same all round: a quarter between two planes of symmetry is computed.
 use crate::Outcome;
 use crate::axes::gathered;
-use crate::cpu::Stopwatch;
 use crate::prescribed_bodies::PrescribedBodies;
 use crate::unfolded::Unfolded;
 use crate::wake::wake_length;
@@ -10,6 +9,7 @@ use crate::walled_flows::put_walls;
 use dem::Sphere;
 use fv_mesh::{CartesianGrid, Convection, Diffusion, Fluid, Profile, Projection, Sampler, Side};
 use interfaces::Point;
+use render::cpu::Stopwatch;
 use std::f64::consts::PI;
 
 /// The sphere stands 12 D behind the inlet and 20 D before the outlet; the sides are 12 D away, so that it covers 0.14 % of the stream.

@@ -8,13 +8,13 @@ pub use diary::{Diary, Portraits};
 use crate::Outcome;
 use crate::coupled::{Fall, Slice, View};
 use crate::granular::{GRAVITY, Grain, Kind, squeezed};
-use crate::picture::Domain;
 use coupling::{Particles, Simulation, WeightBalance};
 use dem::placing::SizeDistribution;
 use dem::{Chen, ContactLaw, HalfSpace, Lubricated, Material, RigidBodies};
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Sampler, Side};
 use ibm::{SmoothFilm, SmoothForcing};
 use interfaces::{Aabb, Bodies, Freedom, Kinematics, Periods, Point, Twist, Vector};
+use render::Domain;
 use std::f64::consts::PI;
 
 /// Density of the fluid \[kg/m³\].

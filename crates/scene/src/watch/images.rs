@@ -3,9 +3,9 @@ use super::{Solids, Taken, Watch, output};
 use crate::setup::{Algorithm, Images, Quantity, Setup};
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
-use example_support::picture::section::{BodySection, Layer, Section, Sheet};
 use fv_mesh::Axis;
 use interfaces::{BodyId, Checkpoint, Pose, RestartError};
+use render::section::{BodySection, Layer, Section, Sheet};
 use std::path::{Path, PathBuf};
 
 /// Draws `images/NNNNN.png` at snapshots.

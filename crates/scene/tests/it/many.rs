@@ -1,6 +1,6 @@
 //! Costs of reading, checking and starting scenes of many bodies, and of files with many problems.
 use crate::{folder, problems, quiet};
-use example_support::cpu::Stopwatch;
+use render::cpu::Stopwatch;
 use scene::{Ending, Scene};
 use std::fmt::Write;
 use std::sync::atomic::AtomicBool;

@@ -1,9 +1,9 @@
 //! Scenes with one or two values, keys or lines mutated: what passes `--check` runs.
 use crate::{coarse, folder, quiet, root, scenes};
-use example_support::cpu::Stopwatch;
 use rand::seq::IndexedRandom;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use render::cpu::Stopwatch;
 use scene::{RunError, Scene};
 use std::collections::BTreeMap;
 use std::ops::Range;

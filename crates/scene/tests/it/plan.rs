@@ -1,6 +1,6 @@
 //! Estimates of plans against what runs take.
 use crate::{folder, quiet, root};
-use example_support::cpu::{Stopwatch, peak_memory};
+use render::cpu::{Stopwatch, peak_memory};
 use scene::Scene;
 use std::process::Command;
 use std::sync::atomic::AtomicBool;

@@ -1,9 +1,9 @@
 //! Pictures of the flow.
 use super::run::Fall;
-use crate::picture::comparison::Field;
-use crate::picture::{Disc, Domain, Frames, Scalar};
 use coupling::{CouplingError, Observer, StepInfo};
 use dem::{Chen, ContactLaw};
+use render::comparison::Field;
+use render::{Disc, Domain, Frames, Scalar};
 use std::path::{Path, PathBuf};
 
 /// Speeds on a rectangle at one time, and the bodies in it.

@@ -4,15 +4,15 @@ use super::motion::{Diary, Motion};
 use super::options::RunOptions;
 use super::save::{Save, load};
 use crate::Outcome;
-use crate::cpu::{Elapsed, Stopwatch};
 use crate::files::make_folder;
 use crate::granular::{Ending, fingerprint};
-use crate::progress::{Progress, Status};
 use coupling::{
     CouplingError, FileOutput, Module, Observer, Particles, RunSummary, Schedule, Simulation, StepInfo,
 };
 use dem::{Chen, ContactLaw, RigidBodies};
 use ibm::SmoothForcing;
+use render::cpu::{Elapsed, Stopwatch};
+use render::progress::{Progress, Status};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 

@@ -2,8 +2,9 @@
 use super::law::Granulate;
 use super::scene::Scene;
 use crate::Outcome;
-use crate::picture::solids::{Model, Portrait, Tint};
+use crate::portrait_shape::portrait_shape;
 use interfaces::{BodyId, Kinematics, Point, Pose};
+use render::solids::{Model, Portrait, Tint};
 use std::path::{Path, PathBuf};
 
 /// How bright walls are.
@@ -14,7 +15,7 @@ pub(super) fn picture(path: &Path, scene: &impl Scene, bodies: &Granulate, title
     let furniture = scene.furniture();
     let mut models: Vec<Model<'_>> = furniture
         .iter()
-        .map(|(shape, pose)| Model { shape: &**shape, pose: *pose, tint: Tint::Grey(WALL) })
+        .map(|(shape, pose)| Model { shape: portrait_shape(&**shape), pose: *pose, tint: Tint::Grey(WALL) })
         .collect();
     let corner = corner(scene);
     for b in bodies.ids() {
@@ -23,7 +24,11 @@ pub(super) fn picture(path: &Path, scene: &impl Scene, bodies: &Granulate, title
         }
         let grain = b.0 >= scene.first_grain();
         let tint = if grain { Tint::Value(scene.value(bodies, b)) } else { Tint::Grey(WALL) };
-        models.push(Model { shape: bodies.shape(b), pose: wrapped(bodies, b, corner, grain), tint });
+        models.push(Model {
+            shape: portrait_shape(bodies.shape(b)),
+            pose: wrapped(bodies, b, corner, grain),
+            tint,
+        });
     }
     let (label, range) = scene.scale();
     let portrait = Portrait { view: scene.view(), models: &models, range, label: Some(label), title };

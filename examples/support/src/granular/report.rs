@@ -1,7 +1,7 @@
 //! Curves and numbers that every such run has.
 use super::record::History;
-use crate::picture::sketch::{Drawing, Paint};
 use crate::table::{Table, number};
+use render::sketch::{Drawing, Paint};
 
 /// A column over time, `by` times as large, from zero on.
 pub fn over_time(history: &History, column: &str, by: f64, title: &str, label: &str) -> Drawing {

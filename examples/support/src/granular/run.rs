@@ -5,11 +5,11 @@ use super::measures::{Totals, totals};
 use super::options::RunOptions;
 use super::record::History;
 use super::scene::Scene;
-use crate::progress::Progress;
 use crate::{Outcome, told};
 use coupling::CheckpointError;
 use dem::placing::{BodyRow, write_bodies};
 use interfaces::{Checkpoint, Dynamics, Kinematics, RestartError};
+use render::progress::Progress;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
@@ -275,10 +275,10 @@ fn table(path: &Path, scene: &impl Scene, bodies: &Granulate) -> Outcome<()> {
 mod tests {
     use super::*;
     use crate::granular::{Law, Ways};
-    use crate::picture::solids::View;
     use clap::Parser;
     use dem::{HalfSpace, Material, RigidBodies, Rolling, Sphere};
     use interfaces::{Aabb, BodyId, Freedom, Periods, Point, Pose, Twist, Vector};
+    use render::solids::View;
 
     /// One ball after the other falls onto a floor; Ctrl-C comes at a given time.
     struct Balls<'a> {

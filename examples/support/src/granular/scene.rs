@@ -1,9 +1,9 @@
 //! What a run asks of a scene.
 use super::law::Granulate;
 use crate::Outcome;
-use crate::picture::solids::View;
 use dem::Shape;
 use interfaces::{Aabb, BodyId, Pose};
+use render::solids::View;
 use std::sync::Arc;
 
 /// A scene: its grains are the bodies from [`first_grain`](Self::first_grain) on, what comes before are walls.

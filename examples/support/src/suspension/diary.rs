@@ -3,10 +3,11 @@ use super::bed::{Bed, profile};
 use crate::Outcome;
 use crate::coupled::{Diary as Kept, Fall};
 use crate::granular::{Totals, totals};
-use crate::picture::solids::{Model, Portrait, Tint, View};
+use crate::portrait_shape::portrait_shape;
 use coupling::{CouplingError, Ledger, LedgerReport, Observer, StepInfo};
-use dem::{ContactLaw, Cuboid, Shape};
+use dem::{ContactLaw, Cuboid};
 use interfaces::{Aabb, Bodies, BodyId, Checkpoint, Kinematics, Point, Pose, RestartError, Vector};
+use render::solids::{Model, Portrait, Tint, View};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -236,13 +237,13 @@ impl Portraits {
         }
         let mut models: Vec<Model<'_>> = plates
             .iter()
-            .map(|(s, pose)| Model { shape: s as &dyn Shape, pose: *pose, tint: Tint::Grey(0.78) })
+            .map(|(s, pose)| Model { shape: portrait_shape(s), pose: *pose, tint: Tint::Grey(0.78) })
             .collect();
         models.extend(bodies.ids().map(|b: BodyId| {
             let pose = bodies.pose(b);
             let position = bodies.periods().wrap(pose.position, Point::origin());
             let tint = Tint::Value(1e3 * self.heights[b.0]);
-            Model { shape: bodies.shape(b), pose: Pose { position, ..pose }, tint }
+            Model { shape: portrait_shape(bodies.shape(b)), pose: Pose { position, ..pose }, tint }
         }));
         let view = View {
             middle: Point::new(0.5 * w, 0.5 * w, 0.46 * high),

@@ -1,28 +1,10 @@
-//! Pictures of a plane flow with bodies: one PNG per snapshot, one summary figure per run.
-//!
-//! Lengths in metres and speeds in m/s come in; axes and bars show millimetres and mm/s.
-
+//! Pictures of a plane flow with round bodies, one PNG per snapshot.
+use crate::axes::{Axes, Look, colour_bar};
+use crate::canvas::{Canvas, Rect};
+use crate::colour::{self, BLACK, Map, WHITE, mix};
+use crate::text::Type;
 use std::io;
 use std::path::Path;
-
-mod axes;
-mod canvas;
-mod colour;
-pub mod comparison;
-pub mod gallery;
-mod outlines;
-pub mod plot;
-pub mod profiles;
-pub mod section;
-pub mod sketch;
-pub mod solids;
-pub mod summary;
-mod text;
-
-use axes::{Axes, Look, colour_bar};
-use canvas::{Canvas, Rect};
-use colour::{BLACK, Map, WHITE, mix};
-use text::Type;
 
 /// A field at the cell centres of a uniform grid over the [`Domain`]: x runs fastest, y upwards.
 #[derive(Clone, Copy, Debug)]
@@ -61,7 +43,7 @@ pub struct Domain {
 
 impl Domain {
     /// Where images of a disc reach into the domain.
-    fn images(&self, disc: &Disc) -> Vec<(f64, f64)> {
+    pub(crate) fn images(&self, disc: &Disc) -> Vec<(f64, f64)> {
         let along = |centre: f64, length: f64, periodic: bool| -> Vec<f64> {
             if !periodic {
                 return vec![centre];
@@ -75,12 +57,12 @@ impl Domain {
         columns.iter().flat_map(|&x| rows.iter().map(move |&y| (x, y))).collect()
     }
 
-    fn axes(&self, rect: Rect) -> Axes {
+    pub(crate) fn axes(&self, rect: Rect) -> Axes {
         Axes { rect, x: (0.0, 1e3 * self.width), y: (0.0, 1e3 * self.height) }
     }
 
     /// Draws the discs with outlines that show on dark and light ground alike.
-    fn discs(&self, canvas: &mut Canvas, rect: Rect, discs: &[Disc], line: f64) {
+    pub(crate) fn discs(&self, canvas: &mut Canvas, rect: Rect, discs: &[Disc], line: f64) {
         let scale = rect.width / self.width;
         canvas.clip(Some(rect));
         for disc in discs {
@@ -110,7 +92,7 @@ fn lattice(pixels: usize, cells: usize, periodic: bool, flip: bool) -> Vec<(usiz
 }
 
 /// Paints `rect` pixel by pixel from fields on one grid, linearly between their cell centres.
-fn paint<const N: usize>(
+pub(crate) fn paint<const N: usize>(
     canvas: &mut Canvas,
     rect: Rect,
     periodic: [bool; 2],

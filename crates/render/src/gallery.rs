@@ -3,11 +3,11 @@
 use std::io;
 use std::path::Path;
 
-use super::axes::{Look, colour_bar};
-use super::canvas::{Canvas, Rect};
-use super::colour::{INK, Map, WHITE};
-use super::text::Type;
-use super::{Scalar, paint};
+use crate::axes::{Look, colour_bar};
+use crate::canvas::{Canvas, Rect};
+use crate::colour::{INK, Map, WHITE};
+use crate::frames::{Scalar, paint};
+use crate::text::Type;
 
 /// One field.
 #[derive(Clone, Debug)]

@@ -1,8 +1,8 @@
 //! Axes with ticks, and colour bars.
 
-use super::canvas::{Canvas, Pixel, Rect};
-use super::colour::{GRID, INK, Map};
-use super::text::Type;
+use crate::canvas::{Canvas, Pixel, Rect};
+use crate::colour::{GRID, INK, Map};
+use crate::text::Type;
 
 /// Sizes of what surrounds a plot, in pixels.
 #[derive(Clone, Copy, Debug)]
@@ -92,7 +92,7 @@ impl Axes {
             canvas.fill(mark, INK, 1.0);
             let text = ticks.label(tick);
             canvas.text((foot - length - 0.4 * look.font, y), Type::new(look.font, (1.0, 0.5)), &text);
-            reach = reach.max(super::text::width(look.font, &text));
+            reach = reach.max(crate::text::width(look.font, &text));
         }
         let x = foot - length - 1.1 * look.font - reach;
         let middle = self.rect.top + 0.5 * self.rect.height;
@@ -135,7 +135,7 @@ pub(crate) fn colour_bar(
         canvas.fill(Rect::new(foot, (y - 0.5 * look.line).round(), length, look.line), INK, 1.0);
         let text = ticks.label(tick);
         canvas.text((foot + length + 0.35 * look.font, y), Type::new(look.font, (0.0, 0.5)), &text);
-        reach = reach.max(super::text::width(look.font, &text));
+        reach = reach.max(crate::text::width(look.font, &text));
     }
     let x = foot + length + 1.0 * look.font + reach;
     canvas.text((x, rect.top + 0.5 * rect.height), Type::new(look.font, (0.5, 1.0)).turned(), label);

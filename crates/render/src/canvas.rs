@@ -6,7 +6,7 @@ use std::path::Path;
 
 use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
-use super::colour::{Colour, mix};
+use crate::colour::{Colour, mix};
 
 /// A point on the canvas in pixels: x to the right, y downwards.
 pub(crate) type Pixel = (f64, f64);

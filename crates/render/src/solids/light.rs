@@ -1,7 +1,7 @@
 //! How bright things are.
 use super::raster::Buffer;
 use super::{Camera, Model, Tint};
-use crate::picture::colour::Colour;
+use crate::colour::Colour;
 use interfaces::{Point, Vector};
 use rayon::prelude::*;
 use std::f32::consts::TAU;
@@ -40,8 +40,8 @@ impl Light {
         let large = camera.centre.0.max(camera.centre.1) / camera.scale;
         let (mut low, mut high) = (Vector::repeat(f64::MAX), Vector::repeat(f64::MIN));
         let casts = |m: &&Model<'_>| matches!(m.tint, Tint::Value(_));
-        for model in models.iter().filter(casts).filter(|m| m.shape.bounding_radius() < large) {
-            let (p, r) = (lamp.at(model.pose.position), model.shape.bounding_radius());
+        for model in models.iter().filter(casts).filter(|m| m.shape.bounding_radius < large) {
+            let (p, r) = (lamp.at(model.pose.position), model.shape.bounding_radius);
             low = low.inf(&p.add_scalar(-r));
             high = high.sup(&p.add_scalar(r));
         }
@@ -54,7 +54,7 @@ impl Light {
         lamp.centre = (-low.x * lamp.scale, -low.y * lamp.scale);
         let mut seen = Buffer::new(w.min(2 * size), h.min(2 * size));
         for model in models.iter().filter(casts) {
-            seen.add(&lamp, model.shape, &model.pose, 0);
+            seen.add(&lamp, &model.shape, &model.pose, 0);
         }
         Self { camera: *camera, lamp, seen, towards }
     }

@@ -3,13 +3,13 @@
 use std::io;
 use std::path::Path;
 
-use super::axes::{Axes, Look, colour_bar};
-use super::canvas::{Canvas, Rect};
-use super::colour::{BLACK, Colour, Map, WHITE, mix};
-use super::outlines::Mask;
-use super::text::{Type, width, wrapped};
+use crate::axes::{Axes, Look, colour_bar};
+use crate::canvas::{Canvas, Rect};
+use crate::colour::{BLACK, Colour, Map, WHITE, mix};
+use crate::outlines::Mask;
+use crate::text::{Type, width, wrapped};
 
-pub use super::outlines::BodySection;
+pub use crate::outlines::BodySection;
 
 /// A plane through cells: faces of both axes in metres, and names of the axes.
 #[derive(Clone, Debug)]

@@ -1,7 +1,6 @@
 //! The nearest surface along every ray.
-use super::Camera;
-use dem::{Form, Shape};
-use interfaces::{Point, Pose, Vector};
+use super::{Camera, Form, Shape};
+use interfaces::{Point, Polyhedron, Pose, Solid, Vector};
 use nalgebra::Matrix3;
 
 /// Depth (towards the eye), normal and owner of what each ray meets first.
@@ -45,17 +44,18 @@ impl Buffer {
     }
 
     /// Draws a body. Normals are those of the camera: x right, y up, z towards the eye.
-    pub(super) fn add(&mut self, camera: &Camera, shape: &dyn Shape, pose: &Pose, owner: u32) {
-        match shape.form() {
+    pub(super) fn add(&mut self, camera: &Camera, shape: &Shape<'_>, pose: &Pose, owner: u32) {
+        match &shape.form {
             Form::Union(parts) => {
-                for part in parts {
-                    self.add(camera, &*part.shape, &pose.of(&part.pose), owner);
+                for (part, place) in parts {
+                    self.add(camera, part, &pose.of(place), owner);
                 }
             }
-            Form::Sphere(s) => self.ellipsoid(camera, Vector::repeat(s.radius()), pose, owner),
-            Form::Ellipsoid(e) => self.ellipsoid(camera, e.semi_axes(), pose, owner),
-            _ if shape.polyhedron().is_some() => self.triangles(camera, shape, pose, owner),
-            _ => self.trace(camera, shape, pose, owner),
+            Form::Ellipsoid(semi_axes) => self.ellipsoid(camera, *semi_axes, pose, owner),
+            Form::Solid(solid) => match solid.polyhedron() {
+                Some(surface) => self.triangles(camera, &surface, pose, owner),
+                None => self.trace(camera, *solid, shape.bounding_radius, pose, owner),
+            },
         }
     }
 
@@ -84,8 +84,7 @@ impl Buffer {
     }
 
     /// Flat triangles; those that face away are left out.
-    fn triangles(&mut self, camera: &Camera, shape: &dyn Shape, pose: &Pose, owner: u32) {
-        let Some(surface) = shape.polyhedron() else { return };
+    fn triangles(&mut self, camera: &Camera, surface: &Polyhedron<'_>, pose: &Pose, owner: u32) {
         for face in surface.faces {
             let [a, b, c] = face.map(|v| camera.at(pose.to_world(surface.vertices[v as usize])));
             let (u, v) = (b - a, c - a);
@@ -111,9 +110,8 @@ impl Buffer {
     }
 
     /// Anything else, by its signed distance: a ray goes as far as nothing can be in its way.
-    fn trace(&mut self, camera: &Camera, shape: &dyn Shape, pose: &Pose, owner: u32) {
+    fn trace(&mut self, camera: &Camera, shape: &dyn Solid, radius: f64, pose: &Pose, owner: u32) {
         let centre = camera.at(pose.position);
-        let radius = shape.bounding_radius();
         let reach = radius * camera.scale;
         // Where rays come from and go, in the body's frame.
         let to_body = |v: Vector| pose.orientation.inverse_transform_vector(&(camera.turn.transpose() * v));

@@ -3,10 +3,10 @@
 use std::io;
 use std::path::Path;
 
-use super::axes::{Axes, Look, Ticks};
-use super::canvas::{Canvas, Pixel, Rect};
-use super::colour::{self, WHITE};
-use super::text::Type;
+use crate::axes::{Axes, Look, Ticks};
+use crate::canvas::{Canvas, Pixel, Rect};
+use crate::colour::{self, WHITE};
+use crate::text::Type;
 
 /// Points of one kind.
 #[derive(Clone, Debug)]

@@ -6,12 +6,11 @@
 mod light;
 mod raster;
 
-use super::axes::{Look, colour_bar};
-use super::canvas::{Canvas, Rect};
-use super::colour::{INK, Map};
-use super::text::Type;
-use dem::Shape;
-use interfaces::{Point, Pose, Vector};
+use crate::axes::{Look, colour_bar};
+use crate::canvas::{Canvas, Rect};
+use crate::colour::{INK, Map};
+use crate::text::Type;
+use interfaces::{Point, Pose, Solid, Vector};
 use light::Light;
 use nalgebra::{Matrix3, Rotation3};
 use raster::Buffer;
@@ -27,11 +26,31 @@ pub enum Tint {
     Grey(f64),
 }
 
+/// Surface of a body.
+#[derive(Clone)]
+pub enum Form<'a> {
+    /// Ellipsoid or sphere, by its semi-axes \[m\].
+    Ellipsoid(Vector),
+    /// Union of parts, each with its pose in the body's frame.
+    Union(Vec<(Shape<'a>, Pose)>),
+    /// Triangles if the solid has a polyhedron, otherwise its signed distance.
+    Solid(&'a dyn Solid),
+}
+
+/// Shape of a body.
+#[derive(Clone)]
+pub struct Shape<'a> {
+    /// Its surface.
+    pub form: Form<'a>,
+    /// Radius of a sphere about the origin of its frame that contains it \[m\].
+    pub bounding_radius: f64,
+}
+
 /// A body of a picture.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct Model<'a> {
     /// Its shape.
-    pub shape: &'a dyn Shape,
+    pub shape: Shape<'a>,
     /// Where it is.
     pub pose: Pose,
     /// Its paint.
@@ -117,7 +136,7 @@ impl Portrait<'_> {
         let camera = Camera::new(along, up, middle, scale * FINER as f64, centre);
         let mut buffer = Buffer::new(fine_w, fine_h);
         for (i, model) in self.models.iter().enumerate() {
-            buffer.add(&camera, model.shape, &model.pose, i as u32);
+            buffer.add(&camera, &model.shape, &model.pose, i as u32);
         }
         let light = Light::new(&camera, self.models, fine_w.max(fine_h));
         let map = Map::viridis();
@@ -177,10 +196,19 @@ impl Portrait<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dem::{Capsule, Cuboid, Ellipsoid, Sphere};
+    use dem::{Capsule, Cuboid};
+
+    fn solid(solid: &dyn dem::Shape) -> Shape<'_> {
+        Shape { form: Form::Solid(solid), bounding_radius: solid.bounding_radius() }
+    }
+
+    fn ellipsoid(semi_axes: [f64; 3]) -> Shape<'static> {
+        let semi_axes = Vector::from(semi_axes);
+        Shape { form: Form::Ellipsoid(semi_axes), bounding_radius: semi_axes.max() }
+    }
 
     /// The depth that a buffer has where the ray through `at` meets a shape.
-    fn depth(shape: &dyn Shape, pose: &Pose, at: Point) -> f64 {
+    fn depth(shape: &Shape<'_>, pose: &Pose, at: Point) -> f64 {
         let camera = Camera::new(Vector::y(), Vector::z(), Point::origin(), 100.0, (200.0, 200.0));
         let mut buffer = Buffer::new(400, 400);
         buffer.add(&camera, shape, pose, 0);
@@ -193,25 +221,25 @@ mod tests {
     fn surfaces_are_where_they_are() {
         let turned = interfaces::Rotation::from_euler_angles(0.0, 0.0, 0.5 * std::f64::consts::PI);
         let pose = Pose { position: Point::new(0.3, -0.5, 0.2), orientation: turned };
-        let near = |shape: &dyn Shape, expected: f64| {
-            let found = depth(shape, &pose, pose.position);
-            assert!((found - expected).abs() < 0.02, "{}: {found} not {expected}", shape.name());
-            assert_eq!(depth(shape, &pose, Point::new(1.9, 0.0, 1.9)), f64::NEG_INFINITY);
+        let near = |shape: Shape<'_>, expected: f64| {
+            let found = depth(&shape, &pose, pose.position);
+            assert!((found - expected).abs() < 0.02, "{found} not {expected}");
+            assert_eq!(depth(&shape, &pose, Point::new(1.9, 0.0, 1.9)), f64::NEG_INFINITY);
         };
-        near(&Sphere::new(0.4).unwrap(), 0.5 + 0.4);
+        near(ellipsoid([0.4; 3]), 0.5 + 0.4);
         // The axis along x has been turned into that along y.
-        near(&Ellipsoid::new([0.6, 0.2, 0.3]).unwrap(), 0.5 + 0.6);
-        near(&Cuboid::new([1.0, 0.2, 0.3]).unwrap(), 0.5 + 0.5);
-        near(&Capsule::new(0.2, 0.5).unwrap(), 0.5 + 0.2);
+        near(ellipsoid([0.6, 0.2, 0.3]), 0.5 + 0.6);
+        near(solid(&Cuboid::new([1.0, 0.2, 0.3]).unwrap()), 0.5 + 0.5);
+        near(solid(&Capsule::new(0.2, 0.5).unwrap()), 0.5 + 0.2);
     }
 
     #[test]
     fn a_portrait_is_a_picture() {
-        let ball = Sphere::new(0.01).unwrap();
+        let ball = ellipsoid([0.01; 3]);
         let floor = Cuboid::new([0.1, 0.1, 0.001]).unwrap();
         let models = [
-            Model { shape: &ball, pose: Pose::at([0.0, 0.0, 0.01]), tint: Tint::Value(0.5) },
-            Model { shape: &floor, pose: Pose::at([0.0; 3]), tint: Tint::Grey(0.8) },
+            Model { shape: ball, pose: Pose::at([0.0, 0.0, 0.01]), tint: Tint::Value(0.5) },
+            Model { shape: solid(&floor), pose: Pose::at([0.0; 3]), tint: Tint::Grey(0.8) },
         ];
         let view = View {
             middle: Point::origin(),

@@ -5,12 +5,11 @@ use std::sync::LazyLock;
 
 use ab_glyph::{Font, FontRef, GlyphId, PxScale, ScaleFont, point};
 
-use super::canvas::{Canvas, Pixel};
-use super::colour::{Colour, INK};
+use crate::canvas::{Canvas, Pixel};
+use crate::colour::{Colour, INK};
 
 static FONT: LazyLock<FontRef<'static>> = LazyLock::new(|| {
-    FontRef::try_from_slice(include_bytes!("../../DejaVuSans-subset.ttf"))
-        .expect("the embedded font is sound")
+    FontRef::try_from_slice(include_bytes!("../DejaVuSans-subset.ttf")).expect("the embedded font is sound")
 });
 
 /// Height of a capital letter over the font size.

@@ -2,7 +2,7 @@
 
 use interfaces::{Point, Pose, Solid};
 
-use super::canvas::Rect;
+use crate::canvas::Rect;
 
 /// A body where it is, and the plane of the picture: both axes, and a point of the plane \[m\].
 #[derive(Clone, Copy)]
@@ -23,7 +23,7 @@ const LINE: f64 = 2.0;
 const BLOCKS: [usize; 2] = [48, 8];
 
 /// Coverage of the pixels of a plot, by rows from the top.
-pub(super) struct Mask {
+pub(crate) struct Mask {
     width: usize,
     height: usize,
     /// Share of the pixel inside a body, and share under an outline, in 255ths.
@@ -33,7 +33,7 @@ pub(super) struct Mask {
 
 impl Mask {
     /// Bodies on a plot of the plane between `ends` of both axes \[m\].
-    pub(super) fn new(plot: Rect, ends: [(f64, f64); 2], bodies: &[BodySection<'_>]) -> Self {
+    pub(crate) fn new(plot: Rect, ends: [(f64, f64); 2], bodies: &[BodySection<'_>]) -> Self {
         let (width, height) = (plot.width as usize, plot.height as usize);
         let mut mask =
             Self { width, height, shares: vec![[0; 2]; width * height], rows: vec![false; height] };
@@ -44,7 +44,7 @@ impl Mask {
     }
 
     /// The shares of a row of pixels; `None` if no body is in it.
-    pub(super) fn row(&self, y: usize) -> Option<impl Iterator<Item = [f64; 2]> + '_> {
+    pub(crate) fn row(&self, y: usize) -> Option<impl Iterator<Item = [f64; 2]> + '_> {
         let row = self.rows[y].then(|| &self.shares[y * self.width..][..self.width]);
         row.map(|row| row.iter().map(|shares| shares.map(|share| f64::from(share) / 255.0)))
     }

@@ -3,11 +3,11 @@
 use std::io;
 use std::path::Path;
 
-use super::axes::{Axes, Look, colour_bar};
-use super::canvas::{Canvas, Pixel, Rect};
-use super::colour::{self, INK, Map, WHITE};
-use super::text::{self, Type};
-use super::{Disc, Domain, Scalar, paint};
+use crate::axes::{Axes, Look, colour_bar};
+use crate::canvas::{Canvas, Pixel, Rect};
+use crate::colour::{self, INK, Map, WHITE};
+use crate::frames::{Disc, Domain, Scalar, paint};
+use crate::text::{self, Type};
 
 /// The fields at one time.
 #[derive(Clone, Copy, Debug)]

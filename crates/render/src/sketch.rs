@@ -3,10 +3,10 @@
 use std::io;
 use std::path::Path;
 
-use super::axes::{Axes, Look};
-use super::canvas::{Canvas, Rect};
-use super::colour::{self, Colour, INK, Map, WHITE, mix};
-use super::text::Type;
+use crate::axes::{Axes, Look};
+use crate::canvas::{Canvas, Rect};
+use crate::colour::{self, Colour, INK, Map, WHITE, mix};
+use crate::text::Type;
 
 /// What something in a sketch is painted with.
 #[derive(Clone, Copy, Debug)]

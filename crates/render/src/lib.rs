@@ -1,0 +1,24 @@
+//! What a run shows: pictures of fields and bodies as PNG files, plots, the progress line of the terminal, time and memory of the
+//! process.
+//!
+//! Bodies are known by [`interfaces::Solid`] alone. Lengths in metres and speeds in m/s come in; axes of [`Frames`] show millimetres and mm/s.
+
+mod axes;
+mod canvas;
+mod colour;
+pub mod comparison;
+pub mod cpu;
+pub mod files;
+mod frames;
+pub mod gallery;
+mod outlines;
+pub mod plot;
+pub mod profiles;
+pub mod progress;
+pub mod section;
+pub mod sketch;
+pub mod solids;
+pub mod summary;
+mod text;
+
+pub use frames::{Disc, Domain, Frames, Scalar};

@@ -57,7 +57,7 @@ fn checksum(bytes: &[u8]) -> u64 {
 ///
 /// # Errors
 /// [`CheckpointError::Io`].
-pub fn save(path: &Path, of: &impl Checkpoint) -> Result<(), CheckpointError> {
+pub fn save(path: &Path, of: &(impl Checkpoint + ?Sized)) -> Result<(), CheckpointError> {
     let mut bytes = MAGIC.to_vec();
     of.save(&mut |name, values| {
         bytes.extend((name.len() as u64).to_le_bytes());
@@ -127,7 +127,7 @@ impl SavedState {
     ///
     /// # Errors
     /// [`RestartError`] when the state belongs to another set-up.
-    pub fn restore(&self, into: &mut impl Checkpoint) -> Result<(), RestartError> {
+    pub fn restore(&self, into: &mut (impl Checkpoint + ?Sized)) -> Result<(), RestartError> {
         into.restore(&|name| self.get(name))
     }
 }
@@ -136,6 +136,6 @@ impl SavedState {
 ///
 /// # Errors
 /// [`CheckpointError`] when the file cannot be read, is not whole (it then names the one saved before), or belongs to another set-up.
-pub fn load(path: &Path, into: &mut impl Checkpoint) -> Result<(), CheckpointError> {
+pub fn load(path: &Path, into: &mut (impl Checkpoint + ?Sized)) -> Result<(), CheckpointError> {
     Ok(SavedState::read(path)?.restore(into)?)
 }

@@ -119,7 +119,7 @@ pub struct StepInfo {
 
 /// Someone who looks on: progress, output, probes, statistics. `()` sees nothing; pairs of
 /// observers, and one that may be absent (`Option`), are observers.
-pub trait Observer<S> {
+pub trait Observer<S: ?Sized> {
     /// Before the first step of this run, which may go on from a saved state.
     fn begin(&mut self, _simulation: &mut S) {}
     /// After every step.
@@ -143,9 +143,9 @@ pub trait Observer<S> {
     }
 }
 
-impl<S> Observer<S> for () {}
+impl<S: ?Sized> Observer<S> for () {}
 
-impl<S, A: Observer<S>, B: Observer<S>> Observer<S> for (A, B) {
+impl<S: ?Sized, A: Observer<S>, B: Observer<S>> Observer<S> for (A, B) {
     fn begin(&mut self, simulation: &mut S) {
         self.0.begin(simulation);
         self.1.begin(simulation);
@@ -160,7 +160,7 @@ impl<S, A: Observer<S>, B: Observer<S>> Observer<S> for (A, B) {
     }
 }
 
-impl<S, A: Observer<S>> Observer<S> for Option<A> {
+impl<S: ?Sized, A: Observer<S>> Observer<S> for Option<A> {
     fn begin(&mut self, simulation: &mut S) {
         if let Some(a) = self {
             a.begin(simulation);
@@ -174,7 +174,7 @@ impl<S, A: Observer<S>> Observer<S> for Option<A> {
     }
 }
 
-impl<S, A: Observer<S>> Observer<S> for &mut A {
+impl<S: ?Sized, A: Observer<S>> Observer<S> for &mut A {
     fn begin(&mut self, simulation: &mut S) {
         (**self).begin(simulation);
     }
@@ -211,7 +211,7 @@ pub struct RunSummary {
 }
 
 /// Makes a step of `dt` \[s\]. Returns its Courant number if that exceeds the `limit`, the state then being that after the step or, when the flow has diverged, within it.
-fn went_too_far<S: Evolving>(
+fn went_too_far<S: Evolving + ?Sized>(
     simulation: &mut S,
     dt: f64,
     limit: Option<f64>,
@@ -232,7 +232,7 @@ fn went_too_far<S: Evolving>(
 /// # Errors
 /// The first error of a step or an observer. After an error within a step the simulation is between
 /// two steps: go on from a saved state.
-pub fn run<S: Evolving>(
+pub fn run<S: Evolving + ?Sized>(
     simulation: &mut S,
     schedule: &Schedule,
     observer: &mut impl Observer<S>,

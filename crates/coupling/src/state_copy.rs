@@ -11,7 +11,7 @@ pub(crate) struct StateCopy {
 
 impl StateCopy {
     /// Copies what `from` needs to take back its next step.
-    pub(crate) fn take(&mut self, from: &mut impl Checkpoint) {
+    pub(crate) fn take(&mut self, from: &mut (impl Checkpoint + ?Sized)) {
         self.len = 0;
         let Self { arrays, len } = self;
         from.save_start(&mut |name, values| {
@@ -32,7 +32,7 @@ impl StateCopy {
     ///
     /// # Errors
     /// [`RestartError`] if it is that of something else.
-    pub(crate) fn give_back(&self, into: &mut impl Checkpoint) -> Result<(), RestartError> {
+    pub(crate) fn give_back(&self, into: &mut (impl Checkpoint + ?Sized)) -> Result<(), RestartError> {
         let arrays = &self.arrays[..self.len];
         into.take_back(&|name| arrays.iter().find(|a| a.0 == name).map(|a| a.1.as_slice()))
     }

@@ -1,6 +1,6 @@
 //! Assembly of a simulation, and the one choice of its types.
+use crate::any_simulation::{AnySimulation, Budget, Viewed, WithBudget};
 use crate::cast::Cast;
-use crate::look::{Books, Show};
 use crate::physics::Physics;
 use crate::run::RunError;
 use crate::setup::{Algorithm, ContactLawChoice, ForcingChoice, Setup, StrategyChoice};
@@ -14,29 +14,43 @@ use dem::{ContactLaw, Population, Rolling};
 use ibm::Forcing;
 use interfaces::Checkpoint;
 
-/// Use of an assembled simulation: a whole run, or its first steps.
-pub(crate) trait Execution {
-    /// Result.
-    type Output;
+/// Simulation of a scene.
+pub(crate) enum Assembled {
+    /// To be marched in time.
+    Unsteady(Box<dyn AnySimulation>),
+    /// To be iterated to a steady state.
+    Steady2(Box<Steady<2>>),
+    Steady3(Box<Steady<3>>),
+}
 
-    /// Marches in time.
-    fn march<S: Show, K: Books<S>>(&self, simulation: S, books: K) -> Result<Self::Output, RunError>;
+impl From<Steady<2>> for Assembled {
+    fn from(flow: Steady<2>) -> Self {
+        Self::Steady2(Box::new(flow))
+    }
+}
 
-    /// Iterates to a steady state.
-    fn converge<const D: usize>(&self, steady: Steady<D>) -> Result<Self::Output, RunError>;
+impl From<Steady<3>> for Assembled {
+    fn from(flow: Steady<3>) -> Self {
+        Self::Steady3(Box::new(flow))
+    }
+}
+
+/// Simulation to be marched in time, with its budget or `()`.
+fn unsteady<S: Viewed + 'static, K: Budget<S> + 'static>(simulation: S, budget: K) -> Assembled {
+    Assembled::Unsteady(Box::new(WithBudget { simulation, budget }))
 }
 
 impl Setup {
-    /// Assembles the simulation and executes it.
-    pub(crate) fn execute<E: Execution>(&self, execution: &E) -> Result<E::Output, RunError> {
+    /// Assembles the simulation.
+    pub(crate) fn assemble(&self) -> Result<Assembled, RunError> {
         match self.dim() {
-            2 => self.assemble::<2, E>(execution),
-            _ => self.assemble::<3, E>(execution),
+            2 => self.assemble_in::<2>(),
+            _ => self.assemble_in::<3>(),
         }
     }
 
     /// Steps of a simulation at its start.
-    pub(crate) fn schedule(&self, simulation: &impl Evolving) -> Schedule {
+    pub(crate) fn schedule(&self, simulation: &(impl Evolving + ?Sized)) -> Schedule {
         let first = self.first_step() / simulation.stable_dt(self.courant).min(self.end);
         Schedule {
             end: self.end,
@@ -51,86 +65,73 @@ impl Setup {
         }
     }
 
-    fn assemble<const D: usize, E: Execution>(&self, execution: &E) -> Result<E::Output, RunError> {
+    fn assemble_in<const D: usize>(&self) -> Result<Assembled, RunError>
+    where
+        Assembled: From<Steady<D>>,
+    {
         if self.fluid.is_none() {
-            return self.grains(execution);
+            return self.grains();
         }
         let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
         match self.flow.algorithm {
-            Algorithm::Simple => return execution.converge(self.steady::<D>()?),
+            Algorithm::Simple => return Ok(self.steady::<D>()?.into()),
             Algorithm::Piso if bodies => {
                 let particles = self.particles(self.hfdib(), self.cast(self.chen())?).with_strategy(Explicit);
-                return execution.march(self.simulation(self.piso::<D>()?, particles)?, self.books());
+                return Ok(unsteady(self.simulation(self.piso::<D>()?, particles)?, self.books()));
             }
             Algorithm::Piso => {
-                return execution.march(self.simulation(self.piso::<D>()?, Still::default())?, ());
+                return Ok(unsteady(self.simulation(self.piso::<D>()?, Still::default())?, ()));
             }
             Algorithm::Projection => {}
         }
         if !self.is_forced() {
             let (flow, still) = self.walled::<D>()?;
-            return execution.march(self.simulation(flow, still)?, ());
+            return Ok(unsteady(self.simulation(flow, still)?, ()));
         }
         match self.bodies.forcing() {
-            ForcingChoice::Hfdib => self.bodies_by::<D, _, _>(execution, self.hfdib()),
-            _ => self.bodies_by::<D, _, _>(execution, self.smooth()),
+            ForcingChoice::Hfdib => self.bodies_by::<D, _>(self.hfdib()),
+            _ => self.bodies_by::<D, _>(self.smooth()),
         }
     }
 
     /// Bodies without a fluid.
-    fn grains<E: Execution>(&self, execution: &E) -> Result<E::Output, RunError> {
+    fn grains(&self) -> Result<Assembled, RunError> {
         if let Some(repulsion) = self.bodies.repulsion {
-            return execution.march(Grains::new(self.cast(self.repulsive(repulsion)?)?), ());
+            return Ok(unsteady(Grains::new(self.cast(self.repulsive(repulsion)?)?), ()));
         }
-        match self.bodies.law {
-            ContactLawChoice::Chen => execution.march(Grains::new(self.cast(self.chen())?), ()),
-            ContactLawChoice::Potential => execution.march(Grains::new(self.cast(self.potential())?), ()),
-            ContactLawChoice::Rolling => execution.march(Grains::new(self.cast(Rolling(self.chen()))?), ()),
-            ContactLawChoice::None => execution.march(Grains::new(self.cast(())?), ()),
-        }
+        Ok(match self.bodies.law {
+            ContactLawChoice::Chen => unsteady(Grains::new(self.cast(self.chen())?), ()),
+            ContactLawChoice::Potential => unsteady(Grains::new(self.cast(self.potential())?), ()),
+            ContactLawChoice::Rolling => unsteady(Grains::new(self.cast(Rolling(self.chen()))?), ()),
+            ContactLawChoice::None => unsteady(Grains::new(self.cast(())?), ()),
+        })
     }
 
-    fn bodies_by<const D: usize, F: Forcing, E: Execution>(
-        &self,
-        execution: &E,
-        forcing: F,
-    ) -> Result<E::Output, RunError> {
+    fn bodies_by<const D: usize, F: Forcing + 'static>(&self, forcing: F) -> Result<Assembled, RunError> {
         let flow = self.physics(self.projection::<D>()?)?;
         if let Some(repulsion) = self.bodies.repulsion {
-            return self.with_bodies(
-                execution,
-                flow,
-                self.particles(forcing, self.cast(self.repulsive(repulsion)?)?),
-            );
+            return self.with_bodies(flow, self.particles(forcing, self.cast(self.repulsive(repulsion)?)?));
         }
         match (self.bodies.law, self.bodies.coupling.strategy, self.bodies.lubrication) {
-            (ContactLawChoice::Chen, StrategyChoice::OneSolve, Some(roughness)) => self.with_bodies(
-                execution,
-                flow,
-                self.particles(forcing, self.cast(self.lubricated(roughness)?)?),
-            ),
+            (ContactLawChoice::Chen, StrategyChoice::OneSolve, Some(roughness)) => {
+                self.with_bodies(flow, self.particles(forcing, self.cast(self.lubricated(roughness)?)?))
+            }
             (ContactLawChoice::Chen, StrategyChoice::Iterated, _) => self.with_bodies(
-                execution,
                 flow,
                 self.particles(forcing, self.cast(self.chen())?).with_strategy(Iterated::default()),
             ),
-            (ContactLawChoice::Chen, StrategyChoice::Explicit, _) => self.with_bodies(
-                execution,
-                flow,
-                self.particles(forcing, self.cast(self.chen())?).with_strategy(Explicit),
-            ),
+            (ContactLawChoice::Chen, StrategyChoice::Explicit, _) => self
+                .with_bodies(flow, self.particles(forcing, self.cast(self.chen())?).with_strategy(Explicit)),
             (ContactLawChoice::Chen, ..) => {
-                self.with_bodies(execution, flow, self.particles(forcing, self.cast(self.chen())?))
+                self.with_bodies(flow, self.particles(forcing, self.cast(self.chen())?))
             }
             (ContactLawChoice::Potential, ..) => {
-                self.with_bodies(execution, flow, self.particles(forcing, self.cast(self.potential())?))
+                self.with_bodies(flow, self.particles(forcing, self.cast(self.potential())?))
             }
             (ContactLawChoice::Rolling, ..) => {
-                self.with_bodies(execution, flow, self.particles(forcing, self.cast(Rolling(self.chen()))?))
+                self.with_bodies(flow, self.particles(forcing, self.cast(Rolling(self.chen()))?))
             }
-            (ContactLawChoice::None, ..) => {
-                self.with_bodies(execution, flow, self.particles(forcing, self.cast(())?))
-            }
+            (ContactLawChoice::None, ..) => self.with_bodies(flow, self.particles(forcing, self.cast(())?)),
         }
     }
 
@@ -162,19 +163,17 @@ impl Setup {
         })
     }
 
-    fn with_bodies<const D: usize, F, L, S, E>(
+    fn with_bodies<const D: usize, F, L, S>(
         &self,
-        execution: &E,
         flow: Physics<D>,
         particles: Particles<F, Cast<L>, S>,
-    ) -> Result<E::Output, RunError>
+    ) -> Result<Assembled, RunError>
     where
-        F: Forcing,
-        L: ContactLaw,
-        S: Strategy + Exchange<D, Physics<D>>,
+        F: Forcing + 'static,
+        L: ContactLaw + 'static,
+        S: Strategy + Exchange<D, Physics<D>> + 'static,
         Population<L>: Checkpoint,
-        E: Execution,
     {
-        execution.march(self.simulation(flow, particles)?, self.books())
+        Ok(unsteady(self.simulation(flow, particles)?, self.books()))
     }
 }

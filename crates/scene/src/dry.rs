@@ -1,6 +1,6 @@
 //! Bodies without a fluid as those see them who look on.
+use crate::any_simulation::Viewed;
 use crate::cast::Cast;
-use crate::look::Show;
 use crate::setup::Setup;
 use crate::view::View;
 use crate::watch::Solids;
@@ -10,12 +10,12 @@ use fv_mesh::Axis;
 use interfaces::{Bodies, BodyId, Checkpoint, Dynamics, Kinematics, Lattice, Wrench};
 use std::io;
 
-impl<L: ContactLaw> Show for Grains<Cast<L>>
+impl<L: ContactLaw> Viewed for Grains<Cast<L>>
 where
     Population<L>: Checkpoint,
 {
-    fn see<'a>(&'a mut self, setup: &'a Setup) -> impl View + 'a {
-        Dry { setup, grains: self }
+    fn view<'a>(&'a mut self, setup: &'a Setup) -> Box<dyn View + 'a> {
+        Box::new(Dry { setup, grains: self })
     }
 }
 

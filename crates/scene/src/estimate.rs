@@ -70,7 +70,7 @@ impl Setup {
         let memory = PeakMemory::start();
         let folder = if files { tempfile::tempdir().ok() } else { None };
         let trial = Trial { setup: self, folder: folder.as_ref().map(tempfile::TempDir::path) };
-        let tried = if files { one_thread(|| self.execute(&trial))? } else { self.execute(&trial) }?;
+        let tried = if files { one_thread(|| trial.run())? } else { trial.run() }?;
         let memory = memory.map(|memory| [memory.before(), memory.taken()]);
         let unwritten = tried.unwritten || files && folder.is_none();
         let estimate = Estimate { cost: tried.cost, memory, unwritten };

@@ -30,6 +30,7 @@
 //! ```
 #![deny(missing_docs)]
 
+mod any_simulation;
 mod assembly;
 mod available_memory;
 mod build;

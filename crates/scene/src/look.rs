@@ -1,56 +1,16 @@
 //! The observer of the time loop, and what is saved.
+use crate::any_simulation::AnySimulation;
 use crate::deepest::Deepest;
 use crate::identity::Identity;
 use crate::log::{Log, warn};
 use crate::setup::Setup;
-use crate::view::{Flow, Guests, Seen, View};
 use crate::watch::{Audience, output};
-use coupling::{
-    CouplingError, Evolving, FlowSolver, Immersed, Ledger, LedgerReport, Observer, Simulation, StepInfo,
-};
+use coupling::{CouplingError, Observer, StepInfo};
 use interfaces::{Checkpoint, RestartError};
 use render::progress::Progress;
 use std::io;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
-
-/// What a scene runs, and how those see it who look on.
-pub(crate) trait Show: Evolving + Checkpoint {
-    fn see<'a>(&'a mut self, setup: &'a Setup) -> impl View + 'a;
-}
-
-impl<const D: usize, P, A> Show for Simulation<D, P, A>
-where
-    P: Guests + Immersed<D, A>,
-    A: Flow<D> + FlowSolver<D>,
-{
-    fn see<'a>(&'a mut self, _: &'a Setup) -> impl View + 'a {
-        let timings = *self.timings();
-        Seen { flow: &mut self.flow, guests: &self.particles, timings }
-    }
-}
-
-/// Books that may be kept.
-pub(crate) trait Books<S>: Observer<S> + Checkpoint {
-    fn report(&self) -> Option<&LedgerReport>;
-}
-
-/// Books, or none.
-impl<S> Books<S> for Option<Ledger>
-where
-    Ledger: Observer<S>,
-{
-    fn report(&self) -> Option<&LedgerReport> {
-        self.as_ref().map(Ledger::report)
-    }
-}
-
-/// No books, for what cannot have any.
-impl<S> Books<S> for () {
-    fn report(&self) -> Option<&LedgerReport> {
-        None
-    }
-}
 
 /// The most that there was in a run.
 #[derive(Clone, Copy, Debug)]
@@ -67,9 +27,8 @@ impl Default for Extremes {
 }
 
 /// All that is saved.
-pub(crate) struct Whole<'a, S, K> {
-    pub(crate) simulation: &'a mut S,
-    pub(crate) books: &'a mut K,
+pub(crate) struct Whole<'a> {
+    pub(crate) simulation: &'a mut dyn AnySimulation,
     pub(crate) extremes: &'a mut Extremes,
     pub(crate) identity: &'a Identity,
     /// Absent while a state is loaded: files go on from the time that has to be known first.
@@ -81,13 +40,14 @@ pub(crate) fn halves(n: u64) -> [f64; 2] {
     [(n >> 32) as f64, (n & 0xffff_ffff) as f64]
 }
 
-impl<S: Checkpoint, K: Checkpoint> Checkpoint for Whole<'_, S, K> {
+impl Checkpoint for Whole<'_> {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         self.identity.save(sink);
         sink("extremes", &self.extremes.steps);
         self.extremes.deepest.save(sink);
         self.simulation.save(sink);
-        self.books.save(&mut |name, values| sink(&format!("books.{name}"), values));
+        let budget = self.simulation.budget_state();
+        budget.save(&mut |name, values| sink(&format!("books.{name}"), values));
         if let Some(audience) = self.audience {
             audience.save(&mut |name, values| sink(&format!("watch.{name}"), values));
         }
@@ -96,7 +56,7 @@ impl<S: Checkpoint, K: Checkpoint> Checkpoint for Whole<'_, S, K> {
         RestartError::fill(source, "extremes", &mut self.extremes.steps)?;
         self.extremes.deepest = Deepest::restore(source)?;
         self.simulation.restore(source)?;
-        self.books.restore(&|name| source(&format!("books.{name}")))
+        self.simulation.budget_state_mut().restore(&|name| source(&format!("books.{name}")))
     }
 }
 
@@ -111,10 +71,9 @@ impl Checkpoint for Kept<'_> {
 }
 
 /// The observer of the time loop: everyone who looks on, progress, log, saved states.
-pub(crate) struct Look<'a, K> {
+pub(crate) struct Look<'a> {
     pub(crate) setup: &'a Setup,
     pub(crate) audience: Audience,
-    pub(crate) books: K,
     pub(crate) extremes: Extremes,
     pub(crate) progress: Option<Progress>,
     pub(crate) log: Log,
@@ -130,16 +89,15 @@ pub(crate) struct Look<'a, K> {
     pub(crate) ledger: f64,
 }
 
-impl<K: Checkpoint> Look<'_, K> {
-    fn save_if_due<S: Checkpoint>(&mut self, simulation: &mut S) -> Result<(), CouplingError> {
+impl Look<'_> {
+    fn save_if_due(&mut self, simulation: &mut dyn AnySimulation) -> Result<(), CouplingError> {
         if self.saved.elapsed() >= self.save_every { self.save(simulation) } else { Ok(()) }
     }
-    pub(crate) fn save<S: Checkpoint>(&mut self, simulation: &mut S) -> Result<(), CouplingError> {
+    pub(crate) fn save(&mut self, simulation: &mut dyn AnySimulation) -> Result<(), CouplingError> {
         let start = Instant::now();
         self.audience.flush()?;
         let whole = Whole {
             simulation,
-            books: &mut self.books,
             extremes: &mut self.extremes,
             identity: self.identity,
             audience: Some(&self.audience),
@@ -152,19 +110,23 @@ impl<K: Checkpoint> Look<'_, K> {
     }
 }
 
-impl<S: Show, K: Books<S>> Observer<S> for Look<'_, K> {
-    fn begin(&mut self, simulation: &mut S) {
-        self.books.begin(simulation);
+impl Observer<dyn AnySimulation> for Look<'_> {
+    fn begin(&mut self, simulation: &mut (dyn AnySimulation + 'static)) {
+        simulation.begin_budget();
     }
-    fn step(&mut self, simulation: &mut S, info: &StepInfo) -> Result<(), CouplingError> {
+    fn step(
+        &mut self,
+        simulation: &mut (dyn AnySimulation + 'static),
+        info: &StepInfo,
+    ) -> Result<(), CouplingError> {
         let start = Instant::now();
-        self.books.step(simulation, info)?;
+        simulation.track_budget(info)?;
         self.ledger += start.elapsed().as_secs_f64();
         let [low, high, courant] = self.extremes.steps;
         self.extremes.steps = [low.min(info.dt), high.max(info.dt), courant.max(info.courant)];
-        let mut seen = simulation.see(self.setup);
-        self.audience.step(&mut seen, info)?;
-        let deep = self.extremes.deepest.look(&seen, info);
+        let mut seen = simulation.view(self.setup);
+        self.audience.step(&mut *seen, info)?;
+        let deep = self.extremes.deepest.look(&*seen, info);
         if let Some(progress) = &mut self.progress {
             progress.tell(info.step, info.time, || seen.status(info));
         }
@@ -177,12 +139,17 @@ impl<S: Show, K: Books<S>> Observer<S> for Look<'_, K> {
         }
         Ok(())
     }
-    fn snapshot(&mut self, simulation: &mut S, index: usize, info: &StepInfo) -> Result<(), CouplingError> {
+    fn snapshot(
+        &mut self,
+        simulation: &mut (dyn AnySimulation + 'static),
+        index: usize,
+        info: &StepInfo,
+    ) -> Result<(), CouplingError> {
         if self.only_end && index == 0 {
             return Ok(());
         }
-        let mut seen = simulation.see(self.setup);
-        self.audience.snapshot(&mut seen, index, info)?;
+        let mut seen = simulation.view(self.setup);
+        self.audience.snapshot(&mut *seen, index, info)?;
         let (iterations, energy) = (seen.pressure_iterations(), seen.kinetic_energy());
         drop(seen);
         let StepInfo { step, time, dt, courant, .. } = *info;

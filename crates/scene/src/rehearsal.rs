@@ -1,12 +1,11 @@
 //! Run on a coarse grid, which gives the speeds of a run with free bodies.
-use crate::assembly::Execution;
+use crate::any_simulation::AnySimulation;
+use crate::assembly::Assembled;
 use crate::estimate::one_thread;
-use crate::look::{Books, Show};
 use crate::pace::equivalent_diameter;
 use crate::pile::is_free;
 use crate::run::RunError;
 use crate::setup::{BodySetup, Setup};
-use crate::steady::Steady;
 use coupling::{CouplingError, Observer, StepInfo};
 use cpu_time::ThreadTime;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -47,16 +46,21 @@ impl Setup {
         }
         let coarse = self.coarser((self.cells() as f64 / factor.powf(dim)) as usize).ok()?;
         let ratio = (self.cells() as f64 / coarse.cells() as f64).powf(dim.recip());
-        let rehearsed = one_thread(|| coarse.execute(&Rehearsing { setup: &coarse, ratio })).ok()?;
+        let rehearsed = one_thread(|| coarse.run_through(ratio)).ok()?;
         rehearsed.ok().filter(|rehearsal| !rehearsal.rates.is_empty())
     }
-}
 
-/// Execution of a rehearsal.
-struct Rehearsing<'a> {
-    setup: &'a Setup,
-    /// Width of a cell over that of the run.
-    ratio: f64,
+    /// Runs to the end, with the speeds for cells `ratio` times narrower.
+    fn run_through(&self, ratio: f64) -> Result<Rehearsal, RunError> {
+        let Assembled::Unsteady(mut simulation) = self.assemble()? else {
+            return Ok(Rehearsal::default());
+        };
+        let (schedule, stop) = (self.schedule(&*simulation), AtomicBool::new(false));
+        let (rehearsal, start) = (Rehearsal::default(), ThreadTime::now());
+        let mut speeds = Speeds { ratio, rehearsal, start, stop: &stop };
+        coupling::run(&mut *simulation, &schedule, &mut speeds, &stop)?;
+        Ok(speeds.rehearsal)
+    }
 }
 
 /// Observer that notes speeds and stops a rehearsal that takes too long.
@@ -67,29 +71,17 @@ struct Speeds<'a> {
     stop: &'a AtomicBool,
 }
 
-impl<S: Show> Observer<S> for Speeds<'_> {
-    fn step(&mut self, simulation: &mut S, _: &StepInfo) -> Result<(), CouplingError> {
+impl Observer<dyn AnySimulation> for Speeds<'_> {
+    fn step(
+        &mut self,
+        simulation: &mut (dyn AnySimulation + 'static),
+        _: &StepInfo,
+    ) -> Result<(), CouplingError> {
         self.rehearsal.times.push(simulation.time());
         self.rehearsal.rates.push(self.ratio * simulation.courant(1.0));
         if self.start.elapsed().as_secs_f64() > 2.0 * TIME {
             self.stop.store(true, Ordering::Relaxed);
         }
         Ok(())
-    }
-}
-
-impl Execution for Rehearsing<'_> {
-    type Output = Rehearsal;
-
-    fn march<S: Show, K: Books<S>>(&self, mut simulation: S, _: K) -> Result<Rehearsal, RunError> {
-        let (schedule, stop) = (self.setup.schedule(&simulation), AtomicBool::new(false));
-        let (rehearsal, start) = (Rehearsal::default(), ThreadTime::now());
-        let mut speeds = Speeds { ratio: self.ratio, rehearsal, start, stop: &stop };
-        coupling::run(&mut simulation, &schedule, &mut speeds, &stop)?;
-        Ok(speeds.rehearsal)
-    }
-
-    fn converge<const D: usize>(&self, _: Steady<D>) -> Result<Rehearsal, RunError> {
-        Ok(Rehearsal::default())
     }
 }

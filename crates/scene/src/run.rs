@@ -1,16 +1,15 @@
 //! Runs a scene.
-use crate::assembly::Execution;
+use crate::any_simulation::AnySimulation;
+use crate::assembly::Assembled;
 use crate::build_error::BuildError;
 use crate::folder_lock::FolderLock;
 use crate::identity::Identity;
 use crate::log::{Log, warn};
-use crate::look::{Books, Extremes, Kept, Look, Show, Whole};
+use crate::look::{Extremes, Kept, Look, Whole};
 use crate::options::Options;
 use crate::problem::Problems;
 use crate::result::{Ending, RunResult};
 use crate::setup::Setup;
-use crate::steady::Steady;
-use crate::view::View;
 use crate::watch::output;
 use coupling::{CheckpointError, CouplingError, SavedState};
 use interfaces::{RestartError, ThinPart};
@@ -91,7 +90,12 @@ impl Setup {
         warnings: &[String],
         stop: &AtomicBool,
     ) -> Result<RunResult, RunError> {
-        self.execute(&Stage { setup: self, options, identity, warnings, stop })
+        let stage = Stage { setup: self, options, identity, warnings, stop };
+        match self.assemble()? {
+            Assembled::Unsteady(mut simulation) => stage.march(&mut *simulation),
+            Assembled::Steady2(flow) => stage.steady(*flow),
+            Assembled::Steady3(flow) => stage.steady(*flow),
+        }
     }
 }
 
@@ -198,30 +202,23 @@ fn is_complete(folder: &Path) -> bool {
     lines.find_map(|line| Some(line.strip_prefix("  \"complete\": ")?.starts_with("true"))).unwrap_or(false)
 }
 
-impl Execution for Stage<'_> {
-    type Output = RunResult;
-
+impl Stage<'_> {
     /// Steps to the end of the run, or until it is stopped.
-    fn march<S: Show, K: Books<S>>(&self, mut simulation: S, mut books: K) -> Result<RunResult, RunError> {
+    fn march(&self, simulation: &mut (dyn AnySimulation + 'static)) -> Result<RunResult, RunError> {
         let watch = Stopwatch::start();
         let setup = self.setup;
         let _lock = self.take_folder()?;
         let state = self.folder().join(STATE);
         let mut extremes = Extremes::default();
         // Schedule of the flow at its start, also of a run that goes on.
-        let schedule = setup.schedule(&simulation);
+        let schedule = setup.schedule(simulation);
         schedule.check()?;
         let mut resume = None;
         let saved = self.saved_state()?;
         if let Some(saved) = &saved {
             // First the simulation and its time; then what the observers have kept, in files that go on from that time.
-            let mut whole = Whole {
-                simulation: &mut simulation,
-                books: &mut books,
-                extremes: &mut extremes,
-                identity: self.identity,
-                audience: None,
-            };
+            let mut whole =
+                Whole { simulation, extremes: &mut extremes, identity: self.identity, audience: None };
             saved.restore(&mut whole).map_err(|e| self.not_resumed(e))?;
             self.reopen()?;
             resume = Some(simulation.time());
@@ -241,11 +238,10 @@ impl Execution for Stage<'_> {
             setup.cells(),
             setup.bodies.list.len(),
         ))?;
-        self.warn(&mut log, simulation.see(setup).thin())?;
+        self.warn(&mut log, simulation.view(setup).thin())?;
         let mut look = Look {
             setup,
             audience,
-            books,
             extremes,
             progress: (!self.options.quiet).then(|| Progress::new(begin, setup.end)),
             log,
@@ -257,7 +253,7 @@ impl Execution for Stage<'_> {
             output: 0.0,
             ledger: 0.0,
         };
-        let summary = coupling::run(&mut simulation, &schedule, &mut look, self.stop);
+        let summary = coupling::run(simulation, &schedule, &mut look, self.stop);
         let summary = match summary {
             Ok(summary) => summary,
             Err(error) => {
@@ -266,17 +262,18 @@ impl Execution for Stage<'_> {
             }
         };
         if summary.stopped || setup.save_at_end {
-            look.save(&mut simulation)?;
+            look.save(simulation)?;
         }
         if let Some(progress) = look.progress.take() {
             progress.finish(summary.steps, if summary.stopped { "stopped" } else { "done" });
         }
-        let Look { mut audience, books, extremes, mut log, output, ledger, .. } = look;
-        let mut seen = simulation.see(setup);
+        let Look { mut audience, extremes, mut log, output, ledger, .. } = look;
+        let budget = simulation.budget().cloned();
+        let mut seen = simulation.view(setup);
         if summary.stopped {
             audience.flush()?;
         } else {
-            audience.finish(&mut seen, self.stop)?;
+            audience.finish(&mut *seen, self.stop)?;
         }
         let stopped = summary.stopped || self.stop.load(Ordering::Relaxed);
         let ending = if stopped { Ending::Stopped } else { Ending::Done };
@@ -289,11 +286,7 @@ impl Execution for Stage<'_> {
         log.line(if stopped { "stopped; `siltflow resume` goes on" } else { "done" })?;
         let seconds = [audience.seconds + output, ledger];
         let result =
-            RunResult::new(setup, &mut seen, &extremes, books.report(), &audience, ending, self.folder());
-        Ok(result.with_timings(watch.elapsed(), self.options.threads, seconds, &seen).write()?)
-    }
-
-    fn converge<const D: usize>(&self, steady: Steady<D>) -> Result<RunResult, RunError> {
-        self.steady(steady)
+            RunResult::new(setup, &mut *seen, &extremes, budget.as_ref(), &audience, ending, self.folder());
+        Ok(result.with_timings(watch.elapsed(), self.options.threads, seconds, &*seen).write()?)
     }
 }

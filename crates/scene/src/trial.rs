@@ -1,7 +1,8 @@
 //! First steps of a scene.
-use crate::assembly::Execution;
+use crate::any_simulation::AnySimulation;
+use crate::assembly::Assembled;
 use crate::build_error::BuildError;
-use crate::look::{Books, Extremes, Show};
+use crate::look::Extremes;
 use crate::result::{Ending, RunResult};
 use crate::run::{RunError, STATE};
 use crate::setup::Setup;
@@ -18,7 +19,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Execution of the first steps.
+/// First steps of a scene.
 pub(crate) struct Trial<'a> {
     pub(crate) setup: &'a Setup,
     /// Folder for the files of snapshots and a state; without it none are written.
@@ -128,7 +129,7 @@ impl<'a> Files<'a> {
     }
 
     /// Saves a state.
-    fn save(&mut self, of: &impl Checkpoint, cost: &mut Cost) {
+    fn save(&mut self, of: &(impl Checkpoint + ?Sized), cost: &mut Cost) {
         let Some(folder) = self.folder else { return };
         let start = ThreadTime::now();
         self.failed |= coupling::save(&folder.join(STATE), of).is_err();
@@ -151,22 +152,21 @@ impl<'a> Files<'a> {
 }
 
 /// Observer that times steps, stops after some and writes files.
-struct FirstSteps<'a, K> {
+struct FirstSteps<'a> {
     setup: &'a Setup,
-    books: K,
     files: Files<'a>,
     stop: &'a AtomicBool,
     timer: Timer,
     cost: Cost,
 }
 
-impl<K> FirstSteps<'_, K> {
+impl FirstSteps<'_> {
     /// Writes files while the memory of a step is held.
-    fn write<S: Show>(&mut self, simulation: &mut S) -> Result<(), CouplingError> {
+    fn write(&mut self, simulation: &mut dyn AnySimulation) -> Result<(), CouplingError> {
         self.cost.step = self.timer.shortest();
-        let mut view = simulation.see(self.setup);
-        self.cost.iterations = WallIterations::of(&view);
-        self.files.write(&mut view, &mut self.cost)?;
+        let mut view = simulation.view(self.setup);
+        self.cost.iterations = WallIterations::of(&*view);
+        self.files.write(&mut *view, &mut self.cost)?;
         drop(view);
         self.files.save(simulation, &mut self.cost);
         Ok(())
@@ -200,14 +200,18 @@ impl Timer {
     }
 }
 
-impl<S: Show, K: Books<S>> Observer<S> for FirstSteps<'_, K> {
-    fn begin(&mut self, simulation: &mut S) {
-        self.books.begin(simulation);
+impl Observer<dyn AnySimulation> for FirstSteps<'_> {
+    fn begin(&mut self, simulation: &mut (dyn AnySimulation + 'static)) {
+        simulation.begin_budget();
         self.timer = Timer::start();
     }
-    fn step(&mut self, simulation: &mut S, info: &StepInfo) -> Result<(), CouplingError> {
-        self.books.step(simulation, info)?;
-        self.files.step(&mut simulation.see(self.setup), info)?;
+    fn step(
+        &mut self,
+        simulation: &mut (dyn AnySimulation + 'static),
+        info: &StepInfo,
+    ) -> Result<(), CouplingError> {
+        simulation.track_budget(info)?;
+        self.files.step(&mut *simulation.view(self.setup), info)?;
         if !self.timer.note() {
             self.write(simulation)?;
             self.stop.store(true, Ordering::Relaxed);
@@ -216,22 +220,29 @@ impl<S: Show, K: Books<S>> Observer<S> for FirstSteps<'_, K> {
     }
 }
 
-impl Execution for Trial<'_> {
-    type Output = Tried;
+impl Trial<'_> {
+    /// Takes the first steps.
+    pub(crate) fn run(&self) -> Result<Tried, RunError> {
+        match self.setup.assemble()? {
+            Assembled::Unsteady(mut simulation) => self.march(&mut *simulation),
+            Assembled::Steady2(flow) => self.converge(*flow),
+            Assembled::Steady3(flow) => self.converge(*flow),
+        }
+    }
 
-    fn march<S: Show, K: Books<S>>(&self, mut simulation: S, books: K) -> Result<Tried, RunError> {
+    fn march(&self, simulation: &mut (dyn AnySimulation + 'static)) -> Result<Tried, RunError> {
         let setup = self.setup;
-        let schedule = setup.schedule(&simulation);
+        let schedule = setup.schedule(simulation);
         // Without regard to convection: implicit viscous terms do not limit it.
         let limits = Some([simulation.stable_dt(ANY_COURANT), simulation.courant(1.0)]);
         let (files, stop, timer) = (Files::new(self)?, AtomicBool::new(false), Timer::start());
-        let mut first = FirstSteps { setup, books, files, stop: &stop, timer, cost: Cost::default() };
-        coupling::run(&mut simulation, &schedule, &mut first, &stop)?;
+        let mut first = FirstSteps { setup, files, stop: &stop, timer, cost: Cost::default() };
+        coupling::run(simulation, &schedule, &mut first, &stop)?;
         if !first.files.written {
-            first.write(&mut simulation)?;
+            first.write(simulation)?;
         }
-        let mut view = simulation.see(setup);
-        self.check_references(&mut view)?;
+        let mut view = simulation.view(setup);
+        self.check_references(&mut *view)?;
         let (pressure, thin) = (view.pressure_solver(), view.thin().to_vec());
         Ok(Tried { limits, pressure, thin, cost: first.cost, unwritten: first.files.failed })
     }

@@ -15,7 +15,7 @@ pub(crate) struct WallIterations {
 
 impl WallIterations {
     /// Iterations of the last step; none without an inverse to come.
-    pub(crate) fn of(view: &impl View) -> Option<Self> {
+    pub(crate) fn of(view: &dyn View) -> Option<Self> {
         let InverseOutlook { unknowns, iterations, seconds } = view.inverse_outlook()?;
         Some(Self {
             per_step: view.pressure_iterations() as f64,

@@ -1,10 +1,12 @@
-//! What a run shows: pictures of fields and bodies as PNG files, plots, the progress line of the terminal, time and memory of the
+//! What a run shows: pictures of fields and bodies as PNG files, plots, charts (SVG), the progress line of the terminal, time and memory of the
 //! process.
 //!
 //! Bodies are known by [`interfaces::Solid`] alone. Lengths in metres and speeds in m/s come in; axes of [`Frames`] show millimetres and mm/s.
 
 mod axes;
 mod canvas;
+pub mod chart;
+mod chart_scale;
 mod colour;
 pub mod comparison;
 pub mod cpu;

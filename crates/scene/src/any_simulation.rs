@@ -8,7 +8,12 @@ use interfaces::{Checkpoint, RestartError};
 
 /// Simulation of any types, with its budget if it has one.
 pub(crate) trait AnySimulation: Evolving {
-    fn view<'a>(&'a mut self, setup: &'a Setup) -> Box<dyn View + 'a>;
+    /// State, and the budget up to the last step.
+    fn view_with_budget<'a>(&'a mut self, setup: &'a Setup)
+    -> (Box<dyn View + 'a>, Option<&'a LedgerReport>);
+    fn view<'a>(&'a mut self, setup: &'a Setup) -> Box<dyn View + 'a> {
+        self.view_with_budget(setup).0
+    }
     /// Begins the budget before the first step.
     fn begin_budget(&mut self);
     /// Adds a step to the budget.
@@ -66,8 +71,11 @@ pub(crate) struct WithBudget<S, K> {
 }
 
 impl<S: Viewed, K: Budget<S>> AnySimulation for WithBudget<S, K> {
-    fn view<'a>(&'a mut self, setup: &'a Setup) -> Box<dyn View + 'a> {
-        self.simulation.view(setup)
+    fn view_with_budget<'a>(
+        &'a mut self,
+        setup: &'a Setup,
+    ) -> (Box<dyn View + 'a>, Option<&'a LedgerReport>) {
+        (self.simulation.view(setup), self.budget.report())
     }
     fn begin_budget(&mut self) {
         self.budget.begin(&mut self.simulation);

@@ -176,6 +176,16 @@ impl Document {
         }
     }
 
+    /// Text of the file.
+    pub(crate) fn source(&self) -> &str {
+        &self.source
+    }
+
+    /// Overrides of the command line.
+    pub(crate) fn overrides(&self) -> &[String] {
+        &self.overrides
+    }
+
     /// A number that changes with every value but those under the keys `loose`, and not with their order or with comments.
     pub(crate) fn fingerprint(&self, loose: &[&str]) -> u64 {
         let mut lines = Vec::new();

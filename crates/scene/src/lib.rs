@@ -42,19 +42,21 @@ mod dry;
 mod estimate;
 mod expression;
 mod folder_lock;
+mod history;
 mod identity;
 mod log;
 mod look;
 mod options;
 mod pace;
+mod page;
 mod peak_memory;
 mod physics;
 mod pile;
 mod plan;
 mod problem;
 mod reader;
+mod record;
 mod rehearsal;
-mod report;
 mod result;
 mod run;
 mod sanity;
@@ -63,6 +65,7 @@ mod setup;
 mod stand_in;
 mod steady;
 mod still;
+mod summary;
 mod trial;
 mod view;
 mod wall_iterations;
@@ -72,13 +75,14 @@ pub use build_error::{BuildError, PathProblem};
 pub use options::Options;
 pub use plan::Plan;
 pub use problem::Problems;
-pub use report::{TABLE_HEAD, empty_row};
 pub use result::{Compared, Ending, RunResult};
 pub use run::RunError;
 pub use schema::{json_schema, manual};
+pub use summary::{TABLE_HEAD, empty_row};
 
 use document::Document;
 use identity::Identity;
+use record::Record;
 use setup::Setup;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -158,8 +162,9 @@ impl Scene {
         // First steps and run on the same threads: the run uses their memory again.
         pool.install(|| {
             let plan = self.planned(false)?;
-            let ran = self.setup.run(options, &self.identity, &plan.warnings, stop);
-            ran.map_err(|error| self.placed(error))
+            let record = Record { document: &self.document, plan: &plan };
+            let ran = self.setup.run(options, &self.identity, record, stop);
+            self.setup.with_report(ran, options).map_err(|error| self.placed(error))
         })
     }
 

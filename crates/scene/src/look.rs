@@ -1,6 +1,7 @@
 //! The observer of the time loop, and what is saved.
 use crate::any_simulation::AnySimulation;
 use crate::deepest::Deepest;
+use crate::history::History;
 use crate::identity::Identity;
 use crate::log::{Log, warn};
 use crate::setup::Setup;
@@ -74,6 +75,7 @@ impl Checkpoint for Kept<'_> {
 pub(crate) struct Look<'a> {
     pub(crate) setup: &'a Setup,
     pub(crate) audience: Audience,
+    pub(crate) history: History,
     pub(crate) extremes: Extremes,
     pub(crate) progress: Option<Progress>,
     pub(crate) log: Log,
@@ -93,9 +95,14 @@ impl Look<'_> {
     fn save_if_due(&mut self, simulation: &mut dyn AnySimulation) -> Result<(), CouplingError> {
         if self.saved.elapsed() >= self.save_every { self.save(simulation) } else { Ok(()) }
     }
+    /// Writes what tables hold in memory.
+    pub(crate) fn flush(&mut self) -> Result<(), CouplingError> {
+        self.audience.flush()?;
+        self.history.flush()
+    }
     pub(crate) fn save(&mut self, simulation: &mut dyn AnySimulation) -> Result<(), CouplingError> {
         let start = Instant::now();
-        self.audience.flush()?;
+        self.flush()?;
         let whole = Whole {
             simulation,
             extremes: &mut self.extremes,
@@ -124,8 +131,9 @@ impl Observer<dyn AnySimulation> for Look<'_> {
         self.ledger += start.elapsed().as_secs_f64();
         let [low, high, courant] = self.extremes.steps;
         self.extremes.steps = [low.min(info.dt), high.max(info.dt), courant.max(info.courant)];
-        let mut seen = simulation.view(self.setup);
+        let (mut seen, budget) = simulation.view_with_budget(self.setup);
         self.audience.step(&mut *seen, info)?;
+        self.history.step(&mut *seen, info, budget)?;
         let deep = self.extremes.deepest.look(&*seen, info);
         if let Some(progress) = &mut self.progress {
             progress.tell(info.step, info.time, || seen.status(info));

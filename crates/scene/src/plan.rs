@@ -6,6 +6,7 @@ use crate::pace::Pace;
 use crate::setup::{Algorithm, ContactLawChoice, ForcingChoice, Setup};
 use coupling::check_places;
 use fv_mesh::Axis;
+use serde_json::{Value, json};
 use std::fmt;
 
 /// What running a scene would mean: told before it is run.
@@ -120,6 +121,31 @@ impl Setup {
             tried: !large,
             pressure: tried.pressure,
             warnings,
+        })
+    }
+}
+
+impl Plan {
+    /// The plan as an object, SI units.
+    pub fn to_json(&self) -> Value {
+        let parts: Vec<Value> = self
+            .parts
+            .iter()
+            .map(|(name, active, about)| json!({ "name": name, "active": active, "about": about }))
+            .collect();
+        json!({
+            "scene": self.name,
+            "cells": self.cells,
+            "bodies": self.bodies,
+            "memory": self.memory,
+            "dt": self.dt,
+            "steps": self.steps,
+            "at_most": self.at_most,
+            "cpu": self.cpu,
+            "tried": self.tried,
+            "pressure": self.pressure,
+            "parts": parts,
+            "warnings": self.warnings,
         })
     }
 }

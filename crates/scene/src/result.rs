@@ -1,5 +1,6 @@
 //! What came out of a run.
 use crate::look::Extremes;
+use crate::record::versions;
 use crate::setup::{Algorithm, Setup};
 use crate::view::View;
 use crate::watch::{Audience, output};
@@ -19,6 +20,17 @@ pub enum Ending {
     Stopped,
     /// The iterations allowed were not enough for a steady flow.
     NotConverged,
+}
+
+impl Ending {
+    /// Word of `result.json`.
+    fn word(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Stopped => "stopped",
+            Self::NotConverged => "not converged",
+        }
+    }
 }
 
 /// A result beside what others found.
@@ -52,6 +64,8 @@ pub struct RunResult {
     pub result: Value,
     /// What `timings.json` holds.
     pub timings: Value,
+    /// The page `report.html`, if it was made.
+    pub report: Option<PathBuf>,
     /// Results beside the scene's references.
     pub compared: Vec<Compared>,
 }
@@ -116,11 +130,8 @@ impl RunResult {
             "scene": setup.name,
             "title": setup.title,
             "complete": ending == Ending::Done,
-            "versions": {
-                "siltflow": env!("CARGO_PKG_VERSION"),
-                "rustc": env!("SCENE_RUSTC"),
-                "target": env!("SCENE_TARGET"),
-            },
+            "ending": ending.word(),
+            "versions": versions(),
             "dimension": dim,
             "cells": (0..dim).map(|a| view.axis(a).cells()).collect::<Vec<_>>(),
         });
@@ -223,7 +234,7 @@ impl RunResult {
             let row = |c: &Compared| json!({ "name": c.name, "found": c.found, "reference": c.reference, "error": c.error(), "source": c.source });
             result["references"] = compared.iter().map(row).collect();
         }
-        Self { ending, folder: folder.into(), result, timings: Value::Null, compared }
+        Self { ending, folder: folder.into(), result, timings: Value::Null, report: None, compared }
     }
 
     pub(crate) fn set(&mut self, key: &str, value: Value) {

@@ -3,11 +3,13 @@ use crate::any_simulation::AnySimulation;
 use crate::assembly::Assembled;
 use crate::build_error::BuildError;
 use crate::folder_lock::FolderLock;
+use crate::history::{HISTORY, History};
 use crate::identity::Identity;
 use crate::log::{Log, warn};
 use crate::look::{Extremes, Kept, Look, Whole};
 use crate::options::Options;
 use crate::problem::Problems;
+use crate::record::Record;
 use crate::result::{Ending, RunResult};
 use crate::setup::Setup;
 use crate::watch::output;
@@ -82,15 +84,20 @@ fn remedy(error: &CheckpointError) -> &'static str {
 }
 
 impl Setup {
+    /// Folder of the run.
+    pub(crate) fn folder<'a>(&'a self, options: &'a Options) -> &'a Path {
+        options.out.as_deref().unwrap_or(&self.output.folder)
+    }
+
     /// Runs the scene.
     pub(crate) fn run(
         &self,
         options: &Options,
         identity: &Identity,
-        warnings: &[String],
+        record: Record<'_>,
         stop: &AtomicBool,
     ) -> Result<RunResult, RunError> {
-        let stage = Stage { setup: self, options, identity, warnings, stop };
+        let stage = Stage { setup: self, options, identity, record, stop };
         match self.assemble()? {
             Assembled::Unsteady(mut simulation) => stage.march(&mut *simulation),
             Assembled::Steady2(flow) => stage.steady(*flow),
@@ -104,7 +111,7 @@ pub(crate) struct Stage<'a> {
     pub(crate) setup: &'a Setup,
     pub(crate) options: &'a Options,
     pub(crate) identity: &'a Identity,
-    warnings: &'a [String],
+    pub(crate) record: Record<'a>,
     pub(crate) stop: &'a AtomicBool,
 }
 
@@ -115,7 +122,7 @@ pub(crate) const STATE: &str = "state.bin";
 
 impl Stage<'_> {
     pub(crate) fn folder(&self) -> &Path {
-        self.options.out.as_deref().unwrap_or(&self.setup.output.folder)
+        self.setup.folder(self.options)
     }
 
     /// Whether the run goes on from a saved state.
@@ -140,7 +147,7 @@ impl Stage<'_> {
         if !self.options.overwrite && (state.exists() || older.exists()) && !is_complete(folder) {
             return Err(RunError::Unfinished(folder.into()));
         }
-        let others = RESULTS.into_iter().chain(["residuals.csv"]).map(|name| folder.join(name));
+        let others = RESULTS.into_iter().chain(["residuals.csv", report::FILE]).map(|name| folder.join(name));
         for old in others.chain([state, older]) {
             let _ = std::fs::remove_file(old);
         }
@@ -178,8 +185,9 @@ impl Stage<'_> {
     /// Logs warnings of the plan, and of thin parts of bodies that it has not found.
     pub(crate) fn warn(&self, log: &mut Log, thin: &[ThinPart]) -> Result<(), CouplingError> {
         let mut thin = self.setup.thin_warnings(thin);
-        thin.retain(|warning| !self.warnings.contains(warning));
-        for warning in self.warnings.iter().chain(&thin) {
+        let planned = &self.record.plan.warnings;
+        thin.retain(|warning| !planned.contains(warning));
+        for warning in planned.iter().chain(&thin) {
             warn(log, warning, self.options.quiet)?;
         }
         Ok(())
@@ -227,6 +235,9 @@ impl Stage<'_> {
         if let Some(saved) = saved {
             saved.restore(&mut Kept(&mut audience)).map_err(|e| self.not_resumed(e))?;
         }
+        let ledger = simulation.budget().is_some();
+        let history = History::open(self.folder(), setup.end, ledger, resume)?;
+        self.record.write(setup, self.folder(), audience.tables(HISTORY))?;
         let mut log = Log::open(self.folder(), self.resumes())?;
         let begin = simulation.time();
         log.line(&format!(
@@ -242,6 +253,7 @@ impl Stage<'_> {
         let mut look = Look {
             setup,
             audience,
+            history,
             extremes,
             progress: (!self.options.quiet).then(|| Progress::new(begin, setup.end)),
             log,
@@ -258,6 +270,8 @@ impl Stage<'_> {
             Ok(summary) => summary,
             Err(error) => {
                 let _ = look.log.line(&format!("ended by an error: {error}"));
+                // Tables are of use where a run went wrong.
+                let _ = look.flush();
                 return Err(error.into());
             }
         };
@@ -267,9 +281,9 @@ impl Stage<'_> {
         if let Some(progress) = look.progress.take() {
             progress.finish(summary.steps, if summary.stopped { "stopped" } else { "done" });
         }
-        let Look { mut audience, extremes, mut log, output, ledger, .. } = look;
-        let budget = simulation.budget().cloned();
-        let mut seen = simulation.view(setup);
+        let Look { mut audience, mut history, extremes, mut log, output, ledger, .. } = look;
+        history.flush()?;
+        let (mut seen, budget) = simulation.view_with_budget(setup);
         if summary.stopped {
             audience.flush()?;
         } else {
@@ -285,8 +299,7 @@ impl Stage<'_> {
         }
         log.line(if stopped { "stopped; `siltflow resume` goes on" } else { "done" })?;
         let seconds = [audience.seconds + output, ledger];
-        let result =
-            RunResult::new(setup, &mut *seen, &extremes, budget.as_ref(), &audience, ending, self.folder());
+        let result = RunResult::new(setup, &mut *seen, &extremes, budget, &audience, ending, self.folder());
         Ok(result.with_timings(watch.elapsed(), self.options.threads, seconds, &*seen).write()?)
     }
 }

@@ -200,6 +200,7 @@ impl Stage<'_> {
         let resume = self.resumes().then_some(begin as f64);
         let mut audience = setup.audience(self.folder(), None, self.options.quiet)?;
         let mut table = Table::open(&self.folder().join("residuals.csv"), RESIDUALS, resume)?;
+        self.record.write(setup, self.folder(), audience.tables("residuals.csv"))?;
         let mut log = Log::open(self.folder(), self.resumes())?;
         let (tolerance, allowed) = (setup.flow.tolerance, setup.flow.iterations);
         let cells = setup.cells();

@@ -14,7 +14,7 @@ use forces::ForcesWatch;
 use images::ImagesWatch;
 use models::ModelsWatch;
 use probes::ProbesWatch;
-pub(crate) use table::Table;
+pub(crate) use table::{Pace, Table};
 use trajectories::TrajectoriesWatch;
 
 use crate::setup::Setup;
@@ -63,6 +63,10 @@ pub(crate) trait Watch: Checkpoint {
     /// What goes into the results, if anything.
     fn results(&self) -> Option<Value> {
         None
+    }
+    /// Paths in the folder of the tables that it writes step by step.
+    fn tables(&self) -> Vec<String> {
+        vec![]
     }
 }
 
@@ -138,6 +142,12 @@ impl Audience {
         seen
     }
 
+    /// Paths in the folder of all tables, after that of the run itself.
+    pub(crate) fn tables(&self, first: &str) -> Vec<String> {
+        let own = self.watches.iter().flat_map(|watch| watch.tables());
+        std::iter::once(first.to_owned()).chain(own).collect()
+    }
+
     pub(crate) fn flush(&mut self) -> Result<(), CouplingError> {
         self.watches.iter_mut().try_for_each(|watch| watch.flush())
     }
@@ -167,7 +177,7 @@ impl Setup {
             watches.push(Box::new(TrajectoriesWatch::new(folder, names.clone(), resume)?));
         }
         if let Some(images) = out.images.clone() {
-            watches.push(Box::new(ImagesWatch::new(folder, self, images)?));
+            watches.push(Box::new(ImagesWatch::new(folder, self, images, resume)?));
         }
         if !self.probes.is_empty() {
             watches.push(Box::new(ProbesWatch::new(folder, &self.probes, self.dim(), resume)?));

@@ -3,7 +3,7 @@ use crate::outcome::{Failure, print};
 use crate::shipped::Shipped;
 use clap::Args;
 use scene::{Plan, Scene};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 #[derive(Args)]
 pub(crate) struct CheckArgs {
@@ -25,7 +25,7 @@ impl CheckArgs {
         let (mut plans, mut worst) = (Vec::new(), 0);
         for scene in &self.scenes {
             match self.plan(&shipped, scene) {
-                Ok(plan) if self.json => plans.push(value(&plan)),
+                Ok(plan) if self.json => plans.push(plan.to_json()),
                 Ok(plan) => print(&plan.to_string())?,
                 Err(failure) => worst = worst.max(failure.report()),
             }
@@ -40,26 +40,4 @@ impl CheckArgs {
         let scene = Scene::load(&shipped.path(scene)?, &self.set).map_err(Failure::of_input)?;
         scene.plan().map_err(Failure::of_input)
     }
-}
-
-fn value(plan: &Plan) -> Value {
-    let parts: Vec<Value> = plan
-        .parts
-        .iter()
-        .map(|(name, active, about)| json!({ "name": name, "active": active, "about": about }))
-        .collect();
-    json!({
-        "scene": plan.name,
-        "cells": plan.cells,
-        "bodies": plan.bodies,
-        "memory": plan.memory,
-        "dt": plan.dt,
-        "steps": plan.steps,
-        "at_most": plan.at_most,
-        "cpu": plan.cpu,
-        "tried": plan.tried,
-        "pressure": plan.pressure,
-        "parts": parts,
-        "warnings": plan.warnings,
-    })
 }

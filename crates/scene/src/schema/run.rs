@@ -70,6 +70,13 @@ pub(super) static OUTPUT: Table = Table {
             "The books of momentum and energy in `result.json`, for bodies by \"projection\" or \"piso\" (not walls by cut links): 7 to 9 % of the time of a run.",
             "false",
         ),
+        optional(
+            "report",
+            Kind::Flag,
+            "true",
+            "`report.html` at the end of the run, also of a stopped one: the run on one page that needs no other file; `siltflow report` makes it anew, also of several runs.",
+            "false",
+        ),
         optional("images", Kind::Flag, "true", "PNG pictures of plane scenes, or of a slice.", "false"),
         optional(
             "image_every",

@@ -16,6 +16,8 @@ pub(crate) struct Output {
     pub(crate) bodies: bool,
     /// Are the books of momentum and energy kept?
     pub(crate) ledger: bool,
+    /// Whether `report.html` is made.
+    pub(crate) report: bool,
     pub(crate) images: Option<Images>,
 }
 
@@ -119,6 +121,7 @@ pub(super) fn output(t: &Reader<'_>, name: &str, axes: &[Axis], snapshots: usize
         fields: flag("fields"),
         bodies: flag("bodies"),
         ledger: flag("ledger"),
+        report: flag("report"),
         images: flag("images").then(|| images(t, axes, snapshots)).transpose()?,
     })
 }

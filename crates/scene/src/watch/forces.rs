@@ -135,6 +135,9 @@ impl Watch for ForcesWatch {
     fn name(&self) -> &'static str {
         "forces"
     }
+    fn tables(&self) -> Vec<String> {
+        vec!["forces.csv".into()]
+    }
     fn step(&mut self, view: &mut dyn View, info: &StepInfo) -> Result<(), CouplingError> {
         let due = self.pace.due(info.time, info.dt);
         for b in (0..view.bodies().n_bodies()).map(BodyId) {
@@ -186,6 +189,7 @@ impl Watch for ForcesWatch {
             }
             if let Some(scale) = scale {
                 out["coefficients"] = of(sums, scale, 3);
+                out["coefficient_per_newton"] = json!(scale);
             }
             if let Some(frequency) = sums.frequency() {
                 out["frequency"] = json!(frequency);

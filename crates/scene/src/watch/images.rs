@@ -1,5 +1,5 @@
 //! Pictures of the fields.
-use super::{Solids, Taken, Watch, output};
+use super::{Solids, Table, Taken, Watch, output};
 use crate::setup::{Algorithm, Images, Quantity, Setup};
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
@@ -7,6 +7,9 @@ use fv_mesh::Axis;
 use interfaces::{BodyId, Checkpoint, Pose, RestartError};
 use render::section::{BodySection, Layer, Section, Sheet};
 use std::path::{Path, PathBuf};
+
+/// Table of the pictures.
+const INDEX: &str = "images.csv";
 
 /// Draws `images/NNNNN.png` at snapshots.
 pub(crate) struct ImagesWatch {
@@ -17,6 +20,8 @@ pub(crate) struct ImagesWatch {
     /// Is there no fluid?
     alone: bool,
     sheet: Sheet,
+    /// Times of the pictures \[s\]; of steady flow iterations.
+    index: Table,
     /// The cells that are shown, and all of the slice.
     cells: [Vec<usize>; 2],
     fields: [Vec<f64>; 3],
@@ -25,7 +30,17 @@ pub(crate) struct ImagesWatch {
 }
 
 impl ImagesWatch {
-    pub(crate) fn new(folder: &Path, setup: &Setup, images: Images) -> Result<Self, CouplingError> {
+    pub(crate) fn new(
+        folder: &Path,
+        setup: &Setup,
+        images: Images,
+        resume: Option<f64>,
+    ) -> Result<Self, CouplingError> {
+        let index = folder.join(INDEX);
+        let header = "# time s (steady flow: iterations); picture in images/\ntime,picture";
+        // At time 0 the first picture is made again; states of versions without this table can be resumed.
+        let resume = resume.filter(|time| *time > 0.0 && index.exists());
+        let index = Table::open(&index, header, resume)?;
         let folder = folder.join("images");
         std::fs::create_dir_all(&folder).map_err(output("making", &folder))?;
         Ok(Self {
@@ -35,6 +50,7 @@ impl ImagesWatch {
             images,
             alone: setup.fluid.is_none(),
             sheet: Sheet::default(),
+            index,
             cells: Default::default(),
             fields: Default::default(),
             values: vec![],
@@ -142,12 +158,18 @@ impl Watch for ImagesWatch {
     fn name(&self) -> &'static str {
         "images"
     }
+    fn tables(&self) -> Vec<String> {
+        vec![INDEX.into()]
+    }
     fn takes_lambda(&self, index: usize) -> Taken {
         match self.images.slice {
             _ if !index.is_multiple_of(self.images.every) => Taken::None,
             Some((axis, number)) => Taken::Layer(axis, number),
             None => Taken::All,
         }
+    }
+    fn flush(&mut self) -> Result<(), CouplingError> {
+        self.index.flush()
     }
     fn snapshot(
         &mut self,
@@ -233,7 +255,11 @@ impl Watch for ImagesWatch {
             true => format!("after {} iterations", info.step),
             false => format!("t = {:.4} s", info.time),
         };
-        section.draw(&mut self.sheet, &path, &layer, [&self.title, &state]).map_err(output("drawing", &path))
+        section
+            .draw(&mut self.sheet, &path, &layer, [&self.title, &state])
+            .map_err(output("drawing", &path))?;
+        let time = if self.steady { info.step as f64 } else { info.time };
+        self.index.row(time, Some(&format!("{index:05}.png")), [])
     }
 }
 

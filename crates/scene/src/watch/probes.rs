@@ -70,6 +70,9 @@ impl Watch for ProbesWatch {
     fn name(&self) -> &'static str {
         "probes"
     }
+    fn tables(&self) -> Vec<String> {
+        self.probes.iter().map(|(setup, ..)| format!("probes/{}.csv", setup.name)).collect()
+    }
     fn step(&mut self, view: &mut dyn View, info: &StepInfo) -> Result<(), CouplingError> {
         let dim = view.dim();
         let mut offset = 0;

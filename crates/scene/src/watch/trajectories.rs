@@ -49,6 +49,9 @@ impl Watch for TrajectoriesWatch {
     fn name(&self) -> &'static str {
         "trajectories"
     }
+    fn tables(&self) -> Vec<String> {
+        vec!["trajectories.csv".into()]
+    }
     fn step(&mut self, view: &mut dyn View, info: &StepInfo) -> Result<(), CouplingError> {
         for b in (0..view.bodies().n_bodies()).map(BodyId) {
             let speed = view.bodies().twist(b).linear.norm();

@@ -166,6 +166,9 @@ impl RunResult {
         if let Some(residual) = r["residual"].as_f64() {
             out += &format!("  residual {residual:.2e}\n");
         }
+        if let Some(page) = &self.report {
+            out += &format!("  report in {}\n", page.display());
+        }
         out + &format!("  files in {}\n", self.folder.display())
     }
 }

@@ -1,0 +1,92 @@
+//! Steps, energies and budgets over a run: `history.csv`.
+use crate::view::View;
+use crate::watch::{Pace, Table};
+use coupling::{CouplingError, LedgerReport, StepInfo};
+use std::path::Path;
+
+/// Name of the table in the folder.
+pub(crate) const HISTORY: &str = "history.csv";
+/// Rows of a run, or steps if there are fewer: a point for every second pixel of a plot.
+const ROWS: f64 = 300.0;
+/// Columns that need no ledger.
+const STEPS: &str = "time,step,dt,courant,kinetic_energy";
+/// Columns of the ledger, in the order of [`budgets`].
+const BUDGETS: &str = "energy_gained,work,side_work,driving_work,inner_work,dissipation,eddy_dissipation,forcing_loss,contact_work,brought,energy_residual,momentum_residual,divergence";
+
+/// Writes a row at every 300th of the run.
+pub(crate) struct History {
+    table: Table,
+    pace: Pace,
+}
+
+impl History {
+    /// A new table, or the one that is there up to time `resume` \[s\]; of a run that ends at `end` \[s\].
+    pub(crate) fn open(
+        folder: &Path,
+        end: f64,
+        ledger: bool,
+        resume: Option<f64>,
+    ) -> Result<Self, CouplingError> {
+        let path = folder.join(HISTORY);
+        let mut header =
+            "# time s; dt s; courant 1; energies and works J since the start (plane scenes per m of depth)"
+                .to_owned();
+        if ledger {
+            header += "; momentum_residual 1: momentum gained less impulses, over the impulses; divergence 1: largest |div u| dt of a step so far";
+        }
+        header = format!(
+            "{header}\n{STEPS}{}{}",
+            if ledger { "," } else { "" },
+            if ledger { BUDGETS } else { "" }
+        );
+        // States of versions without this table can be resumed.
+        let resume = resume.filter(|_| path.exists());
+        Ok(Self { table: Table::open(&path, &header, resume)?, pace: Pace::new(Some(end / ROWS)) })
+    }
+
+    /// Writes a row if one is due.
+    pub(crate) fn step(
+        &mut self,
+        view: &mut dyn View,
+        info: &StepInfo,
+        ledger: Option<&LedgerReport>,
+    ) -> Result<(), CouplingError> {
+        if !self.pace.due(info.time, info.dt) {
+            return Ok(());
+        }
+        let steps = [info.step as f64, info.dt, info.courant, view.kinetic_energy()];
+        self.table.row(info.time, None, steps.into_iter().chain(ledger.into_iter().flat_map(budgets)))
+    }
+
+    pub(crate) fn flush(&mut self) -> Result<(), CouplingError> {
+        self.table.flush()
+    }
+}
+
+fn budgets(l: &LedgerReport) -> [f64; 13] {
+    [
+        l.energy[1] - l.energy[0],
+        l.work,
+        l.side_work,
+        l.driving_work,
+        l.inner_work,
+        l.dissipation,
+        l.eddy_dissipation,
+        l.forcing_loss,
+        l.contact_work,
+        l.brought,
+        l.energy_residual,
+        l.momentum_total,
+        l.divergence,
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_budget_has_a_column() {
+        assert_eq!(BUDGETS.split(',').count(), budgets(&LedgerReport::default()).len());
+    }
+}

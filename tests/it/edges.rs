@@ -25,6 +25,7 @@ fn crates_meet_only_through_interfaces() {
         "turb",
         "coupling",
         "render",
+        "report",
         "scene",
         "example-support",
     ] {
@@ -41,8 +42,10 @@ fn crates_meet_only_through_interfaces() {
                     (_, "example-support") => from == "siltflow" && dependency["kind"] == "dev",
                     // Pictures are for what shows runs; their tests draw shapes.
                     ("siltflow", "render") => dependency["kind"] == "dev",
-                    ("example-support" | "scene", "render") => true,
-                    (_, "render") => false,
+                    ("example-support" | "report" | "scene", "render") => true,
+                    ("siltflow", "report") => dependency["optional"] == true,
+                    ("scene", "report") => true,
+                    (_, "render" | "report") | ("report", _) => false,
                     ("render", "dem") => dependency["kind"] == "dev",
                     ("siltflow", "scene") => dependency["optional"] == true,
                     ("siltflow", _) => true,

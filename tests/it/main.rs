@@ -22,6 +22,7 @@ mod population;
 mod preset;
 mod removal;
 mod repeats;
+mod report;
 mod restart;
 mod scenes;
 mod skipping;

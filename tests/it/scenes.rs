@@ -70,6 +70,8 @@ fn killed(scene: &str, set: &[&str]) {
     let mut compared = 0;
     for name in [
         "result.json",
+        "history.csv",
+        "images.csv",
         "trajectories.csv",
         "forces.csv",
         "probes/wake.csv",

@@ -7,13 +7,16 @@
 //! siltflow check first.toml                      # cells, memory, steps, cost, doubts
 //! siltflow run first.toml --set time.end=0.1 --threads 2
 //! siltflow resume first.toml                     # after Ctrl-C
+//! siltflow report out/first                      # its page again; of several runs, a comparison
 //! ```
 mod check;
 mod outcome;
+mod report;
 mod run;
 mod shipped;
 mod template;
 
+use crate::report::ReportArgs;
 use check::CheckArgs;
 use clap::{Parser, Subcommand};
 use outcome::{Failure, print};
@@ -37,6 +40,8 @@ enum Command {
     Resume(ResumeArgs),
     /// Tells what runs of scenes would take, and what is wrong with the files.
     Check(CheckArgs),
+    /// Makes a page (HTML) of the folders of one or several runs.
+    Report(ReportArgs),
     /// Lists the scenes that come with the command and are run by their names.
     List {
         /// Prints JSON.
@@ -59,6 +64,7 @@ fn main() -> ExitCode {
         Command::Run(args) => args.run(),
         Command::Resume(args) => args.run(),
         Command::Check(args) => args.check(),
+        Command::Report(args) => args.report(),
         Command::List { json } => print(&shipped::list(json)).map(|()| 0),
         Command::New { path } => template::write(&path).map(|()| 0),
         Command::Manual => print(&scene::manual()).map(|()| 0),

@@ -116,7 +116,7 @@ fn grid_studies(runs: &[RunFolder], rows: &[Row]) -> Markup {
         @if groups.is_empty() {
             @let unknown = runs.iter().any(|run| run.plan["case"].is_null());
             p.note {
-                "No grid study: no two runs differ in their grid alone (keys `grid`, `time.dt`, `time.steps`; box of the same size)"
+                "No grid study: no two runs differ in their grid alone (keys grid, time.dt, time.steps; box of the same size)"
                 @if unknown { ", as far as is known: runs without a plan.json cannot be compared" }
                 "."
             }

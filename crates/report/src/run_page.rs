@@ -202,10 +202,14 @@ fn versions(run: &RunFolder) -> Markup {
 }
 
 fn scene(run: &RunFolder) -> Markup {
+    // Scenes that come with the command are read from a temporary folder.
+    let file = run.plan["file"]
+        .as_str()
+        .map_or("scene.toml", |path| path.rsplit(['/', '\\']).next().unwrap_or(path));
     html! {
         h2 { "Scene" }
         @match &run.scene {
-            Some(text) => details { summary { (run.plan["file"].as_str().unwrap_or("scene.toml")) } pre { (text) } },
+            Some(text) => details { summary { (file) } pre { (text) } },
             None => p.soft { "Its text is not in the folder." },
         }
         @if !run.log.is_empty() {

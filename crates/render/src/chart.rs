@@ -204,7 +204,7 @@ impl Chart {
             let ends = [(range.start, value), (range.end, value)];
             let dash = (6 * FINE, 4 * FINE);
             chart.draw_series(std::iter::once(DashedPathElement::new(
-                ends.into_iter(),
+                ends,
                 dash.0,
                 dash.1,
                 style(level.colour, 6),

@@ -72,16 +72,17 @@ const FAULTS: &str = "<script>window.faults = []; \
     addEventListener('error', e => faults.push(String(e.message)), true); \
     addEventListener('securitypolicyviolation', e => faults.push(e.blockedURI));</script>";
 
-/// Moves the slider to the start; notes what the page then shows and what it has fetched.
+/// Moves the slider to the start; notes what the page then shows and what it has fetched, once the picture is there: the browser's
+/// virtual time waits for what is loaded.
 const SLIDE: &str = "<script>\
     const [img, slider] = ['img', 'input'].map(tag => document.querySelector('[data-pictures] ' + tag)); \
-    const last = img.src; slider.value = 0; slider.dispatchEvent(new Event('input')); \
-    img.decode().catch(e => faults.push(String(e))).then(() => \
-        document.documentElement.setAttribute('data-seen', JSON.stringify({ \
-            faults, changed: img.src !== last, width: img.naturalWidth, hidden: slider.hidden, \
-            label: document.querySelector('[data-pictures] output').textContent, \
-            fetched: performance.getEntriesByType('resource').map(e => e.name).filter(n => !n.startsWith('data:')), \
-            wider: document.documentElement.scrollWidth - innerWidth })));</script></body>";
+    const last = img.src; \
+    img.onload = () => document.documentElement.setAttribute('data-seen', JSON.stringify({ \
+        faults, changed: img.src !== last, width: img.naturalWidth, hidden: slider.hidden, \
+        label: document.querySelector('[data-pictures] output').textContent, \
+        fetched: performance.getEntriesByType('resource').map(e => e.name).filter(n => !n.startsWith('data:')), \
+        wider: document.documentElement.scrollWidth - innerWidth })); \
+    slider.value = 0; slider.dispatchEvent(new Event('input'));</script></body>";
 
 /// No error, nothing fetched, a slider that changes the picture, nothing wider than a telephone.
 #[test]

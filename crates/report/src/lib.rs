@@ -29,6 +29,8 @@ pub use error::ReportError;
 pub use grid_convergence::{GridConvergence, GridValue};
 
 use run_folder::RunFolder;
+use std::fs::File;
+use std::io::{BufWriter, Write};
 use std::path::Path;
 
 /// Name of the page in a run's folder.
@@ -62,7 +64,10 @@ impl Report {
 
     /// The page.
     pub fn html(&self) -> String {
-        page::html(&self.runs)
+        let mut page = Vec::new();
+        // A vector takes all that is written to it.
+        let _ = page::write(&self.runs, &mut page);
+        String::from_utf8_lossy(&page).into_owned()
     }
 
     /// Writes the page, next to the file first: what is there is whole.
@@ -72,8 +77,12 @@ impl Report {
     pub fn write(&self, file: &Path) -> Result<(), ReportError> {
         let mut part = file.as_os_str().to_owned();
         part.push(".part");
-        std::fs::write(&part, self.html())
-            .and_then(|()| std::fs::rename(&part, file))
-            .map_err(|source| ReportError::Write { file: file.into(), source })
+        let write = || {
+            let mut out = BufWriter::new(File::create(&part)?);
+            page::write(&self.runs, &mut out)?;
+            out.flush()?;
+            std::fs::rename(&part, file)
+        };
+        write().map_err(|source| ReportError::Write { file: file.into(), source })
     }
 }

@@ -5,6 +5,7 @@ use crate::series::series;
 use crate::shared_charts::shared_charts;
 use crate::{comparison, figures, run_page};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use std::io::{self, Write};
 
 /// What a browser may do for the page: nothing but show what is in it.
 const POLICY: &str =
@@ -13,8 +14,8 @@ const POLICY: &str =
 /// Place of the pictures' data.
 const PLACE: &str = "<!-- pictures -->";
 
-/// The page of `runs`, of which there is one at least.
-pub(crate) fn html(runs: &[RunFolder]) -> String {
+/// Writes the page of `runs`, of which there is one at least.
+pub(crate) fn write(runs: &[RunFolder], out: &mut impl Write) -> io::Result<()> {
     let room = MOST_BYTES / runs.len().max(1) as u64;
     let pictures: Vec<Pictures> = runs.iter().map(|run| Pictures::read(&run.pictures, room)).collect();
     let title = match runs {
@@ -57,12 +58,11 @@ pub(crate) fn html(runs: &[RunFolder]) -> String {
     let page = page.into_string();
     // Texts of runs hold no markup, so that the last such place is the page's own.
     let (before, after) = page.rsplit_once(PLACE).unwrap_or((&page, ""));
-    let mut out =
-        String::with_capacity(page.len() + pictures.iter().map(Pictures::data_bytes).sum::<usize>() + 1000);
-    out.push_str(before);
-    pictures.iter().enumerate().for_each(|(number, pictures)| pictures.append_data(number, &mut out));
-    out.push_str(after);
-    out
+    out.write_all(before.as_bytes())?;
+    for (number, pictures) in pictures.iter().enumerate() {
+        pictures.write_data(number, out)?;
+    }
+    out.write_all(after.as_bytes())
 }
 
 fn several(runs: &[RunFolder], pictures: &[Pictures], title: &str) -> Markup {

@@ -2,6 +2,8 @@
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// Pictures of all runs together take at most so many bytes of the page \[bytes of base64\].
@@ -16,14 +18,18 @@ const PNG: [u8; 8] = [0x89, b'P', b'N', b'G', 0x0d, 0x0a, 0x1a, 0x0a];
 pub(crate) struct Picture {
     /// What it is labelled with.
     pub(crate) label: String,
-    /// A PNG file.
-    pub(crate) png: Vec<u8>,
+    path: PathBuf,
 }
 
 impl Picture {
+    /// The picture as base64; empty if its file is gone since it was listed.
+    fn encoded(&self) -> String {
+        std::fs::read(&self.path).map(|png| STANDARD.encode(png)).unwrap_or_default()
+    }
+
     /// The picture as a URL.
     pub(crate) fn url(&self) -> String {
-        format!("data:image/png;base64,{}", STANDARD.encode(&self.png))
+        format!("data:image/png;base64,{}", self.encoded())
     }
 }
 
@@ -109,33 +115,29 @@ impl Pictures {
             ));
         }
         for one in chosen {
-            match std::fs::read(&one.path) {
-                Ok(bytes) if bytes.starts_with(&PNG) => {
-                    out.shown.push(Picture { label: one.label.clone(), png: bytes })
+            let mut head = [0; PNG.len()];
+            match File::open(&one.path).and_then(|mut file| file.read_exact(&mut head)) {
+                Ok(()) if head == PNG => {
+                    out.shown.push(Picture { label: one.label.clone(), path: one.path.clone() });
                 }
                 Ok(_) => out.notes.push(format!("{} is no PNG file", one.path.display())),
-                Err(error) => out.notes.push(format!("{}: {error}", one.path.display())),
+                Err(error) => out.notes.push(format!("{} cannot be read: {error}", one.path.display())),
             }
         }
         out
     }
 
-    /// Appends the element with labels and pictures (base64) that the slider reads.
-    pub(crate) fn append_data(&self, number: usize, page: &mut String) {
-        page.push_str(&format!("<script type=\"application/json\" id=\"pictures-{number}\">["));
+    /// Writes the element with labels and pictures (base64) that the slider reads, picture by picture: a run's memory is not
+    /// exceeded by that of its page.
+    pub(crate) fn write_data(&self, number: usize, page: &mut impl Write) -> io::Result<()> {
+        write!(page, "<script type=\"application/json\" id=\"pictures-{number}\">[")?;
         for (i, picture) in self.shown.iter().enumerate() {
             // A label cannot end the element: `<` is written as an escape of JSON.
             let label = serde_json::Value::from(picture.label.as_str()).to_string().replace('<', "\\u003c");
-            page.push_str(&format!("{}[{label},\"", if i > 0 { "," } else { "" }));
-            STANDARD.encode_string(&picture.png, page);
-            page.push_str("\"]");
+            let comma = if i > 0 { "," } else { "" };
+            write!(page, "{comma}[{label},\"{}\"]", picture.encoded())?;
         }
-        page.push_str("]</script>");
-    }
-
-    /// Bytes of the element.
-    pub(crate) fn data_bytes(&self) -> usize {
-        self.shown.iter().map(|picture| picture.png.len() * 4 / 3 + picture.label.len() + 50).sum()
+        write!(page, "]</script>")
     }
 }
 

@@ -1,7 +1,7 @@
 //! Nanoseconds per body for every broad phase: rebuild, all queries, list (both, and the sorted pairs), refresh after 1 % of the
 //! bodies went a tenth of their size. One thread, its CPU time, best of many; thresholds of `Automatic` come from here.
 //!
-//! `cargo bench -p dem --bench broad_phase -- [part of a scene's name] [number of bodies] [part of a way's name]`
+//! `cargo bench -p siltflow-dem --bench broad_phase -- [part of a scene's name] [number of bodies] [part of a way's name]`
 use cpu_time::ThreadTime;
 use dem::{Automatic, BroadPhase, HierarchicalGrid, LinkedCells, PairList, RTree, Sweep};
 use interfaces::{Aabb, Periods, Point, Vector};

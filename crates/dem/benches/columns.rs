@@ -1,7 +1,7 @@
 //! Overlaps of round bodies with one another: relative errors against a much finer run, and CPU time per pair. The depth is a share of
 //! the cube root of the smaller volume.
 //!
-//! `cargo bench -p dem --bench columns`
+//! `cargo bench -p siltflow-dem --bench columns`
 use cpu_time::ThreadTime;
 use dem::{Capsule, Cylinder, Ellipsoid, OverlapSolver, Route, Shape, Sphere};
 use interfaces::{Pose, Rotation, Vector};

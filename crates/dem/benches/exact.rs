@@ -1,4 +1,4 @@
-//! CPU time per pair of every exact route: `cargo bench -p dem --bench exact`. Those that approximate have benches of their own
+//! CPU time per pair of every exact route: `cargo bench -p siltflow-dem --bench exact`. Those that approximate have benches of their own
 //! (`columns`, `tree`). `-- spheres` takes only the pairs with this word.
 use dem::{Capsule, ConvexPolyhedron, Cuboid, Cylinder, OverlapSolver, Shape, Sphere, TriangleMesh};
 use interfaces::{Point, Pose, Rotation, Vector};

@@ -1,4 +1,4 @@
-//! CPU time of triangle meshes, the least of several: `cargo bench -p dem --bench meshes`.
+//! CPU time of triangle meshes, the least of several: `cargo bench -p siltflow-dem --bench meshes`.
 //!
 //! Tessellated spheres: admission, report, reading, distances and winding numbers. Surfaces of 1e5 faces that are hard
 //! for trees of boxes: admission and report.

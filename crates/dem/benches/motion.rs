@@ -1,4 +1,4 @@
-//! CPU time of bodies that settle and lie: `cargo bench -p dem --bench motion -- [names of scenes]`.
+//! CPU time of bodies that settle and lie: `cargo bench -p siltflow-dem --bench motion -- [names of scenes]`.
 //!
 //! Spheres fall from a loose lattice into a box and come to rest; the time is that of steps after the fall, per particle and step. Cubes and
 //! polyhedra of 26 vertices pile up; there it is per pair that touches and step. Each figure is the median of several blocks of steps.

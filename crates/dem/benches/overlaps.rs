@@ -1,5 +1,5 @@
 //! Error, consistency and CPU time of overlaps, every kind of body with every other, at random
-//! poses: `cargo bench -p dem --bench overlaps -- [poses] [kind] [other kind] [size=1e-4]`. Given `size`, the second
+//! poses: `cargo bench -p siltflow-dem --bench overlaps -- [poses] [kind] [other kind] [size=1e-4]`. Given `size`, the second
 //! body's size is this share of the first one's, and it is on its surface.
 #[path = "../src/draw.rs"]
 mod draw;

@@ -1,4 +1,4 @@
-//! CPU time of random addition: spheres, and bodies that are placed tightly. `cargo bench -p dem --bench placing`
+//! CPU time of random addition: spheres, and bodies that are placed tightly. `cargo bench -p siltflow-dem --bench placing`
 use cpu_time::ProcessTime;
 use dem::placing::{PlacingError, RandomAddition, Region, SizeDistribution};
 use dem::{Capsule, Cuboid, Ellipsoid, Shape, Sphere};

@@ -1,5 +1,5 @@
 //! What the adaptive tree costs against its error, in µs of CPU time per pair, for bodies of which only a signed distance is
-//! known. Sample run: `cargo bench -p dem --bench tree` (a minute or so); `-- torus` takes only the pairs with this word.
+//! known. Sample run: `cargo bench -p siltflow-dem --bench tree` (a minute or so); `-- torus` takes only the pairs with this word.
 //!
 //! Each pair is posed twenty times (or as often as POSES says) at random, between a graze and half its depth. The errors are those of the volume, and of the
 //! normal of the largest region in degrees, against the exact ones (spheres) or against a tolerance of 3e-6. The rows go to

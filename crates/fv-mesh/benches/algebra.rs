@@ -1,4 +1,4 @@
-//! Time of expressions against loops written by hand, on one thread: `cargo bench -p fv-mesh --bench algebra`.
+//! Time of expressions against loops written by hand, on one thread: `cargo bench -p siltflow-fv-mesh --bench algebra`.
 use fv_mesh::{CartesianGrid, Field, Integrals};
 use pulp::{Arch, Simd, WithSimd};
 use std::hint::black_box;

@@ -1,4 +1,4 @@
-//! Cost of a flow step against the machine's memory bandwidth: `cargo bench -p fv-mesh --bench flow`.
+//! Cost of a flow step against the machine's memory bandwidth: `cargo bench -p siltflow-fv-mesh --bench flow`.
 //!
 //! Prints the bandwidth of a STREAM triad, then per grid the CPU time per cell and step on one thread, the bytes that the
 //! sweeps of a step move per cell, how many times longer the step takes than moving them, what two threads gain in

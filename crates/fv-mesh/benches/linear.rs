@@ -1,4 +1,4 @@
-//! Times the linear solvers on one thread: `cargo bench -p fv-mesh --bench linear`.
+//! Times the linear solvers on one thread: `cargo bench -p siltflow-fv-mesh --bench linear`.
 use fv_mesh::linear::{
     BiCgStabParams, BiCgStabScratch, CgParams, CgScratch, Dilu, DirectParams, GaussSeidelSweep, Ilu0,
     LinearError, LinearOperator, Preconditioner, RedBlack, SparseCholesky, SparseLu, StencilMatrix, Sweep,

@@ -1,4 +1,5 @@
-//! Times multigrid on one thread, in processor time: `cargo bench -p fv-mesh --bench multigrid`.
+//! Times multigrid on one thread, in processor time:
+//! `cargo bench -p siltflow-fv-mesh --bench multigrid`.
 use cpu_time::ThreadTime;
 use fv_mesh::poisson::AxisBounds::{self, Dirichlet, Neumann};
 use fv_mesh::poisson::PoissonAxis;

@@ -1,4 +1,5 @@
-//! Times the direct Poisson solvers on one thread: `cargo bench -p fv-mesh --bench poisson`.
+//! Times the direct Poisson solvers on one thread:
+//! `cargo bench -p siltflow-fv-mesh --bench poisson`.
 use fv_mesh::poisson::AxisBounds::{self, Dirichlet, Neumann, NeumannDirichlet, Periodic};
 use fv_mesh::poisson::{DirectPoisson, PoissonAxis, PoissonError, PoissonInfo, SeparablePoisson};
 use std::time::Instant;

@@ -1,4 +1,4 @@
-//! `Simple` and `Piso` beside `Projection`, on one thread, in CPU time: `cargo bench -p fv-mesh --bench segregated` (about four
+//! `Simple` and `Piso` beside `Projection`, on one thread, in CPU time: `cargo bench -p siltflow-fv-mesh --bench segregated` (about four
 //! CPU minutes; `-- simple` or `-- piso` runs one part).
 //!
 //! 1. `Simple`: the lid-driven cavity from rest to residuals of 10⁻⁶: iterations, cost, largest deviations from Ghia, Ghia & Shin

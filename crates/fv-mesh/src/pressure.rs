@@ -17,7 +17,7 @@ pub enum PressureSolver {
     Multigrid(MultigridParams),
 }
 
-/// What multigrid to a tolerance of 10⁻⁶ costs per cell \[ns\], by `cargo bench -p fv-mesh --bench multigrid`.
+/// What multigrid to a tolerance of 10⁻⁶ costs per cell \[ns\], by `cargo bench -p siltflow-fv-mesh --bench multigrid`.
 const MULTIGRID_COST: f64 = 200.0;
 
 /// What holds for the pressure at the ends of the axes.

@@ -1,4 +1,4 @@
-//! What the cuts of walls at rest cost, in ns of CPU time per cut or closed face: `cargo bench -p ibm --bench cut_walls`; `-- cube` takes only
+//! What the cuts of walls at rest cost, in ns of CPU time per cut or closed face: `cargo bench -p siltflow-ibm --bench cut_walls`; `-- cube` takes only
 //! the rows with this word. A body of 5 % of a periodic box, best of several places.
 #[path = "support/brick.rs"]
 mod brick;

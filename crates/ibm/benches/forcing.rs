@@ -1,4 +1,4 @@
-//! What a forcing costs, in µs of CPU time per body and step: `cargo bench -p ibm --bench forcing`; `-- smooth` takes only the rows
+//! What a forcing costs, in µs of CPU time per body and step: `cargo bench -p siltflow-ibm --bench forcing`; `-- smooth` takes only the rows
 //! with this word. Equal balls, 5 % of a periodic box, medians: to take note of them at rest and moved, to force the velocity (all
 //! rounds), and to tell the fluid's resistance and the momentum inside, which bodies that move freely ask for.
 #[path = "support/staggered.rs"]

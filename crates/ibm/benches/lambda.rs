@@ -1,5 +1,5 @@
 //! What λ costs, in ns of CPU time per touched cell: one with λ > 0 after the update. Sample run:
-//! `cargo bench -p ibm --bench lambda` (a minute or so). `-- 50` repeats more often,
+//! `cargo bench -p siltflow-ibm --bench lambda` (a minute or so). `-- 50` repeats more often,
 //! `-- cube` takes only the rows with this word.
 //!
 //! 1. A sphere, and one of 20 480 triangles, against cells per diameter, at places all over a cell.

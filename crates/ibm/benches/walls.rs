@@ -1,4 +1,4 @@
-//! What wall distances and wall rows cost, in ns of CPU time. Sample run: `cargo bench -p ibm --bench walls` (a minute or so);
+//! What wall distances and wall rows cost, in ns of CPU time. Sample run: `cargo bench -p siltflow-ibm --bench walls` (a minute or so);
 //! `-- 50` repeats more often, `-- distances` or `-- rows` takes only those.
 //!
 //! 1. Distances of all cells from 1 to 512 spheres and a cube on 128³ cells: from scratch, after all bodies moved, after one

@@ -1,4 +1,4 @@
-//! Error against CPU time of all methods of interpolation. `cargo bench -p mor --bench interpolation`, or with `time`, `parameters`,
+//! Error against CPU time of all methods of interpolation. `cargo bench -p siltflow-mor --bench interpolation`, or with `time`, `parameters`,
 //! `runs`, `widths` after `--`; on one thread.
 use cpu_time::ProcessTime;
 use monomorphic::self_adjoint_eigenvectors;

@@ -1,5 +1,5 @@
 //! Cases of other programs, read from `.npy` files (snapshots along the first axis), for the scripts
-//! in `benches/peers`, which call it: `cargo bench -p mor --bench public_code -- KIND …`.
+//! in `benches/peers`, which call it: `cargo bench -p siltflow-mor --bench public_code -- KIND …`.
 //!
 //! * `pod FILE METHOD RANK`: singular values; METHOD is `auto`, `snapshots`, `qr` or `randomised`.
 //! * `shifted FOLDER RANKS TOLERANCE`: `data.npy`, `clean.npy`, `shifts.npy` (cells per frame) on a periodic line;

@@ -1,4 +1,4 @@
-//! Errors, steps, CPU seconds and peak memory of shifted decompositions at full size: `cargo bench -p mor --bench shifted -- two_discs`.
+//! Errors, steps, CPU seconds and peak memory of shifted decompositions at full size: `cargo bench -p siltflow-mor --bench shifted -- two_discs`.
 use cpu_time::ProcessTime;
 use interfaces::Vector;
 use mor::Mat;

@@ -1,6 +1,6 @@
 //! Shifted POD of many frames: 2, 5 and 10 discs of rank 3 on 100 × 200 cells in 101 snapshots.
 //!
-//! `cargo bench -p mor --bench shifted_frames [-- KIND … [COUNT …]]`. Kinds: `cross` (paths along both
+//! `cargo bench -p siltflow-mor --bench shifted_frames [-- KIND … [COUNT …]]`. Kinds: `cross` (paths along both
 //! axes), `fall` (paths along the long axis only), `found` (as `cross`, ranks found), `fire` (two fronts
 //! on a bounded axis and on a periodic one of twice the length). Places, radii and laws of motion are
 //! random numbers. One line per case.

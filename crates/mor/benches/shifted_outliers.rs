@@ -1,4 +1,4 @@
-//! Shifted POD beside wrong entries: `cargo bench -p mor --bench shifted_outliers [-- SEEDS [PART …]]`.
+//! Shifted POD beside wrong entries: `cargo bench -p siltflow-mor --bench shifted_outliers [-- SEEDS [PART …]]`.
 //!
 //! Two structures of ranks 3 and 2 cross on a periodic line of 512 cells in 60 snapshots: pulses at
 //! random places of their frame whose amplitudes vary by random laws. A share of the entries (PART,

@@ -1,4 +1,4 @@
-//! Shifted POD with ranks and wrong entries found: `cargo bench -p mor --bench shifted_robust [-- CASE …]`.
+//! Shifted POD with ranks and wrong entries found: `cargo bench -p siltflow-mor --bench shifted_robust [-- CASE …]`.
 //!
 //! One line per case: the ranks found, the relative error against the clean field in Frobenius' norm, iterations, CPU seconds. The cases are those
 //! of the reference page and others like them; the discs are thinned to every eighth snapshot unless `discs601` is asked for.

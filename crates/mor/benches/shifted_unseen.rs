@@ -1,4 +1,4 @@
-//! Shifted POD on cases that nobody tuned it to: places, speeds and sizes by random numbers. `cargo bench -p mor --bench shifted_unseen [-- KIND … [SEEDS]]`.
+//! Shifted POD on cases that nobody tuned it to: places, speeds and sizes by random numbers. `cargo bench -p siltflow-mor --bench shifted_unseen [-- KIND … [SEEDS]]`.
 //!
 //! Kinds: `waves` (two or three pulses on a line), `discs` (two discs of a tanh edge that fall side by side), `drift` (that move sideways, too), `near` (frames that
 //! hardly move against one another), `small` (discs on 48 × 64 cells; `N=400` in the environment: so many snapshots, 200 unless told). Each clean and noisy, with ranks given and found; one line per run: error against the clean field in Frobenius' norm.

@@ -1,6 +1,6 @@
 //! What a proper orthogonal decomposition costs: CPU seconds, memory, orthogonality of the modes.
 //!
-//! `cargo bench -p mor --bench svd`: 45 000 × 601, two minutes with all methods; `-- large`: 1e6 × 600, which takes 11 GB; `-- small`: 4500 × 151; `-- file`: 1e6 × 600 from a
+//! `cargo bench -p siltflow-mor --bench svd`: 45 000 × 601, two minutes with all methods; `-- large`: 1e6 × 600, which takes 11 GB; `-- small`: 4500 × 151; `-- file`: 1e6 × 600 from a
 //! file of 4.8 GB beside the build, which is removed afterwards.
 use cpu_time::ProcessTime;
 use interfaces::SnapshotSink;

@@ -1,4 +1,4 @@
-//! Errors of sPODIANN for λ of discs at unseen times and parameters, by method. `cargo bench -p mor --bench unseen_discs [-- KIND … SEED]`.
+//! Errors of sPODIANN for λ of discs at unseen times and parameters, by method. `cargo bench -p siltflow-mor --bench unseen_discs [-- KIND … SEED]`.
 //!
 //! Kinds: `two` (two discs, ranks (5,5), snapshots between those of the fit), `ten` (ten discs, ranks 3), `parameters` (two discs, five runs and four runs between
 //! them). Paths start from rest, approach a terminal velocity and drift sideways (tests/discs).

@@ -2,8 +2,8 @@
 //! run has a process of its own.
 //!
 //! ```text
-//! cargo bench -p scene --bench plan                           # every file in scenes/
-//! cargo bench -p scene --bench plan -- cavity hopper          # some of them
+//! cargo bench -p siltflow-scene --bench plan                           # every file in scenes/
+//! cargo bench -p siltflow-scene --bench plan -- cavity hopper          # some of them
 //! ```
 use render::cpu::{Stopwatch, peak_memory};
 use scene::{Options, Scene};

@@ -11,7 +11,7 @@ const CROWDED: f64 = 1000.0;
 /// Picks by the number of boxes and how they stand: a few are swept, many are put in cells by size, and in a tree if
 /// most cells would be empty and the others crowded.
 ///
-/// CPU ns per body on one thread of a busy machine, best of many (`cargo bench -p dem --bench broad_phase`); 5 pairs per body in the dense
+/// CPU ns per body on one thread of a busy machine, best of many (`cargo bench -p siltflow-dem --bench broad_phase`); 5 pairs per body in the dense
 /// scene, 2 to 4 in those of mixed sizes with as much volume in every decade of sizes:
 ///
 /// | scene | bodies | rebuild | rebuild and list | refresh, 1 % moved | tree: rebuild and list |

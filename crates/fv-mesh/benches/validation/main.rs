@@ -1,4 +1,4 @@
-//! Every validation case on three grids, with its grid convergence index: `cargo bench -p fv-mesh --bench validation`
+//! Every validation case on three grids, with its grid convergence index: `cargo bench -p siltflow-fv-mesh --bench validation`
 //! (about three minutes on one thread; `-- cavity` runs the cases whose name holds that word).
 //!
 //! Per case and grid: the value found, the reference, the error, CPU seconds. Then the observed order p and the grid

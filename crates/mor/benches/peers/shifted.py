@@ -1,7 +1,7 @@
 """Shifted POD by sPOD (J2, BFB, ALM) beside `ShiftedPod`, on the very same matrices.
 
     pip install numpy scipy scikit-learn
-    EXPORT=FOLDER cargo bench -p mor --bench shifted_outliers -- 3 0 0.1 0.5 1 3 5 8 12
+    EXPORT=FOLDER cargo bench -p siltflow-mor --bench shifted_outliers -- 3 0 0.1 0.5 1 3 5 8 12
     SPOD_LIB=FOLDER/lib python3 crates/mor/benches/peers/shifted.py clean FOLDER
     SPOD_LIB=FOLDER/lib python3 crates/mor/benches/peers/shifted.py wrong FOLDER
 

@@ -69,7 +69,7 @@ fn steps_of_scenes_that_are_not_tried_are_estimated() {
 }
 
 #[test]
-#[ignore = "a minute and 6 GB; cargo test --release -p scene --test it -- --ignored a_million --nocapture"]
+#[ignore = "a minute and 6 GB; cargo test --release -p siltflow-scene --test it -- --ignored a_million --nocapture"]
 fn a_million_balls_start_within_a_minute() {
     let [checked, ran] = start(1_000_000);
     assert!(checked < 60.0 && ran < 60.0, "{checked} {ran}");

@@ -301,7 +301,7 @@ fn mutated_scenes_that_pass_run() {
 }
 
 /// CHECKS scenes are checked, RUNS that pass are run for SECONDS:
-/// `cargo test -p scene --release --test it mutations_at_large -- --ignored --nocapture`.
+/// `cargo test -p siltflow-scene --release --test it mutations_at_large -- --ignored --nocapture`.
 #[test]
 #[ignore = "minutes"]
 fn mutations_at_large() {

@@ -8,8 +8,8 @@ use interfaces::{BodyId, Checkpoint, Dynamics, RestartError};
 ///
 /// ```
 /// use coupling::{Grains, Schedule, run};
-/// use dem::{Material, RigidBodies, Sphere};
-/// use interfaces::{BodyId, Freedom, Kinematics, Periods, Pose, Twist, Vector};
+/// use coupling::dem::{Material, RigidBodies, Sphere};
+/// use coupling::{BodyId, Freedom, Kinematics, Periods, Pose, Twist, Vector};
 /// let mut bodies = RigidBodies::new(Periods::default());
 /// bodies.set_gravity(Vector::new(0.0, 0.0, -9.81));
 /// bodies.add(Sphere::new(1e-3)?, Material::default(), Pose::at([0.0; 3]), Twist::default(), Freedom::FREE)?;

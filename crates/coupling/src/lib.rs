@@ -8,11 +8,11 @@
 //! [`Ledger`] keeps the books of momentum and energy; [`SnapshotFeed`] and [`BodyPaths`] feed models made of snapshots; [`save`] and [`load`] keep a run's state.
 //!
 //! ```
+//! use coupling::dem::{Disc, Material, RigidBodies};
+//! use coupling::fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Side};
+//! use coupling::ibm::SmoothForcing;
+//! use coupling::{BodyId, Freedom, Kinematics, Periods, Pose, Twist, Vector};
 //! use coupling::{Particles, Simulation, WeightBalance};
-//! use dem::{Disc, Material, RigidBodies};
-//! use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Side};
-//! use ibm::SmoothForcing;
-//! use interfaces::{BodyId, Freedom, Kinematics, Periods, Pose, Twist, Vector};
 //! let water = Fluid { density: 1000.0, viscosity: 1e-6 };
 //! let grid = CartesianGrid::new([40, 60], [4e-3, 6e-3])?;
 //! let flow = Projection::new(grid, Side::WALL.everywhere(), water)?.with_diffusion(Diffusion::Explicit);
@@ -28,6 +28,7 @@
 //! assert!(fall.particles.bodies.twist(BodyId(0)).linear.y < 0.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+#![doc(html_root_url = "https://docs.rs/siltflow-coupling/latest")]
 #![deny(missing_docs)]
 
 mod accounts;
@@ -51,11 +52,21 @@ mod with_scalars;
 
 pub use accounts::{Account, Accounts};
 pub use checkpoint::{CheckpointError, SavedState, load, previous, save};
+pub use dem;
 pub use error::{CouplingError, Escape};
 pub use flow_solver::FlowSolver;
+pub use fv_mesh;
 pub use grains::Grains;
+pub use ibm;
+pub use interfaces::{
+    Aabb, Bodies, BodyId, Checkpoint, Closure, Dynamics, Equation, Freedom, Inertia, Kinematics, Lattice,
+    LawOfTheWall, Load, LogSlope, Nodes, Periods, Point, Polyhedron, Pose, Renumbering, RestartError,
+    Rotation, SnapshotSink, Solid, SolveError, SolveInfo, SurfaceElement, Transport, Twist, Vector,
+    VelocityField, WallPoint, WallRow, Wrench,
+};
 pub use ledger::{Ledger, LedgerReport};
 pub use moving_window::MovingWindow;
+pub use nalgebra;
 pub use output::FileOutput;
 pub use particles::{BodyReport, Particles, check_places};
 pub use preset::{HfdibDem, hfdib_dem};
@@ -65,3 +76,8 @@ pub use snapshots::{BodyPaths, Quantity, SnapshotFeed};
 pub use strategy::{Exchange, Explicit, Iterated, OneSolve, Strategy};
 pub use walled::Walled;
 pub use with_scalars::{Drive, WithScalars};
+
+/// The program of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -13,7 +13,7 @@ use interfaces::{Bodies, Checkpoint, RestartError, Vector};
 ///
 /// ```
 /// use coupling::{FlowSolver, WithScalars};
-/// use fv_mesh::{CartesianGrid, Fluid, Piso, Scalar, ScalarSide, Side};
+/// use coupling::fv_mesh::{CartesianGrid, Fluid, Piso, Scalar, ScalarSide, Side};
 /// let grid = CartesianGrid::new([16, 16], [0.1, 0.1])?;
 /// let dye = Scalar::new(&grid, ScalarSide::NO_GRADIENT.everywhere(), 1e-6)?;
 /// let lid = [Side::WALL.both(), [Side::WALL, Side::Wall([0.1, 0.0, 0.0])]];

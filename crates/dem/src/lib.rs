@@ -5,7 +5,7 @@
 //!
 //! ```
 //! use dem::{Disc, Material, RigidBodies};
-//! use interfaces::{BodyId, Dynamics, Freedom, Kinematics, Periods, Pose, Twist, Vector};
+//! use dem::{BodyId, Dynamics, Freedom, Kinematics, Periods, Pose, Twist, Vector};
 //!
 //! let mut bodies = RigidBodies::new(Periods::default());
 //! let (disc, steel) = (Disc::new(0.01)?, Material { density: 7800.0, ..Material::default() });
@@ -19,6 +19,7 @@
 //! assert!(bodies.twist(BodyId(1)).linear.x > 0.5);
 //! # Ok::<(), dem::DemError>(())
 //! ```
+#![doc(html_root_url = "https://docs.rs/siltflow-dem/latest")]
 #![deny(missing_docs)]
 
 mod broad_phase;
@@ -46,7 +47,13 @@ pub use contact::{
     Repulsive, Rolling, Springs, Touch, WholeFilm,
 };
 pub use error::{DemError, SubStepLimit};
+pub use interfaces::{
+    Aabb, Bodies, BodyId, Cell, Checkpoint, Dynamics, Freedom, Inertia, Kinematics, LENGTH_PRECISION, Load,
+    MeshGeometry, Periods, Point, Polyhedron, Pose, Renumbering, RestartError, Rotation, Solid,
+    SurfaceElement, Twist, UnresolvedFilm, Vector, Wrench,
+};
 pub use material::Material;
+pub use nalgebra;
 #[cfg(feature = "mesh")]
 pub use overlap::FacetIndex;
 pub use overlap::{BoxKind, CellOverlap, Normal, Overlap, OverlapSolver, Refinement, Route, SubBox, overlap};
@@ -66,3 +73,8 @@ pub use shapes::{
     Polygon, Shape, SmoothConvex, Sphere, Union,
 };
 pub use vtp::BodyFrames;
+
+/// The program of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

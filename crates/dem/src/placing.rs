@@ -8,7 +8,7 @@
 //! ```
 //! use dem::placing::{RandomAddition, Region, SizeDistribution};
 //! use dem::{Shape, Sphere};
-//! use interfaces::{Aabb, Vector};
+//! use dem::{Aabb, Vector};
 //! use std::f64::consts::PI;
 //!
 //! // Grains of 1 to 4 mm fill a tenth of a periodic box of 40 mm.

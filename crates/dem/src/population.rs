@@ -19,7 +19,7 @@ use interfaces::{
 ///
 /// ```
 /// use dem::{Entrant, HalfSpace, Inflow, Material, Population, RigidBodies, Sphere, placing::Region};
-/// use interfaces::{Aabb, Dynamics, Freedom, Kinematics, Periods, Point, Twist, Vector};
+/// use dem::{Aabb, Dynamics, Freedom, Kinematics, Periods, Point, Twist, Vector};
 /// use std::sync::Arc;
 ///
 /// let mut bodies = RigidBodies::new(Periods::default());

@@ -11,7 +11,7 @@ use std::sync::Arc;
 ///
 /// ```
 /// use dem::{Cuboid, Material, PrescribedMotion, RigidBodies};
-/// use interfaces::{Dynamics, Freedom, Kinematics, Periods, Pose, Twist, Vector};
+/// use dem::{Dynamics, Freedom, Kinematics, Periods, Pose, Twist, Vector};
 ///
 /// // A flap of 20 cm that swings about a hinge at its lower end.
 /// let (hinge, pose) = ([0.0; 3].into(), Pose::at([0.0, 0.1, 0.0]));

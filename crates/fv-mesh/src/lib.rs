@@ -18,6 +18,7 @@
 //! assert!((decay - (-4.0 * 0.1 * flow.time()).exp()).abs() < 2e-3);
 //! # Ok::<(), fv_mesh::FlowError>(())
 //! ```
+#![doc(html_root_url = "https://docs.rs/siltflow-fv-mesh/latest")]
 #![deny(missing_docs)]
 
 mod across_stream;
@@ -80,7 +81,15 @@ pub use fluid::Fluid;
 pub use grid::CartesianGrid;
 pub use hooked::Hooked;
 pub use hooks::{BodyForce, Boussinesq, ForceField, Hooks, ImmersedForcing};
+pub use interfaces::{
+    Aabb, Bodies, BodyId, Cell, Checkpoint, Closure, CutCells, CutComponent, CutFace, CutNode, CutWalls,
+    Equation, Freedom, Inertia, Kinematics, Lattice, LawOfTheWall, Link, LogSlope, MeshGeometry, Nodes,
+    OpenFace, Point, Polyhedron, Pose, Renumbering, RestartError, Rotation, Solid, SolidPoint, SolveError,
+    SolveInfo, SurfaceElement, ThinPart, Transport, Twist, Vector, VelocityField, WallPiece, WallPoint,
+    WallRow, Wrench,
+};
 pub use modelled::{ClosureSlot, Modelled};
+pub use nalgebra;
 pub use output::{CellWriter, OutputError, Precision, TimeSeries};
 pub use piso::{Piso, PisoParams, TimeScheme};
 pub use pressure::PressureSolver;
@@ -89,6 +98,12 @@ pub use sample::{Extreme, Integrals, Line, Norms, Plane, Probes, Quantity, Sampl
 pub use scalar::{Given, Scalar, ScalarBoundaries, ScalarPatch, ScalarSide, ScalarTransport, Settling};
 pub use side_power::SidePower;
 pub use simple::{Simple, SimpleInfo, SimpleParams, WallStress};
+pub use sprs;
 pub use statistics::FlowStatistics;
 pub use transport::{CellTransport, FlowTransport, TransportMethod, TransportParams};
 pub use velocity::Velocity;
+
+/// The program of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -8,7 +8,7 @@
 //! * [`SmoothForcing`]: forces on surface markers spread by a smooth kernel: for bodies that move.
 //!
 //! Bodies at rest may be walls of the flow itself instead: [`cut_walls`] tells where they cut links and faces of the grid, and
-//! a flow that takes [`interfaces::CutWalls`] is of second order up to them.
+//! a flow that takes [`CutWalls`] is of second order up to them.
 //!
 //! [`SurfaceStress`] tells pressure and friction on surfaces from the fields beside them. [`ImmersedScalar`] holds scalars to values or
 //! gradients given on bodies ([`Reconstruction`] is what both it and `Hfdib` use), [`Pockets`] finds fluid that bodies
@@ -19,11 +19,10 @@
 //! Turbulence models get the distance from bodies and walls from [`WallDistance`], and what wall functions need beside bodies
 //! from [`WallRows`]; beside bodies that a smooth forcing moves, all of it from [`NearWalls`].
 //!
-//! The crate works on any [`interfaces::VelocityField`] and any [`interfaces::Bodies`].
+//! The crate works on any [`VelocityField`] and any [`Bodies`].
 //!
 //! ```
-//! use ibm::{SolidFraction, StaticBodies};
-//! use interfaces::{Aabb, Lattice, Nodes, Point, Pose, Solid, Vector};
+//! use ibm::{Aabb, Lattice, Nodes, Point, Pose, Solid, SolidFraction, StaticBodies, Vector};
 //! struct Disc(f64);
 //! impl Solid for Disc {
 //!     fn signed_distance(&self, x: Point, _: f64) -> f64 {
@@ -44,6 +43,7 @@
 //! assert!((area / (std::f64::consts::PI * 0.09) - 1.0).abs() < 1e-3);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+#![doc(html_root_url = "https://docs.rs/siltflow-ibm/latest")]
 #![deny(missing_docs)]
 
 mod clip;
@@ -89,7 +89,14 @@ pub use forcing::{Forcing, Layer, ViscousStep};
 pub use fraction::{cell_fraction, plane_fraction};
 pub use hfdib::Hfdib;
 pub use immersed_scalar::ImmersedScalar;
+pub use interfaces::{
+    Aabb, Bodies, BodyId, Closure, CutCells, CutComponent, CutFace, CutNode, CutWalls, Equation, Freedom,
+    Inertia, Kinematics, LENGTH_PRECISION, Lattice, Link, LogSlope, Nodes, OpenFace, Periods, Point,
+    Polyhedron, Pose, Renumbering, Rotation, Solid, SolidPoint, SolveError, SolveInfo, SurfaceElement,
+    ThinPart, Transport, Twist, UnresolvedFilm, Vector, VelocityField, WallPiece, WallPoint, WallRow, Wrench,
+};
 pub use kernel::{Kernel, WIDEST};
+pub use nalgebra;
 pub use near_walls::NearWalls;
 pub use pockets::{Pocket, Pockets};
 pub use profile::{Given, Profile, Weights};
@@ -102,3 +109,8 @@ pub use surface_flux::SurfaceFlux;
 pub use surface_stress::{SurfaceLoads, SurfacePoint, SurfaceStress};
 pub use wall_distance::WallDistance;
 pub use wall_rows::{WallCell, WallRows};
+
+/// The program of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

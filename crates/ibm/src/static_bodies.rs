@@ -6,7 +6,7 @@ use nalgebra::Matrix3;
 ///
 /// ```
 /// use ibm::StaticBodies;
-/// use interfaces::{Aabb, Kinematics, Point, Pose, Solid, Vector};
+/// use ibm::{Aabb, Kinematics, Point, Pose, Solid, Vector};
 ///
 /// struct Disc(f64);
 /// impl Solid for Disc {

@@ -15,6 +15,7 @@
 //! let pose = Pose::at([0.0, 1.0, 0.0]);
 //! assert_eq!(pose.to_body([0.0, 3.0, 0.0].into()).y, 2.0);
 //! ```
+#![doc(html_root_url = "https://docs.rs/siltflow-interfaces/latest")]
 #![deny(missing_docs)]
 
 mod bodies;
@@ -45,6 +46,7 @@ pub use geometry::{
 pub use lattice::{Lattice, VelocityField};
 pub use law_of_the_wall::LawOfTheWall;
 pub use mesh::{Cell, MeshGeometry};
+pub use nalgebra;
 pub use nodes::Nodes;
 pub use renumbering::Renumbering;
 pub use restart::{Checkpoint, RestartError};
@@ -53,3 +55,8 @@ pub use solid::{Polyhedron, Solid, SurfaceElement};
 pub use thin_part::ThinPart;
 pub use transport::{Closure, Equation, LogSlope, SolveError, SolveInfo, Transport};
 pub use wall_row::{WallPoint, WallRow};
+
+/// The program of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

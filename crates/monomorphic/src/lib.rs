@@ -2,6 +2,7 @@
 //! them, which takes minutes, and so do its tests. Here they are compiled once.
 //!
 //! All of it runs on the calling thread alone, so that results do not depend on the number of threads.
+#![doc(html_root_url = "https://docs.rs/siltflow-monomorphic/latest")]
 #![forbid(unsafe_code)]
 
 mod decompositions;
@@ -12,10 +13,17 @@ mod sparse;
 
 pub use decompositions::{TriangularFactor, add_gram, self_adjoint_eigen, thin_svd};
 pub use dense::{add_product, inverse, self_adjoint_eigenvectors};
+pub use faer;
 pub use faer::{ColRef, Mat, MatMut, MatRef};
 pub use least_squares::LeastSquares;
+pub use rustfft;
 pub use solve::{DenseLu, Qr, solve_positive};
 pub use sparse::{Cholesky, FactorError, Lu, Pattern};
+
+/// The program of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 use rustfft::{Fft, FftPlanner};
 use std::sync::Arc;

@@ -17,6 +17,7 @@
 //! assert!((out[50] - field(50, 1.234)).abs() < 1e-4);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+#![doc(html_root_url = "https://docs.rs/siltflow-mor/latest")]
 #![forbid(unsafe_code)]
 
 pub mod galerkin;
@@ -26,4 +27,11 @@ pub mod pod;
 pub mod shifted;
 pub mod snapshots;
 
-pub use monomorphic::{Mat, MatRef};
+pub use interfaces::nalgebra;
+pub use interfaces::{Point, Pose, Rotation, SnapshotSink, Vector};
+pub use monomorphic::{Mat, MatMut, MatRef, faer};
+
+/// The program of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

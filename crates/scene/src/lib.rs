@@ -28,6 +28,7 @@
 //! assert!(problems.to_string().contains("did you mean \"nu\""));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+#![doc(html_root_url = "https://docs.rs/siltflow-scene/latest")]
 #![deny(missing_docs)]
 
 mod any_simulation;
@@ -72,6 +73,10 @@ mod wall_iterations;
 mod watch;
 
 pub use build_error::{BuildError, PathProblem};
+pub use coupling;
+pub use dem;
+pub use fv_mesh;
+pub use ibm;
 pub use options::Options;
 pub use plan::Plan;
 pub use problem::Problems;
@@ -79,6 +84,12 @@ pub use result::{Compared, Ending, RunResult};
 pub use run::RunError;
 pub use schema::{json_schema, manual};
 pub use summary::{TABLE_HEAD, empty_row};
+pub use turb;
+
+/// The program of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 use document::Document;
 use identity::Identity;

@@ -1,8 +1,8 @@
-//! Turbulence models for any flow that is an [`interfaces::Transport`]: two-equation models ([`KOmega`], [`KEpsilon`],
+//! Turbulence models for any flow that is an [`Transport`]: two-equation models ([`KOmega`], [`KEpsilon`],
 //! [`RealizableKEpsilon`], [`KOmegaSst`]), sub-grid models ([`Smagorinsky`], [`Wale`]), [`WallFunctions`], and what enters
 //! ([`Inflow`]).
 //!
-//! All are [`interfaces::Closure`]s. They see the flow through that trait and walls through [`interfaces::WallRow`]s alone, so they
+//! All are [`Closure`]s. They see the flow through that trait and walls through [`WallRow`]s alone, so they
 //! serve walls of the box and immersed ones alike.
 //!
 //! ```
@@ -14,6 +14,7 @@
 //! assert_eq!(model.k().len(), 1000);
 //! # Ok::<(), turb::TurbulenceError>(())
 //! ```
+#![doc(html_root_url = "https://docs.rs/siltflow-turb/latest")]
 #![deny(missing_docs)]
 
 mod error;
@@ -26,9 +27,19 @@ mod wall;
 
 pub use error::TurbulenceError;
 pub use inflow::Inflow;
+pub use interfaces::nalgebra;
+pub use interfaces::{
+    Checkpoint, Closure, Equation, LawOfTheWall, LogSlope, RestartError, SolveError, SolveInfo, Transport,
+    Vector, WallPoint, WallRow,
+};
 pub use les::{Smagorinsky, SmagorinskyConstants, Wale, WaleConstants};
 pub use two_equation::{
     Controls, Invariants, KEpsilon, KOmega, KOmegaSst, Law, Local, Realizable, RealizableKEpsilon, Scale,
     Sst, StandardKEpsilon, Terms, TwoEquation, Wilcox,
 };
 pub use wall::{Sublayer, WallFunctions, WallShear, YPlus};
+
+/// The program of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

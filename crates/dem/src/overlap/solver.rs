@@ -50,7 +50,7 @@ impl fmt::Display for Route {
 ///
 /// ```
 /// use dem::{OverlapSolver, Sphere};
-/// use interfaces::Pose;
+/// use dem::Pose;
 ///
 /// let ball = Sphere::new(1.0)?;
 /// let mut solver = OverlapSolver::new();

@@ -120,7 +120,7 @@ const ROUNDED: f64 = 1e-2;
 ///
 /// ```
 /// use dem::placing::{BodyRow, read_bodies, write_bodies};
-/// use interfaces::Pose;
+/// use dem::Pose;
 ///
 /// let rows = [BodyRow { size: Some(0.01), kind: "gravel".into(), ..Pose::at([0.1, 0.2, 1.0 / 3.0]).into() }];
 /// let mut file = Vec::new();

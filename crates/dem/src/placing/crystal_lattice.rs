@@ -25,7 +25,7 @@ pub enum LatticeKind {
 ///
 /// ```
 /// use dem::placing::{CrystalLattice, LatticeKind, Orientations};
-/// use interfaces::{Aabb, Pose};
+/// use dem::{Aabb, Pose};
 ///
 /// // Bodies of 8 mm, 10 mm apart, not quite in order but never nearer than 0.5 mm to one another.
 /// let lattice = CrystalLattice::new(LatticeKind::HexagonalClosePacked, 0.01)?;

@@ -16,7 +16,7 @@ use interfaces::{Aabb, Point, Pose, Solid, Vector};
 /// ```
 /// use dem::placing::{PlacingError, RandomAddition, Region};
 /// use dem::{HalfSpace, Shape, Sphere};
-/// use interfaces::{Point, Pose, Vector};
+/// use dem::{Point, Pose, Vector};
 ///
 /// let ball = Sphere::new(0.01)?;
 /// let floor = HalfSpace::new(Point::origin(), Vector::z())?;

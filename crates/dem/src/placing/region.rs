@@ -7,7 +7,7 @@ use interfaces::{Aabb, Point, Pose, Solid, Vector};
 ///
 /// ```
 /// use dem::placing::Region;
-/// use interfaces::{Aabb, Pose};
+/// use dem::{Aabb, Pose};
 ///
 /// // A channel that repeats along x, with walls along y and z.
 /// let bounds = Aabb { min: [0.0; 3].into(), max: [0.4, 0.1, 0.1].into() };

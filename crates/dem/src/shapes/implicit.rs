@@ -11,7 +11,7 @@ use std::sync::Mutex;
 ///
 /// ```
 /// use dem::{Implicit, Shape};
-/// use interfaces::{Aabb, Point, Solid, Vector};
+/// use dem::{Aabb, Point, Solid, Vector};
 ///
 /// struct Torus;
 /// impl Solid for Torus {

@@ -1,9 +1,9 @@
 //! A disc settles in a periodic box of water.
+use coupling::dem::{Disc, Material, RigidBodies};
+use coupling::fv_mesh::{CartesianGrid, Fluid, Projection, Side};
+use coupling::ibm::SmoothForcing;
+use coupling::{BodyId, Freedom, Kinematics, Periods, Pose, Twist, Vector};
 use coupling::{Particles, Simulation, WeightBalance};
-use dem::{Disc, Material, RigidBodies};
-use fv_mesh::{CartesianGrid, Fluid, Projection, Side};
-use ibm::SmoothForcing;
-use interfaces::{BodyId, Freedom, Kinematics, Periods, Pose, Twist, Vector};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (size, water) = ([4e-3, 8e-3], Fluid { density: 1000.0, viscosity: 1e-6 });

@@ -1,6 +1,6 @@
 //! A disc falls on a floor and bounces, without any fluid.
+use dem::{Bodies, Dynamics, Freedom, Kinematics, Load, Periods, Point, Pose, Twist, Vector, Wrench};
 use dem::{DemError, Disc, HalfSpace, Material, RigidBodies};
-use interfaces::{Bodies, Dynamics, Freedom, Kinematics, Load, Periods, Point, Pose, Twist, Vector, Wrench};
 
 fn main() -> Result<(), DemError> {
     let mut bodies = RigidBodies::new(Periods::default());

@@ -1,6 +1,5 @@
 //! The share of a cell that a sphere fills.
-use ibm::cell_fraction;
-use interfaces::Vector;
+use ibm::{Vector, cell_fraction};
 
 fn main() {
     let (radius, h) = (1.0, 0.1);

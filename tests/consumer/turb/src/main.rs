@@ -1,6 +1,6 @@
 //! `turb` alone: turbulence that decays in a flow of the user's own, which is one cell here, and what the law of the wall says.
-use interfaces::{Closure, Equation, SolveError, SolveInfo, Transport};
-use turb::{Inflow, KEpsilon, StandardKEpsilon, WallFunctions};
+use turb::{Closure, Equation, Inflow, KEpsilon, StandardKEpsilon, WallFunctions};
+use turb::{SolveError, SolveInfo, Transport};
 
 /// A box of fluid in which nothing differs from place to place.
 struct Still;

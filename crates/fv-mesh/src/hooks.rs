@@ -166,7 +166,36 @@ impl<const D: usize> BodyForce<D, Vec<Scalar<D>>> for Boussinesq {
 }
 
 /// Forces the velocity between predictor and projection, as immersed bodies do; `()` does not. So may a closure
-/// `|velocity, time, dt|`.
+/// `|velocity, time, dt|`. Nodes and values are those of [`VelocityField`](crate::VelocityField).
+///
+/// ```
+/// use fv_mesh::{CartesianGrid, FlowError, Fluid, Hooks, Profile, Projection, Side, Velocity};
+/// use fv_mesh::VelocityField;
+/// let grid = CartesianGrid::new([32, 16], [2.0, 1.0])?;
+/// let inlet = Side::Inlet(Profile::Uniform([1.0, 0.0, 0.0]));
+/// let sides = [[inlet, Side::ConvectiveOutlet], Side::FreeSlip.both()];
+/// let mut flow = Projection::new(grid, sides, Fluid { density: 1.0, viscosity: 0.01 })?;
+/// flow.set_velocity(|_| [1.0, 0.0]);
+/// // A disc in which the fluid is held.
+/// let disc = |velocity: &mut Velocity<2>, _time: f64, _dt: f64| -> Result<(), FlowError> {
+///     for c in 0..2 {
+///         let lattice = velocity.lattice(c).clone();
+///         let [rows, columns] = [lattice.range(1, 0.4, 0.6), lattice.range(0, 0.4, 0.6)];
+///         for node in rows.flat_map(|j| columns.clone().map(move |i| [i, j, 0])) {
+///             let x = lattice.position(node);
+///             if (x[0] - 0.5).hypot(x[1] - 0.5) < 0.1 && let Some(at) = lattice.index(node) {
+///                 velocity.component_mut(c)[at] = 0.0;
+///             }
+///         }
+///     }
+///     Ok(())
+/// };
+/// let mut hooks = Hooks::none().with_forcing(disc);
+/// for _ in 0..20 {
+///     flow.advance_with(0.02, &mut hooks)?;
+/// }
+/// # Ok::<(), FlowError>(())
+/// ```
 pub trait ImmersedForcing<const D: usize> {
     /// Changes the predicted velocity u* \[m/s\] of time `time` \[s\], the end of a step of `dt` \[s\]; the projection
     /// follows.

@@ -4,6 +4,9 @@ use interfaces::{Lattice, VelocityField};
 
 /// Velocity with component `c` on the faces normal to axis `c` (marker-and-cell staggering,
 /// Harlow & Welch 1965): entry (i, j, k) of component 0 is on the lower x face of cell (i, j, k).
+///
+/// [`VelocityField`] has the places of the nodes and the values, also to change;
+/// [`Sampler`](crate::Sampler) interpolates.
 #[derive(Clone, Debug)]
 pub struct Velocity<const D: usize> {
     pub(crate) components: [Field<D>; D],

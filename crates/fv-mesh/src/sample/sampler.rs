@@ -47,6 +47,18 @@ impl<const D: usize> Quantity<'_, D> {
 /// A cell field is extrapolated linearly from the last two cells in the half cell beside a bounded side, as its
 /// ghosts may hold anything, unless [`with_ghosts`](Self::with_ghosts) says that they carry the boundary values. Along
 /// periodic axes points and nodes repeat.
+///
+/// ```
+/// use fv_mesh::{CartesianGrid, Fluid, Projection, Sampler, Side};
+/// let fluid = Fluid { density: 1.0, viscosity: 0.1 };
+/// let grid = CartesianGrid::new([8, 8], [1.0, 1.0])?;
+/// let mut flow = Projection::new(grid, Side::Periodic.everywhere(), fluid)?;
+/// flow.set_velocity(|_| [1.0, 2.0]);
+/// let sampler = Sampler::new(flow.grid(), flow.sides());
+/// assert_eq!(sampler.velocity(flow.velocity(), [0.3, 0.4])?, [1.0, 2.0]);
+/// assert_eq!(sampler.at(flow.pressure(), [0.3, 0.4])?, 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Sampler<const D: usize> {
     grid: CartesianGrid<D>,

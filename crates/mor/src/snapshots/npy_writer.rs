@@ -11,12 +11,11 @@ use std::path::{Path, PathBuf};
 /// [`SnapshotAxis::First`](super::SnapshotAxis::First). The file is whole after each [`flush`](Self::flush).
 ///
 /// ```
-/// use interfaces::SnapshotSink;
 /// use mor::snapshots::{NpyArray, NpyWriter, SnapshotAxis, SnapshotSource};
 /// let path = std::env::temp_dir().join(format!("mor-writer-{}.npy", std::process::id()));
 /// let mut writer = NpyWriter::create(&path)?;
-/// writer.push(0.0, &[1.0, 2.0, 3.0]).unwrap();
-/// writer.push(0.1, &[4.0, 5.0, 6.0]).unwrap();
+/// writer.add(&[1.0, 2.0, 3.0])?;
+/// writer.add(&[4.0, 5.0, 6.0])?;
 /// writer.flush()?;
 /// let all = NpyArray::open(&path, SnapshotAxis::First)?.to_mat()?;
 /// assert_eq!(all[(2, 1)], 6.0);
@@ -107,22 +106,28 @@ impl NpyWriter {
         };
         write().map_err(|e| SnapshotError::io(&self.path, &e))
     }
-}
 
-impl SnapshotSink for NpyWriter {
-    fn push(&mut self, _: f64, field: &[f64]) -> Result<(), Box<dyn Error + Send + Sync>> {
+    /// Adds a snapshot; all have the same length.
+    ///
+    /// # Errors
+    /// [`SnapshotError::Shape`] for another length, [`SnapshotError::Io`].
+    pub fn add(&mut self, field: &[f64]) -> Result<(), SnapshotError> {
         let expected = *self.rows.get_or_insert(field.len());
         if field.len() != expected {
             let what = format!("snapshot {}", self.snapshots);
-            return Err(
-                SnapshotError::Shape { path: self.path.clone(), what, expected, found: field.len() }.into()
-            );
+            return Err(SnapshotError::Shape { path: self.path.clone(), what, expected, found: field.len() });
         }
         for value in field {
             self.file.write_all(&value.to_le_bytes()).map_err(|e| SnapshotError::io(&self.path, &e))?;
         }
         self.snapshots += 1;
         Ok(())
+    }
+}
+
+impl SnapshotSink for NpyWriter {
+    fn push(&mut self, _: f64, field: &[f64]) -> Result<(), Box<dyn Error + Send + Sync>> {
+        Ok(self.add(field)?)
     }
 }
 

@@ -2,6 +2,7 @@
 //! process.
 //!
 //! Bodies are known by [`interfaces::Solid`] alone. Lengths in metres and speeds in m/s come in; axes of [`Frames`] show millimetres and mm/s.
+#![doc(html_root_url = "https://docs.rs/siltflow-render/latest")]
 
 mod axes;
 mod canvas;
@@ -24,3 +25,10 @@ pub mod summary;
 mod text;
 
 pub use frames::{Disc, Domain, Frames, Scalar};
+pub use interfaces::{Point, Pose, Solid, Vector};
+pub use nalgebra;
+
+/// The program of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -11,6 +11,7 @@
 //! report.write(Path::new("report.html"))?;
 //! # Ok::<(), report::ReportError>(())
 //! ```
+#![doc(html_root_url = "https://docs.rs/siltflow-report/latest")]
 mod comparison;
 mod error;
 mod figures;
@@ -27,6 +28,11 @@ mod text;
 
 pub use error::ReportError;
 pub use grid_convergence::{GridConvergence, GridValue};
+
+/// The program of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 use run_folder::RunFolder;
 use std::fs::File;

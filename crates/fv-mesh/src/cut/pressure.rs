@@ -145,7 +145,7 @@ impl CutPressure {
     /// Progress of the iterations to K⁻¹; none if it is made or not worth keeping.
     pub(crate) fn inverse_outlook(&self) -> Option<InverseOutlook> {
         let awaited = self.invertible && self.inverse.is_none() && self.all_iterations > 0;
-        awaited.then(|| InverseOutlook {
+        awaited.then_some(InverseOutlook {
             unknowns: self.cells.len(),
             iterations: self.all_iterations,
             seconds: self.iteration_time.as_secs_f64(),

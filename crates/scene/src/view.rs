@@ -140,7 +140,7 @@ pub(crate) trait Flow<const D: usize> {
     fn sides(&self) -> &Sides<D>;
     fn velocity(&self) -> &Velocity<D>;
     fn pressure(&self) -> &Field<D>;
-    fn centred_velocity(&self, c: usize) -> impl Iterator<Item = f64> + '_;
+    fn centred_velocity(&self, c: usize) -> Box<dyn Iterator<Item = f64> + '_>;
     fn statistics(&mut self) -> FlowStatistics;
     fn time(&self) -> f64;
     fn steps(&self) -> u64;
@@ -180,8 +180,8 @@ macro_rules! flow {
         fn pressure(&self) -> &Field<D> {
             self.$part.pressure()
         }
-        fn centred_velocity(&self, c: usize) -> impl Iterator<Item = f64> + '_ {
-            self.$part.centred_velocity(c)
+        fn centred_velocity(&self, c: usize) -> Box<dyn Iterator<Item = f64> + '_> {
+            Box::new(self.$part.centred_velocity(c))
         }
         fn statistics(&mut self) -> FlowStatistics {
             self.$part.statistics()
@@ -261,9 +261,9 @@ impl<const D: usize> Flow<D> for Steady<D> {
 }
 
 /// A flow and what is immersed in it, as observers see them.
-pub(crate) struct Seen<'a, const D: usize, A, P> {
-    pub(crate) flow: &'a mut A,
-    pub(crate) guests: &'a P,
+pub(crate) struct Seen<'a, const D: usize> {
+    pub(crate) flow: &'a mut dyn Flow<D>,
+    pub(crate) guests: &'a dyn Guests,
     pub(crate) timings: Timings,
 }
 
@@ -358,7 +358,7 @@ fn in_single_or_double<'a, const D: usize>(
     }
 }
 
-impl<const D: usize, A: Flow<D>, P: Guests> View for Seen<'_, D, A, P> {
+impl<const D: usize> View for Seen<'_, D> {
     fn axis(&self, a: usize) -> &Axis {
         self.flow.grid().axis(a)
     }

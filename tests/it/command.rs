@@ -83,3 +83,38 @@ fn a_run_that_is_stopped_is_resumed() {
     assert!(resumed.status.success(), "{resumed:?}");
     std::fs::remove_dir_all(&out).unwrap();
 }
+
+/// A body, a surface with a hole, and one whose faces do not agree, as it is and repaired.
+#[test]
+fn meshes_are_admitted_repaired_and_drawn() {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    let rock = root.join("scenes/rock.stl");
+    let [picture, copy, bad] = ["rock.png", "rock.obj", "bad.obj"].map(fresh);
+    let [rock, picture, copy, bad_file] = [&rock, &picture, &copy, &bad].map(|path| path.to_str().unwrap());
+    let told = siltflow(&["mesh", rock, "--picture", picture, "--out", copy, "--json"]);
+    let first: Value = serde_json::from_slice(&told.stdout).unwrap();
+    let again = siltflow(&["mesh", copy, "--json"]);
+    let second: Value = serde_json::from_slice(&again.stdout).unwrap();
+    assert_eq!(first["body"], second["body"]);
+    let volume = first["body"]["volume"].as_f64().unwrap();
+    let mass = first["body"]["mass"].as_f64().unwrap();
+    assert!(volume > 0.0 && (mass / volume / 1000.0 - 1.0).abs() < 1e-12, "{first}");
+    assert_eq!(std::fs::read(picture).unwrap()[1..4], *b"PNG");
+    // A tetrahedron with a face turned, then without it.
+    let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n";
+    std::fs::write(&bad, format!("{vertices}f 2 4 3\n")).unwrap();
+    let refused = siltflow(&["mesh", bad_file]);
+    let error = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(refused.status.code() == Some(2) && error.contains("--repair mends some such faults"), "{error}");
+    let repaired = siltflow(&["mesh", bad_file, "--repair", "--density", "2", "--unit", "2"]);
+    let text = printed(&repaired);
+    assert!(repaired.status.success() && text.contains("1 faces turned"), "{text}");
+    assert!(text.contains("mass at 2 kg/m³: 2.6667e0 kg"), "{text}");
+    std::fs::write(&bad, vertices).unwrap();
+    let open = siltflow(&["mesh", bad_file, "--repair"]);
+    assert_eq!(open.status.code(), Some(2), "{open:?}");
+    assert_eq!(siltflow(&["mesh", "rock.ply"]).status.code(), Some(2));
+    for file in [picture, copy, bad_file] {
+        std::fs::remove_file(file).unwrap();
+    }
+}

@@ -45,7 +45,7 @@ fn crates_meet_only_through_interfaces() {
                     // What the examples share stays out of the libraries and of the command.
                     (_, "example-support") => from == "siltflow" && dependency["kind"] == "dev",
                     // Pictures are for what shows runs; their tests draw shapes.
-                    ("siltflow", "render") => dependency["kind"] == "dev",
+                    ("siltflow", "render") => dependency["kind"] == "dev" || dependency["optional"] == true,
                     ("example-support" | "report" | "scene", "render") => true,
                     ("siltflow", "report") => dependency["optional"] == true,
                     ("scene", "report") => true,

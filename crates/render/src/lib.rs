@@ -25,7 +25,7 @@ pub mod summary;
 mod text;
 
 pub use frames::{Disc, Domain, Frames, Scalar};
-pub use interfaces::{Point, Pose, Solid, Vector};
+pub use interfaces::{Aabb, Point, Polyhedron, Pose, Solid, SurfaceElement, Vector};
 pub use nalgebra;
 
 /// The program of the README.

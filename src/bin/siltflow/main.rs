@@ -7,9 +7,11 @@
 //! siltflow check first.toml                      # cells, memory, steps, cost, doubts
 //! siltflow run first.toml --set time.end=0.1 --threads 2
 //! siltflow resume first.toml                     # after Ctrl-C
+//! siltflow mesh rock.stl --unit 1e-3 --picture rock.png
 //! siltflow report out/first                      # its page again; of several runs, a comparison
 //! ```
 mod check;
+mod mesh;
 mod outcome;
 mod report;
 mod run;
@@ -19,6 +21,7 @@ mod template;
 use crate::report::ReportArgs;
 use check::CheckArgs;
 use clap::{Parser, Subcommand};
+use mesh::MeshArgs;
 use outcome::{Failure, print};
 use run::{ResumeArgs, RunArgs};
 use std::path::PathBuf;
@@ -42,6 +45,8 @@ enum Command {
     Check(CheckArgs),
     /// Makes a page (HTML) of the folders of one or several runs.
     Report(ReportArgs),
+    /// Tells what a mesh file (STL, OBJ) is: faults, thin walls, mass properties, a picture.
+    Mesh(MeshArgs),
     /// Lists the scenes that come with the command and are run by their names.
     List {
         /// Prints JSON.
@@ -65,6 +70,7 @@ fn main() -> ExitCode {
         Command::Resume(args) => args.run(),
         Command::Check(args) => args.check(),
         Command::Report(args) => args.report(),
+        Command::Mesh(args) => args.mesh(),
         Command::List { json } => print(&shipped::list(json)).map(|()| 0),
         Command::New { path } => template::write(&path).map(|()| 0),
         Command::Manual => print(&scene::manual()).map(|()| 0),

@@ -194,14 +194,9 @@ pub(super) fn shape(
         "mesh" => {
             let path = context.path(t.text("file").unwrap_or_default());
             let unit = factor * t.number("unit").unwrap_or(1.0);
-            let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
             let told = |e: &dyn std::fmt::Display| t.fail("file", of_file(&path, e));
             let repair = t.flag("repair").unwrap_or(false);
-            let soup = match extension.as_deref() {
-                Some("stl") => TriangleSoup::from_stl(&path, unit),
-                Some("obj") => TriangleSoup::from_obj(&path, unit),
-                _ => return Err(told(&"which format? The name has to end in .stl or .obj")),
-            };
+            let soup = TriangleSoup::from_path(&path, unit);
             let weld = t.number("weld");
             let scaled = weld.map(|tolerance| factor * tolerance);
             let mended = soup.and_then(|soup| mended(soup, scaled, repair)).map_err(|e| told(&e))?;

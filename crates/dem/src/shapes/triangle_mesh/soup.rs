@@ -3,7 +3,7 @@ use super::welding::{Welded, is_collapsed};
 use super::{AdmissionReport, MeshError, RepairReport, TriangleMesh, obj, repair, stl};
 use std::collections::HashMap;
 use std::fs::File;
-use std::io::Read;
+use std::io::{self, Read, Write};
 use std::path::Path;
 
 /// Triangles that need not be a body yet: what a file holds. Look at them with
@@ -72,6 +72,38 @@ impl TriangleSoup {
     /// Those of [`from_stl`](Self::from_stl).
     pub fn from_obj(path: impl AsRef<Path>, unit: f64) -> Result<Self, MeshError> {
         Self::from_file(path.as_ref(), unit, Self::from_obj_bytes)
+    }
+
+    /// Triangles of a file whose name ends in `.stl` or `.obj`.
+    ///
+    /// # Errors
+    /// Those of [`from_stl`](Self::from_stl); [`MeshError::File`] for other endings.
+    pub fn from_path(path: impl AsRef<Path>, unit: f64) -> Result<Self, MeshError> {
+        let path = path.as_ref();
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        match ending.as_deref() {
+            Some("stl") => Self::from_stl(path, unit),
+            Some("obj") => Self::from_obj(path, unit),
+            _ => {
+                let what = "unknown format; give a file whose name ends in .stl or .obj".into();
+                Err(MeshError::File { path: path.into(), what })
+            }
+        }
+    }
+
+    /// Writes an OBJ file, from which [`from_obj`](Self::from_obj) reads the same numbers.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_obj(&self, out: &mut impl Write) -> io::Result<()> {
+        for [x, y, z] in &self.vertices {
+            writeln!(out, "v {x:e} {y:e} {z:e}")?;
+        }
+        for face in &self.faces {
+            let [a, b, c] = face.map(|vertex| vertex + 1);
+            writeln!(out, "f {a} {b} {c}")?;
+        }
+        Ok(())
     }
 
     fn from_file(

@@ -90,7 +90,7 @@ pub struct DrawnChart {
     pub svg: String,
     /// Its legend.
     pub legend: Vec<LegendEntry>,
-    /// What the drawing leaves out.
+    /// Notes on values that are left out.
     pub notes: Vec<String>,
 }
 

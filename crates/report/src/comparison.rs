@@ -128,7 +128,7 @@ fn grid_study(runs: &[RunFolder], rows: &[Row], group: &[usize]) -> Markup {
     let mut grids: Vec<(usize, f64)> =
         group.iter().filter_map(|i| Some((*i, cell_size(&runs[*i])?))).collect();
     grids.sort_by(|a, b| a.1.total_cmp(&b.1));
-    // Of runs with the same cells the first one counts.
+    // The first of runs with the same cells counts.
     let before = grids.len();
     grids.dedup_by(|b, a| (b.1 / a.1 - 1.0).abs() < 1e-9);
     let doubles = before - grids.len();

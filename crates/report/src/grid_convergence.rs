@@ -30,7 +30,7 @@ pub struct GridValue {
     pub value: f64,
 }
 
-/// What three grids say.
+/// Convergence over three grids.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GridConvergence {
     /// Monotone convergence.

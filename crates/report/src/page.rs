@@ -7,7 +7,7 @@ use crate::{comparison, figures, run_page};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::io::{self, Write};
 
-/// What a browser may do for the page: nothing but show what is in it.
+/// Content security policy: a browser shows what is in the page and requests nothing.
 const POLICY: &str =
     "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
 

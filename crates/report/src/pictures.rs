@@ -16,7 +16,7 @@ const PNG: [u8; 8] = [0x89, b'P', b'N', b'G', 0x0d, 0x0a, 0x1a, 0x0a];
 /// A picture on the page.
 #[derive(Clone, Debug)]
 pub(crate) struct Picture {
-    /// What it is labelled with.
+    /// Its label.
     pub(crate) label: String,
     path: PathBuf,
 }
@@ -37,7 +37,7 @@ impl Picture {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pictures {
     pub(crate) shown: Vec<Picture>,
-    /// What is left out, and why.
+    /// Notes on pictures that are left out.
     pub(crate) notes: Vec<String>,
 }
 

@@ -235,7 +235,7 @@ impl RunFolder {
         all
     }
 
-    /// How the run ended: whether well, and in words.
+    /// End of the run: whether it is complete, and a sentence.
     pub(crate) fn ending(&self) -> (bool, String) {
         let at =
             |value: &Value, unit: &str| value.as_f64().map(|x| format!("{}{unit}", crate::text::number(x)));

@@ -103,7 +103,7 @@ impl RunTable {
         Some(pairs.filter(|p| p.0.is_finite()).collect())
     }
 
-    /// What is damaged, as a note.
+    /// Note on damage.
     pub(crate) fn note(&self, name: &str) -> Option<String> {
         let [rows, values] = self.damaged;
         let mut parts = Vec::new();

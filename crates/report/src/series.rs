@@ -17,7 +17,7 @@ pub(crate) struct Series {
     pub(crate) chart: Chart,
     /// Whether all values are 0, and no chart is needed.
     pub(crate) zero: bool,
-    /// What its curves leave out.
+    /// Notes on values that curves leave out.
     pub(crate) notes: Vec<String>,
     /// Pointers of references that are drawn.
     pub(crate) drawn: Vec<String>,

@@ -61,7 +61,7 @@ impl Checkpoint for Whole<'_> {
     }
 }
 
-/// What the observers have kept.
+/// State of the observers.
 pub(crate) struct Kept<'a>(pub(crate) &'a mut Audience);
 
 impl Checkpoint for Kept<'_> {

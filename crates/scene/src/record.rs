@@ -1,4 +1,4 @@
-//! What a run leaves about itself before its first step: `plan.json` and `scene.toml`.
+//! Record of a run before its first step: `plan.json` and `scene.toml`.
 use crate::document::{Document, Value as Item};
 use crate::plan::Plan;
 use crate::setup::{Algorithm, Setup};

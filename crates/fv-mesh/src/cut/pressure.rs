@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 /// Σ_f open_f g_f (φ_N − φ_P) = V f with g_f = A_f/d_f, by the solver of the box and a system of the cells of the fluid with
 /// faces that are not wholly open.
 ///
-/// What the walls take away from such a cell stands on the right as a source,
+/// The share of the fluxes that the walls close is a source on the right,
 ///
 /// ```text
 /// σ = C φ,   C φ = Σ_f (1 − open_f) g_f (φ_N − φ_P)/V,   L φ = f + P σ
@@ -55,7 +55,7 @@ pub(crate) struct CutPressure {
     product: Vec<f64>,
     /// Directions of the last solutions, unless K⁻¹ is made.
     pub(super) recent: Option<Recent>,
-    /// Of the last solution.
+    /// Iterations of the last solution.
     pub(crate) iterations: usize,
     /// Cells of which no velocity is computed.
     orphans: Vec<Orphan>,
@@ -242,14 +242,14 @@ impl CutPressure {
         loop {
             whole(self, solver, phi)?;
             let scale = self.measure(phi);
-            // What is asked is reached but for round-off, or known pairs have lost theirs.
+            // Limits of round-off: of the inverse, and of known directions.
             let (goal, enough) = match &self.recent {
                 None => (EXACT, corrections == 1),
                 Some(_) => (if corrections == 0 { tolerance } else { SLACK * tolerance }, false),
             };
             let goal = goal * goal * scale;
             if enough || square(&self.residual) <= goal {
-                // What the box's equation makes of the solid would bear on sides of the box that it touches.
+                // Values of the box's equation inside the solid would act on sides of the box that it touches.
                 self.solid.iter().for_each(|&(cell, _)| phi[cell] = 0.0);
                 return Ok(());
             }
@@ -362,7 +362,7 @@ impl CutPressure {
 }
 
 impl CutCell {
-    /// What the walls take away from the cell: C φ.
+    /// Flux of the closed shares of the cell's faces: C φ.
     fn taken(&self, phi: &[f64]) -> f64 {
         self.closed.iter().map(|&(neighbour, weight)| weight * (phi[neighbour] - phi[self.cell])).sum()
     }

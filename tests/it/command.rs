@@ -114,6 +114,7 @@ fn meshes_are_admitted_repaired_and_drawn() {
     let open = siltflow(&["mesh", bad_file, "--repair"]);
     assert_eq!(open.status.code(), Some(2), "{open:?}");
     assert_eq!(siltflow(&["mesh", "rock.ply"]).status.code(), Some(2));
+    assert_eq!(siltflow(&["mesh", rock, "--cell=-1"]).status.code(), Some(2));
     for file in [picture, copy, bad_file] {
         std::fs::remove_file(file).unwrap();
     }

@@ -72,8 +72,8 @@ const FAULTS: &str = "<script>window.faults = []; \
     addEventListener('error', e => faults.push(String(e.message)), true); \
     addEventListener('securitypolicyviolation', e => faults.push(e.blockedURI));</script>";
 
-/// Moves the slider to the start; notes what the page then shows and what it has fetched, once the picture is there: the browser's
-/// virtual time waits for what is loaded.
+/// Moves the slider to the start; notes what the page then shows and what it has fetched, once the
+/// picture is there: the browser's virtual time waits for what is loaded.
 const SLIDE: &str = "<script>\
     const [img, slider] = ['img', 'input'].map(tag => document.querySelector('[data-pictures] ' + tag)); \
     const last = img.src; \

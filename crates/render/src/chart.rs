@@ -1,4 +1,5 @@
-//! Line charts as SVG for web pages: ink takes the colour of the text, so that they are readable on light and dark pages.
+//! Line charts as SVG for web pages: ink takes the colour of the text, so that they are readable on
+//! light and dark pages.
 use crate::chart_scale::{Scale, tick_label};
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;

@@ -109,7 +109,8 @@ impl Scale {
         ticks.map(|tick| tick_label(tick, self).chars().count()).max().unwrap_or(1).min(8)
     }
 
-    /// Polylines within the plot, with y on scale `y`. Interrupted where a value is not finite and where the line leaves the range.
+    /// Polylines within the plot, with y on scale `y`. Interrupted where a value is not finite and
+    /// where the line leaves the range.
     pub(crate) fn pieces(&self, y: &Self, points: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
         let Range { start, end } = y.range();
         let mut pieces = Vec::new();

@@ -1,7 +1,8 @@
 //! Errors of reports.
 use std::path::PathBuf;
 
-/// Why a report cannot be made. What is missing or damaged within a run's folder is a note on the page instead.
+/// Why a report cannot be made. What is missing or damaged within a run's folder is a note on the
+/// page instead.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
     /// No folder was given.

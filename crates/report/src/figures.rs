@@ -48,7 +48,8 @@ fn chart(series: &Series) -> Markup {
     }
 }
 
-/// The last picture of each of the runs, under a slider for the others, which are in elements of their own ([`Pictures::write_data`]).
+/// The last picture of each of the runs, under a slider for the others, which are in elements of
+/// their own ([`Pictures::write_data`]).
 pub(crate) fn pictures(runs: &[(&str, &Pictures)]) -> Markup {
     let most = runs.iter().map(|(_, p)| p.shown.len()).max().unwrap_or(0);
     html! {

@@ -1,13 +1,15 @@
 //! Observed order of convergence and Richardson extrapolation from three grids.
 //!
-//! With representative cell sizes h₁ < h₂ < h₃, r₂₁ = h₂/h₁, r₃₂ = h₃/h₂ and φᵢ = φ + C hᵢᵖ, the order p solves
+//! With representative cell sizes h₁ < h₂ < h₃, r₂₁ = h₂/h₁, r₃₂ = h₃/h₂ and φᵢ = φ + C hᵢᵖ, the
+//! order p solves
 //!
 //! ```text
 //! (φ₃ − φ₂)/(φ₂ − φ₁) = r₂₁ᵖ (r₃₂ᵖ − 1)/(r₂₁ᵖ − 1)
 //! φ_ext = φ₁ + (φ₁ − φ₂)/(r₂₁ᵖ − 1),   GCI₂₁ = 1.25 |(φ₁ − φ₂)/φ₁| / (r₂₁ᵖ − 1)
 //! ```
 //!
-//! Roache 1994, J. Fluids Eng. 116, 405–413; Celik, Ghia, Roache & Freitas 2008, J. Fluids Eng. 130, 078001.
+//! Roache 1994, J. Fluids Eng. 116, 405–413; Celik, Ghia, Roache & Freitas 2008, J. Fluids Eng.
+//! 130, 078001.
 use crate::text::number;
 
 /// Safety factor of the grid convergence index with three grids (Roache 1994).
@@ -141,7 +143,8 @@ mod tests {
         }
     }
 
-    /// Table 1 of Celik et al. (2008), the reattachment length: 18000, 8000 and 4500 cells of the plane.
+    /// Table 1 of Celik et al. (2008), the reattachment length: 18000, 8000 and 4500 cells of the
+    /// plane.
     #[test]
     fn celiks_example() {
         let h = |n: f64| (1.0 / n).sqrt();

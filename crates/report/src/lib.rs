@@ -1,8 +1,10 @@
-//! One page of one or several runs: what was run, warnings, results against references, curves, pictures, cost, the scene's text.
+//! One page of one or several runs: what was run, warnings, results against references, curves,
+//! pictures, cost, the scene's text.
 //!
-//! The page is one HTML file that needs no other file and no network. It is made from the folders that `siltflow run` writes; what is
-//! missing in them or damaged is named on the page. Several runs are shown side by side, and those that differ in their grid alone as
-//! a [grid study](GridConvergence).
+//! The page is one HTML file that needs no other file and no network. It is made from the folders
+//! that `siltflow run` writes; what is missing in them or damaged is named on the page. Several
+//! runs are shown side by side, and those that differ in their grid alone as a [grid
+//! study](GridConvergence).
 //!
 //! ```no_run
 //! use std::path::Path;
@@ -58,7 +60,7 @@ impl Report {
             return Err(ReportError::NoRun);
         }
         let mut runs = folders.iter().map(|f| RunFolder::read(f.as_ref())).collect::<Result<Vec<_>, _>>()?;
-        // Folders of the same name are told apart by their paths.
+        // Paths distinguish folders of the same name.
         let labels: Vec<String> = runs.iter().map(|run| run.label.clone()).collect();
         for run in &mut runs {
             if labels.iter().filter(|label| **label == run.label).count() > 1 {

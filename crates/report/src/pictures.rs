@@ -49,7 +49,8 @@ pub(crate) struct Listed {
     bytes: u64,
 }
 
-/// The pictures in `folder`: those of `index` (file name, time) if there is one, otherwise all. Files that are not there are notes.
+/// The pictures in `folder`: those of `index` (file name, time) if there is one, otherwise all.
+/// Files that are not there are notes.
 pub(crate) fn list(
     folder: &Path,
     index: Option<&[(String, f64)]>,
@@ -95,7 +96,8 @@ pub(crate) fn list(
 }
 
 impl Pictures {
-    /// Reads as many of the `listed` pictures as fit into `room` bytes of the page, at equal distances with the first and the last.
+    /// Reads as many of the `listed` pictures as fit into `room` bytes of the page, at equal
+    /// distances with the first and the last.
     pub(crate) fn read(listed: &[Listed], room: u64) -> Self {
         let mut out = Self::default();
         let largest = listed.iter().map(|one| one.bytes * 4 / 3 + 100).max().unwrap_or(1);
@@ -127,8 +129,8 @@ impl Pictures {
         out
     }
 
-    /// Writes the element with labels and pictures (base64) that the slider reads, picture by picture: a run's memory is not
-    /// exceeded by that of its page.
+    /// Writes the element with labels and pictures (base64) that the slider reads, picture by
+    /// picture: a run's memory is not exceeded by that of its page.
     pub(crate) fn write_data(&self, number: usize, page: &mut impl Write) -> io::Result<()> {
         write!(page, "<script type=\"application/json\" id=\"pictures-{number}\">[")?;
         for (i, picture) in self.shown.iter().enumerate() {

@@ -113,7 +113,7 @@ fn results(run: &RunFolder, series: &[Series]) -> Markup {
     let values = values(run);
     let (with, without): (Vec<&RunValue>, Vec<&RunValue>) =
         values.iter().partition(|v| v.reference.is_some());
-    // References that no curve can show are told.
+    // Notes name references that no curve shows.
     let drawn: Vec<&String> = series.iter().flat_map(|s| &s.drawn).collect();
     let shown = |v: &f64| number(*v);
     html! {

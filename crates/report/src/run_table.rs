@@ -18,7 +18,8 @@ pub(crate) struct Rows {
 pub(crate) struct RunTable {
     /// Names of the columns of numbers; the first is the time or the iteration.
     pub(crate) names: Vec<String>,
-    /// Rows by body, in the order of the file; a table without bodies has one entry with an empty name.
+    /// Rows by body, in the order of the file; a table without bodies has one entry with an empty
+    /// name.
     pub(crate) bodies: Vec<(String, Rows)>,
     /// Bodies beyond [`MOST_BODIES`].
     pub(crate) more_bodies: usize,
@@ -94,8 +95,8 @@ impl RunTable {
         self.bodies.iter().all(|(_, rows)| rows.columns.first().is_none_or(Vec::is_empty))
     }
 
-    /// Points (first column, column `name`) of the body with this number; none without such a column. Rows whose first column
-    /// is not finite are left out.
+    /// Points (first column, column `name`) of the body with this number; none without such a
+    /// column. Rows whose first column is not finite are left out.
     pub(crate) fn points(&self, body: usize, name: &str) -> Option<Vec<(f64, f64)>> {
         let column = self.names.iter().position(|n| n == name)?;
         let rows = &self.bodies.get(body)?.1;

@@ -55,7 +55,8 @@ struct Charts<'a> {
 }
 
 impl Charts<'_> {
-    /// Adds a chart with the references for which `line` has the name of their line, by their pointer.
+    /// Adds a chart with the references for which `line` has the name of their line, by their
+    /// pointer.
     fn add(
         &mut self,
         title: &str,
@@ -78,7 +79,7 @@ impl Charts<'_> {
         for (pointer, name, value) in &self.references {
             let Some(owner) = line(pointer) else { continue };
             let Some(number) = lines.iter().position(|line| line.name == owner) else { continue };
-            // One line needs no colour to be told from others.
+            // A single line needs no colour.
             let colour = (lines.len() > 1).then_some(number);
             levels.push(ChartLevel { name: format!("reference: {name}"), value: *value, colour });
             drawn.push(pointer.clone());

@@ -5,7 +5,8 @@ use render::chart::{Chart, ChartLevel, ChartLine};
 /// Lines of a run's chart that have a chart of their own with those of the other runs.
 const MOST_SPLIT: usize = 6;
 
-/// Charts of the same title, one for each of their lines, with a colour per run. Further lines are in the charts of each run.
+/// Charts of the same title, one for each of their lines, with a colour per run. Further lines are
+/// in the charts of each run.
 pub(crate) fn shared_charts(runs: &[(String, Vec<Series>)]) -> Vec<Series> {
     let mut out: Vec<Series> = Vec::new();
     for (number, (label, list)) in runs.iter().enumerate() {

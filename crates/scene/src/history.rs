@@ -20,7 +20,8 @@ pub(crate) struct History {
 }
 
 impl History {
-    /// A new table, or the one that is there up to time `resume` \[s\]; of a run that ends at `end` \[s\].
+    /// A new table, or the one that is there up to time `resume` \[s\]; of a run that ends at `end`
+    /// \[s\].
     pub(crate) fn open(
         folder: &Path,
         end: f64,

@@ -8,8 +8,8 @@ use report::{Report, ReportError};
 use std::path::{Path, PathBuf};
 
 impl Setup {
-    /// Writes the report of a run that has ended, also by an error of a step, if the scene wants it. A report that cannot be made is a
-    /// warning: the run's files are whole.
+    /// Writes the report of a run that has ended, also by an error of a step, if the scene wants
+    /// it. A report that cannot be made is a warning: the run's files are whole.
     pub(crate) fn with_report(
         &self,
         ran: Result<RunResult, RunError>,
@@ -23,7 +23,7 @@ impl Setup {
         let written = write(folder);
         if let Err(error) = &written {
             let warning = format!("{} could not be made: {error}", report::FILE);
-            // A folder that cannot be written to has been told.
+            // The run has reported a folder that cannot be written to.
             if let Ok(mut log) = Log::open(folder, true) {
                 let _ = warn(&mut log, &warning, options.quiet);
             }

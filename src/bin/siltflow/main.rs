@@ -45,7 +45,7 @@ enum Command {
     Check(CheckArgs),
     /// Makes a page (HTML) of the folders of one or several runs.
     Report(ReportArgs),
-    /// Tells what a mesh file (STL, OBJ) is: faults, thin walls, mass properties, a picture.
+    /// Examines a mesh file (STL, OBJ): faults, thin walls, mass properties, a picture.
     Mesh(MeshArgs),
     /// Lists the scenes that come with the command and are run by their names.
     List {

@@ -45,15 +45,17 @@ pub(crate) struct MeshArgs {
 }
 
 impl MeshArgs {
-    /// Prints what is known of the mesh; returns the exit code, 2 if it is no body.
+    /// Prints the findings; returns the exit code. A mesh that is no body is an error.
     pub(crate) fn mesh(&self) -> Result<u8, Failure> {
-        if !(self.density > 0.0 && self.density.is_finite()) {
-            return Err(Failure::of_input(format!(
-                "--density {}: a density is finite and above zero [kg/m³]",
-                self.density
-            )));
+        for (option, value) in [("density", Some(self.density)), ("cell", self.cell)] {
+            if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
+                let error = format!("--{option} {value}: give a finite number above 0");
+                return Err(Failure::of_input(error));
+            }
         }
-        let (soup, changes) = self.read()?;
+        let soup = TriangleSoup::from_path(&self.file, self.unit);
+        let mended = soup.and_then(|soup| soup.mended(self.weld, self.repair));
+        let (soup, changes) = mended.map_err(Failure::of_input)?;
         let admission = soup.admission(self.cell);
         if let Some(path) = &self.out {
             write(path, |out| soup.write_obj(out))?;
@@ -70,13 +72,14 @@ impl MeshArgs {
         if self.json {
             let value = json!({
                 "file": self.file,
-                "repaired": changes,
+                "changes": changes,
                 "admission": of_admission(&admission),
                 "body": properties.as_ref().map(Properties::to_json),
             });
             print(&format!("{value:#}\n"))?;
         } else {
-            let changes = changes.map_or_else(String::new, |changes| format!("{changes}\n"));
+            let none = if self.repair { "nothing was to be repaired\n" } else { "" };
+            let changes = changes.map_or_else(|| none.to_owned(), |changes| format!("{changes}\n"));
             let properties = properties.as_ref().map_or_else(String::new, Properties::text);
             print(&format!("{}\n{changes}{admission}{properties}", self.file.display()))?;
         }
@@ -87,20 +90,6 @@ impl MeshArgs {
         let remedy = if repairable { "; --repair mends some such faults" } else { "" };
         let picture = self.picture.as_ref().map_or("", |_| ", so there is no picture of it");
         Err(Failure::of_input(format!("{} is no body{picture}{remedy}", self.file.display())))
-    }
-
-    /// Triangles of the file, and a sentence about changes to them.
-    fn read(&self) -> Result<(TriangleSoup, Option<String>), Failure> {
-        let soup = TriangleSoup::from_path(&self.file, self.unit).map_err(Failure::of_input)?;
-        if self.repair {
-            let (soup, report) = soup.repaired(self.weld).map_err(Failure::of_input)?;
-            return Ok((soup, Some(format!("repaired: {report}"))));
-        }
-        let Some(tolerance) = self.weld else { return Ok((soup, None)) };
-        let vertices = soup.vertices.len();
-        let soup = soup.welded(tolerance).map_err(Failure::of_input)?;
-        let joined = vertices - soup.vertices.len();
-        Ok((soup, Some(format!("joined: {joined} vertices up to {tolerance:.3e} m from others"))))
     }
 }
 

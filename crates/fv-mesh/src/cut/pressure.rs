@@ -29,10 +29,11 @@ use std::time::{Duration, Instant};
 /// Equations*, § 1.4). So the condition number of K does not depend on the cells' size. (Dipoles on the closed faces, whose matrix is
 /// symmetric, have one that grows with the number of cells along the walls.)
 ///
-/// [`Recent`] starts from the last σ and what is known of K from the last solutions, one solution of the box's solver for each new
-/// direction. K⁻¹ takes one for each cell, and a solution with it two (the capacitance matrix method: Buzbee, Dorr, George & Golub
-/// 1971, SIAM J. Numer. Anal. 8, 722). If it is worth keeping, it is made when iterations have taken as many solutions as it
-/// takes: short runs never pay for it, and no run takes more than twice the cheaper way.
+/// [`Recent`] starts from the last σ and known directions of K, with one solution of the box's solver
+/// for each new direction. K⁻¹ takes one for each cell, and a solution with it two (the capacitance
+/// matrix method: Buzbee, Dorr, George & Golub 1971, SIAM J. Numer. Anal. 8, 722). If it is worth
+/// keeping, it is made when iterations have taken as many solutions as it takes, or do not converge:
+/// short runs do not pay for it, and no run takes more than twice the cheaper way.
 pub(crate) struct CutPressure {
     cells: Vec<CutCell>,
     /// The cells of every row of the grid, and how long a row is.
@@ -42,10 +43,11 @@ pub(crate) struct CutPressure {
     floating: bool,
     /// K⁻¹, row after row, once it is made.
     inverse: Option<Vec<f64>>,
-    /// Whether K⁻¹ is worth keeping.
+    /// Whether K⁻¹ is worth keeping, and not singular.
     invertible: bool,
-    /// Iterations of all solutions, and the time that they took.
+    /// Iterations of all solutions; at least the number of cells once they did not converge.
     pub(super) all_iterations: usize,
+    /// Time that they took.
     iteration_time: Duration,
     /// σ.
     pub(super) missing: Vec<f64>,
@@ -159,7 +161,8 @@ impl CutPressure {
     ) -> Result<(), RestartError> {
         self.all_iterations = RestartError::take(source, "walls iterations", 1)?[0] as usize;
         self.iteration_time = Duration::ZERO;
-        if self.inverse_is_due() {
+        // States behind the moment at which K⁻¹ is made hold no directions.
+        if self.inverse_is_due() && source("walls recent").is_none() {
             return Ok(());
         }
         self.inverse = None;
@@ -218,7 +221,7 @@ impl CutPressure {
     /// Solves with the right-hand side that `fill` makes row by row.
     ///
     /// # Errors
-    /// Those of the solver; [`PoissonError::NotConverged`].
+    /// Those of the solver; [`PoissonError::Walls`].
     pub(crate) fn solve<const D: usize>(
         &mut self,
         solver: &mut Pressure<D>,
@@ -236,10 +239,10 @@ impl CutPressure {
             self.invert(solver, phi)?;
         }
         self.iterations = 0;
-        // Accuracy does not change when K⁻¹ takes over, unless the box's solver iterates itself.
-        let tolerance = if self.invertible && !solver.remembers() { EXACT } else { TOLERANCE };
         let mut corrections = 0;
         loop {
+            // Accuracy does not change when K⁻¹ takes over, unless the box's solver iterates itself.
+            let tolerance = if self.invertible && !solver.remembers() { EXACT } else { TOLERANCE };
             whole(self, solver, phi)?;
             let scale = self.measure(phi);
             // Limits of round-off: of the inverse, and of known directions.
@@ -256,7 +259,15 @@ impl CutPressure {
             if corrections > 0 {
                 self.recent.as_mut().map(Recent::forget);
             }
-            self.find_change(solver, tolerance, scale, phi)?;
+            match self.find_change(solver, tolerance, scale, phi) {
+                Err(PoissonError::Walls { .. }) if self.invertible => {
+                    self.invert(solver, phi)?;
+                    self.all_iterations = self.all_iterations.max(self.cells.len());
+                    (self.iterations, corrections) = (0, 0);
+                    continue;
+                }
+                found => found?,
+            }
             take_mean(self.floating, &self.cells, &mut self.change);
             self.missing.iter_mut().zip(&self.change).for_each(|(source, change)| *source += change);
             corrections += 1;
@@ -318,8 +329,7 @@ impl CutPressure {
         while square(&self.residual) > goal && solved.is_ok() {
             if self.iterations == MOST {
                 let residual = (square(&self.residual) / scale).sqrt();
-                let iterations = MOST;
-                solved = Err(PoissonError::NotConverged { iterations, residual, tolerance });
+                solved = Err(PoissonError::Walls { cells: self.cells.len(), residual, tolerance });
                 break;
             }
             self.direction.copy_from_slice(&self.residual);

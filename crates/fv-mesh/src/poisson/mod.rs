@@ -206,6 +206,20 @@ pub enum PoissonError {
         /// What was asked for.
         tolerance: f64,
     },
+    /// The equation at cells that immersed walls cut was not solved.
+    #[error(
+        "the pressure equation of the {cells} cells that immersed walls cut keeps a residual of \
+         {residual:.3e} of its terms, above the tolerance {tolerance:.3e}; take cells there whose widths \
+         differ less between axes, or finer ones"
+    )]
+    Walls {
+        /// Cells with faces that are not wholly open.
+        cells: usize,
+        /// 2-norm of the residual over that of its terms.
+        residual: f64,
+        /// Largest residual allowed.
+        tolerance: f64,
+    },
 }
 
 /// A solver of the discrete Poisson equation, in place.

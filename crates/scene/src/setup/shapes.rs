@@ -4,8 +4,8 @@ use crate::expression::Expression;
 use crate::problem::Problem;
 use crate::reader::Reader;
 use dem::{
-    Capsule, ConvexPolyhedron, Cuboid, Cylinder, Disc, Ellipsoid, Implicit, MeshError, Part, Polygon, Shape,
-    Sphere, TriangleMesh, TriangleSoup, Union,
+    Capsule, ConvexPolyhedron, Cuboid, Cylinder, Disc, Ellipsoid, Implicit, Part, Polygon, Shape, Sphere,
+    TriangleMesh, TriangleSoup, Union,
 };
 use interfaces::{Aabb, Point, Pose, Rotation, Solid, Vector};
 use nalgebra::Unit;
@@ -199,13 +199,13 @@ pub(super) fn shape(
             let soup = TriangleSoup::from_path(&path, unit);
             let weld = t.number("weld");
             let scaled = weld.map(|tolerance| factor * tolerance);
-            let mended = soup.and_then(|soup| mended(soup, scaled, repair)).map_err(|e| told(&e))?;
-            if let Some(changes) = mended.changes {
+            let (soup, changes) = soup.and_then(|soup| soup.mended(scaled, repair)).map_err(|e| told(&e))?;
+            if let Some(changes) = changes {
                 // Once, whatever the sizes.
                 let key = format!("{} {weld:?} {repair}", path.display());
                 context.note(key, format!("{}: {changes}", path.display()));
             }
-            let mesh = TriangleMesh::try_from(mended.soup).map_err(|e| {
+            let mesh = TriangleMesh::try_from(soup).map_err(|e| {
                 let remedy = if e.is_repairable() { "; repair = true mends some such faults" } else { "" };
                 told(&format!("{e}{remedy}"))
             })?;
@@ -227,28 +227,6 @@ pub(super) fn shape(
             arc(Union::new(t.tables("parts").iter().map(part).collect::<Result<_, _>>()?), fail)
         }
     }
-}
-
-/// A mesh file's triangles and what was done to them.
-struct Mended {
-    soup: TriangleSoup,
-    changes: Option<String>,
-}
-
-/// Triangles with vertices joined up to `weld` \[m\], and repaired, if either is requested.
-fn mended(soup: TriangleSoup, weld: Option<f64>, repair: bool) -> Result<Mended, MeshError> {
-    if repair {
-        let (soup, report) = soup.repaired(weld)?;
-        return Ok(Mended { soup, changes: (!report.is_empty()).then(|| format!("repaired: {report}")) });
-    }
-    let Some(tolerance) = weld else { return Ok(Mended { soup, changes: None }) };
-    let before = [soup.vertices.len(), soup.faces.len()];
-    let soup = soup.welded(tolerance)?;
-    let [joined, lost] = [before[0] - soup.vertices.len(), before[1] - soup.faces.len()];
-    let changes = format!(
-        "{joined} vertices up to {tolerance:.3e} m from others were joined, and {lost} faces lost by it"
-    );
-    Ok(Mended { soup, changes: (joined > 0).then_some(changes) })
 }
 
 /// The unit of length of the mesh that the shape of the body in `t` is, if it is one \[m\].

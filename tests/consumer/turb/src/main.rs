@@ -1,4 +1,5 @@
-//! `turb` alone: turbulence that decays in a flow of the user's own, which is one cell here, and what the law of the wall says.
+//! `turb` alone: turbulence that decays in a flow of the user's own, which is one cell here, and
+//! what the law of the wall says.
 use turb::{Closure, Equation, Inflow, KEpsilon, StandardKEpsilon, WallFunctions};
 use turb::{SolveError, SolveInfo, Transport};
 

@@ -91,6 +91,26 @@ impl TriangleSoup {
         }
     }
 
+    /// Repairs the triangles if `repair`, otherwise joins vertices up to `weld` \[m\] if that is given;
+    /// returns them with a description of the changes, none if nothing was changed.
+    ///
+    /// # Errors
+    /// Those of [`repaired`](Self::repaired) and [`welded`](Self::welded).
+    pub fn mended(self, weld: Option<f64>, repair: bool) -> Result<(Self, Option<String>), MeshError> {
+        if repair {
+            let (soup, report) = self.repaired(weld)?;
+            return Ok((soup, (!report.is_empty()).then(|| format!("repaired: {report}"))));
+        }
+        let Some(tolerance) = weld else { return Ok((self, None)) };
+        let before = [self.vertices.len(), self.faces.len()];
+        let soup = self.welded(tolerance)?;
+        let [joined, lost] = [before[0] - soup.vertices.len(), before[1] - soup.faces.len()];
+        let changes = format!(
+            "{joined} vertices up to {tolerance:.3e} m from others were joined, and {lost} faces lost by it"
+        );
+        Ok((soup, (joined > 0).then_some(changes)))
+    }
+
     /// Writes an OBJ file, from which [`from_obj`](Self::from_obj) reads the same numbers.
     ///
     /// # Errors

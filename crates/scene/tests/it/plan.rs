@@ -35,6 +35,8 @@ fn runs_take_what_plans_tell() {
         "packed_bed.toml time.end=0.02",
         "two_discs.toml",
         "drafting_kissing_tumbling.toml time.end=0.15",
+        // A disc that walls slow down to half its terminal speed.
+        "../src/bin/siltflow/template.toml",
         "hopper.toml time.end=1.0 output.snapshots=5",
     ] {
         let [told, used] = ["plan", "run"].map(|task| child(task, scene));

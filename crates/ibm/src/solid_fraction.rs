@@ -126,6 +126,9 @@ impl SolidFraction {
         let at = at(bodies, body);
         if cover.at != at {
             self.projector.project(lattice, bodies, body, (self.rule, self.layer), &mut cover.nodes);
+            if cover.nodes.is_empty() {
+                cover.nodes = Vec::new();
+            }
             if closes(lattice, bodies, body) {
                 join(&mut cover.nodes);
             }

@@ -8,7 +8,7 @@ use coupling::WithScalars;
 use dem::placing::{PlacingError, Region};
 use dem::{Chen, ContactLaw, Entrant, Inflow, Lubricated, Population, Repulsive, RigidBodies};
 use fv_mesh::{
-    Axis, CartesianGrid, Convection, Diffusion, FlowError, Piso, PisoParams, Projection, Side, TimeScheme,
+    CartesianGrid, Convection, Diffusion, FlowError, Piso, PisoParams, Projection, Side, TimeScheme,
 };
 use ibm::{Hfdib, IbmError, SmoothFilm, SmoothForcing, cut_walls};
 use interfaces::{BodyId, Freedom, Kinematics, Periods, Point, Twist};
@@ -88,17 +88,23 @@ impl Setup {
 
     /// Bodies that the smooth forcing cannot resolve, whatever the cells around them are.
     pub(crate) fn check_sizes(&self) -> Result<(), BuildError> {
-        let least = SmoothForcing::LEAST_CELLS;
-        let spacing = self.axes.iter().map(Axis::narrowest).fold(f64::INFINITY, f64::min);
-        let later = self.bodies.inflows.iter().flat_map(|inflow| &inflow.shapes);
-        for (number, shape) in self.bodies.list.iter().map(|body| &body.shape).chain(later).enumerate() {
-            let extent = shape.aabb().extent();
-            let size = (0..self.dim()).map(|a| extent[a]).fold(f64::INFINITY, f64::min);
-            if size < least * spacing {
-                return Err(IbmError::TooCoarse { body: BodyId(number), size, spacing, least }.into());
+        let (least, spacing) = (SmoothForcing::LEAST_CELLS, self.narrowest());
+        match self.sizes().enumerate().find(|(_, size)| *size < least * spacing) {
+            Some((number, size)) => {
+                Err(IbmError::TooCoarse { body: BodyId(number), size, spacing, least }.into())
             }
+            None => Ok(()),
         }
-        Ok(())
+    }
+
+    /// Least extents of the bodies' bounding boxes, then of the entrants' \[m\].
+    pub(crate) fn sizes(&self) -> impl Iterator<Item = f64> {
+        let later = self.bodies.inflows.iter().flat_map(|inflow| &inflow.shapes);
+        let shapes = self.bodies.list.iter().map(|body| &body.shape).chain(later);
+        shapes.map(|shape| {
+            let extent = shape.aabb().extent();
+            (0..self.dim()).map(|a| extent[a]).fold(f64::INFINITY, f64::min)
+        })
     }
 
     /// Treatment of the viscous terms: explicit with bodies, unless given.

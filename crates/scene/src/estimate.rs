@@ -123,10 +123,9 @@ impl Setup {
             || available.is_some_and(|available| needed > available.bytes)
     }
 
-    /// The estimate with what comes later than the first steps: contacts of piles, if costs are
-    /// asked for, the inverse at immersed walls and fits of models.
-    pub(crate) fn with_later(&self, mut estimate: Estimate, costs: bool) -> Estimate {
-        estimate.cost.later = if costs { self.cost_of_piles() } else { 0.0 };
+    /// The estimate with memory that is taken later than in the first steps: for the inverse at
+    /// immersed walls and for fits of models.
+    pub(crate) fn with_later_memory(&self, mut estimate: Estimate) -> Estimate {
         if let Some([_, taken]) = &mut estimate.memory {
             let inverse = estimate.cost.iterations.map_or(0.0, |iterations| iterations.memory());
             *taken += inverse.max(self.memory_of_models());

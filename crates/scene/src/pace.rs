@@ -40,9 +40,10 @@ impl Setup {
         let full = |time: f64| match self.dt {
             Some(dt) => dt,
             None => {
+                let likely = |time: f64| self.expected_rate(time).max(rate * (-decay * time).exp());
                 let rate = match rehearsal {
-                    Some(rehearsal) => rehearsal.rate(time),
-                    None => self.expected_rate(time).max(rate * (-decay * time).exp()),
+                    Some(rehearsal) => rehearsal.rate(time, likely),
+                    None => likely(time),
                 };
                 longest.min(self.courant / rate).min(self.end)
             }

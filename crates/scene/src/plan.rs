@@ -1,7 +1,7 @@
 //! Plan of a run.
 use crate::available_memory::AvailableMemory;
 use crate::build_error::BuildError;
-use crate::estimate::one_thread;
+use crate::estimate::{Estimate, one_thread};
 use crate::pace::Pace;
 use crate::setup::{Algorithm, ContactLawChoice, ForcingChoice, Setup};
 use coupling::check_places;
@@ -76,15 +76,20 @@ impl Setup {
             let (tried, estimate) = self.try_steps(files)?;
             (tried, Some(estimate))
         };
-        let estimate = estimate.map(|estimate| self.with_later(estimate, files));
+        let mut estimate = estimate.map(|estimate| self.with_later_memory(estimate));
         self.require_memory(estimate.and_then(|estimate| estimate.memory), available)?;
+        let mut lacks_entrants = false;
         let pace = tried.limits.map(|[longest, rate]| {
             let pace = self.expected_steps(longest, rate, None);
-            let cost = estimate.filter(|_| files).map(|estimate| estimate.cost.step * pace.steps);
-            match cost.and_then(|cost| self.rehearse(cost)) {
-                Some(rehearsal) => self.expected_steps(longest, rate, Some(&rehearsal)),
-                None => pace,
-            }
+            let Some(Estimate { cost, .. }) = estimate.as_mut().filter(|_| files) else { return pace };
+            let Some(rehearsal) = self.rehearse(cost.step * pace.steps) else {
+                cost.later = self.cost_of_piles();
+                lacks_entrants = !self.bodies.inflows.is_empty();
+                return pace;
+            };
+            let pace = self.expected_steps(longest, rate, Some(&rehearsal));
+            cost.later = rehearsal.later(pace.steps);
+            pace
         });
         let (dt, expected) = match pace {
             Some(Pace { dt, steps }) => (Some(dt), Some(steps)),
@@ -100,6 +105,10 @@ impl Setup {
                 "files could not be written to the temporary folder {}: cost and memory are told without them",
                 std::env::temp_dir().display()
             ));
+        }
+        if lacks_entrants {
+            let message = "the cost lacks that of bodies that come in later, as a run on a coarse grid that resolves them takes too long for a check";
+            warnings.push(message.into());
         }
         if steps > MANY_STEPS {
             warnings.push(format!(

@@ -26,16 +26,21 @@ impl Setup {
         self
     }
 
-    /// Scene with wider cells, `most` if they can be that few, and without references and models.
+    /// Scene with `most` cells that are wider, if they can be that few, and without references and
+    /// models.
     pub(crate) fn coarser(&self, most: usize) -> Result<Self, BuildError> {
-        let mut small = self.clone();
-        small.references.clear();
-        small.models.clear();
         let numbers = |factor: usize| self.axes.iter().map(move |axis| cells(axis, factor));
         let enough = |&k: &usize| numbers(k).product::<usize>() <= most || numbers(k).eq(numbers(2 * k));
         let factor = (1..).find(enough).unwrap_or(1);
-        small.axes =
-            self.axes.iter().map(|axis| coarse(axis, cells(axis, factor))).collect::<Result<_, _>>()?;
+        self.with_cells(|axis| cells(axis, factor))
+    }
+
+    /// Scene with so many cells along each axis, and without references and models.
+    pub(crate) fn with_cells(&self, cells: impl Fn(&Axis) -> usize) -> Result<Self, BuildError> {
+        let mut small = self.clone();
+        small.references.clear();
+        small.models.clear();
+        small.axes = self.axes.iter().map(|axis| coarse(axis, cells(axis))).collect::<Result<_, _>>()?;
         if let Some(images) = &mut small.output.images {
             let scaled = |a: usize, i: usize| i * small.axes[a].cells() / self.axes[a].cells();
             images.slice = images.slice.map(|(normal, layer)| (normal, scaled(normal, layer)));
@@ -58,8 +63,13 @@ fn coarse(axis: &Axis, n: usize) -> Result<Axis, FlowError> {
     if axis.is_uniform() {
         return Axis::uniform(n, axis.lower(), axis.upper());
     }
-    let faces: Vec<f64> = (0..=n).map(|i| axis.faces()[i * axis.cells() / n]).collect();
-    Axis::from_faces(faces)
+    let (faces, last) = (axis.faces(), axis.cells() - 1);
+    let face = |i: usize| {
+        let place = (i * axis.cells()) as f64 / n as f64;
+        let before = (place as usize).min(last);
+        faces[before] + (place - before as f64) * (faces[before + 1] - faces[before])
+    };
+    Axis::from_faces((0..=n).map(face).collect::<Vec<f64>>())
 }
 
 #[cfg(test)]
@@ -74,6 +84,9 @@ mod tests {
         let graded = coarse(&axis, 20).unwrap();
         assert_eq!((graded.cells(), graded.lower(), graded.upper()), (20, 0.0, 1.0));
         assert!((graded.width(10) / graded.width(9) - 1.05f64.powi(3)).abs() < 1e-9);
+        let between = coarse(&axis, 25).unwrap();
+        assert_eq!((between.cells(), between.lower(), between.upper()), (25, 0.0, 1.0));
+        assert!((1..25).all(|i| between.width(i) > between.width(i - 1)));
         assert_eq!([10, 100].map(|n| cells(&Axis::uniform(n, 0.0, 1.0).unwrap(), 7)), [8, 14]);
     }
 }

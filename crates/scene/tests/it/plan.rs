@@ -37,6 +37,8 @@ fn runs_take_what_plans_tell() {
         "drafting_kissing_tumbling.toml time.end=0.15",
         // A disc that walls slow down to half its terminal speed.
         "../src/bin/siltflow/template.toml",
+        // Bodies that come in.
+        "raining_discs.toml time.end=0.7 output.snapshots=10",
         "hopper.toml time.end=1.0 output.snapshots=5",
     ] {
         let [told, used] = ["plan", "run"].map(|task| child(task, scene));

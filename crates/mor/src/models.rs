@@ -12,6 +12,7 @@ mod modes;
 mod moving_modes;
 mod paths;
 mod podiann;
+mod saved_model;
 mod spodiann;
 mod validation;
 
@@ -20,6 +21,7 @@ pub use error::ModelError;
 pub use extrapolation::Extrapolation;
 pub use moving_modes::CoefficientFit;
 pub use podiann::Podiann;
+pub use saved_model::SavedModel;
 pub use spodiann::{Spodiann, SpodiannParams};
 pub use validation::{
     Decompose, ModelValidation, validate_podiann, validate_podiann_observed, validate_spodiann,

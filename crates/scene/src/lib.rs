@@ -164,6 +164,17 @@ impl Scene {
         }
     }
 
+    /// Title, or the name of the file.
+    pub fn title(&self) -> &str {
+        &self.setup.title
+    }
+
+    /// References of the scene beside the numbers of `result`, which is the object in a
+    /// `result.json`, or null before a run.
+    pub fn compare(&self, result: &serde_json::Value) -> Vec<Compared> {
+        self.setup.compare(result)
+    }
+
     /// Runs it until its end, or until `stop` is set.
     ///
     /// # Errors

@@ -40,7 +40,15 @@ impl Record<'_> {
             Some(Item::Text(text)) => text.as_str(),
             _ => "",
         };
-        let reference = |r: &crate::setup::Reference| json!({ "name": r.name, "pointer": r.pointer, "value": r.value, "source": r.source });
+        let reference = |r: &crate::setup::Reference| {
+            json!({
+                "name": r.name,
+                "pointer": r.pointer,
+                "value": r.value,
+                "source": r.source,
+                "tolerance": r.tolerance,
+            })
+        };
         let mut record = self.plan.to_json();
         let more = json!({
             "title": setup.title,

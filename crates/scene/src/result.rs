@@ -1,7 +1,7 @@
 //! What came out of a run.
 use crate::look::Extremes;
 use crate::record::versions;
-use crate::setup::{Algorithm, Setup};
+use crate::setup::{Algorithm, Reference, Setup};
 use crate::view::View;
 use crate::watch::{Audience, output};
 use coupling::{CouplingError, LedgerReport, Module};
@@ -33,23 +33,30 @@ impl Ending {
     }
 }
 
-/// A result beside what others found.
+/// Number of the results beside its reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
-    /// What it is.
+    /// Name of the quantity.
     pub name: String,
-    /// Here, if the results have it.
+    /// Value of the results, if they have it.
     pub found: Option<f64>,
-    /// There.
+    /// Value of the reference.
     pub reference: f64,
-    /// Who says so.
+    /// Source of the reference.
     pub source: String,
+    /// Largest deviation allowed, as [`Self::error`].
+    pub tolerance: Option<f64>,
 }
 
 impl Compared {
     /// found/reference − 1, or the difference where the reference is 0.
     pub fn error(&self) -> Option<f64> {
         self.found.map(|found| if self.reference == 0.0 { found } else { found / self.reference - 1.0 })
+    }
+
+    /// Whether the deviation is within the tolerance; none without either.
+    pub fn is_met(&self) -> Option<bool> {
+        Some(self.error()?.abs() <= self.tolerance?)
     }
 }
 
@@ -220,18 +227,18 @@ impl RunResult {
                 "divergence": number(l.divergence),
             });
         }
-        let compared: Vec<Compared> = setup
-            .references
-            .iter()
-            .map(|r| Compared {
-                name: r.name.clone(),
-                found: result.pointer(&r.pointer).and_then(Value::as_f64),
-                reference: r.value,
-                source: r.source.clone(),
-            })
-            .collect();
+        let compared = setup.compare(&result);
         if !compared.is_empty() {
-            let row = |c: &Compared| json!({ "name": c.name, "found": c.found, "reference": c.reference, "error": c.error(), "source": c.source });
+            let row = |c: &Compared| {
+                json!({
+                    "name": c.name,
+                    "found": c.found,
+                    "reference": c.reference,
+                    "error": c.error(),
+                    "tolerance": c.tolerance,
+                    "source": c.source,
+                })
+            };
             result["references"] = compared.iter().map(row).collect();
         }
         Self { ending, folder: folder.into(), result, timings: Value::Null, report: None, compared }
@@ -273,5 +280,19 @@ impl RunResult {
                 .map_err(output("writing", &path))?;
         }
         Ok(self)
+    }
+}
+
+impl Setup {
+    /// Numbers of `result` beside the references of the scene.
+    pub(crate) fn compare(&self, result: &Value) -> Vec<Compared> {
+        let compared = |r: &Reference| Compared {
+            name: r.name.clone(),
+            found: result.pointer(&r.pointer).and_then(Value::as_f64),
+            reference: r.value,
+            source: r.source.clone(),
+            tolerance: r.tolerance,
+        };
+        self.references.iter().map(compared).collect()
     }
 }

@@ -9,13 +9,17 @@
 //! siltflow resume first.toml                     # after Ctrl-C
 //! siltflow mesh rock.stl --unit 1e-3 --picture rock.png
 //! siltflow report out/first                      # its page again; of several runs, a comparison
+//! siltflow table                                 # results beside references, sources, tolerances
+//! siltflow predict out/reduced_discs/models/velocity.model --at 0.31
 //! ```
 mod check;
 mod mesh;
 mod outcome;
+mod predict;
 mod report;
 mod run;
 mod shipped;
+mod table;
 mod template;
 
 use crate::report::ReportArgs;
@@ -23,9 +27,11 @@ use check::CheckArgs;
 use clap::{Parser, Subcommand};
 use mesh::MeshArgs;
 use outcome::{Failure, print};
+use predict::PredictArgs;
 use run::{ResumeArgs, RunArgs};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use table::TableArgs;
 
 /// Particle-resolved flow from scene files.
 #[derive(Parser)]
@@ -47,6 +53,10 @@ enum Command {
     Report(ReportArgs),
     /// Examines a mesh file (STL, OBJ): faults, thin walls, mass properties, a picture.
     Mesh(MeshArgs),
+    /// Prints the references of scenes beside the results of their runs.
+    Table(TableArgs),
+    /// Predicts fields by a reduced model that a run has left.
+    Predict(PredictArgs),
     /// Lists the scenes that come with the command and are run by their names.
     List {
         /// Prints JSON.
@@ -71,6 +81,8 @@ fn main() -> ExitCode {
         Command::Check(args) => args.check(),
         Command::Report(args) => args.report(),
         Command::Mesh(args) => args.mesh(),
+        Command::Table(args) => args.table(),
+        Command::Predict(args) => args.predict(),
         Command::List { json } => print(&shipped::list(json)).map(|()| 0),
         Command::New { path } => template::write(&path).map(|()| 0),
         Command::Manual => print(&scene::manual()).map(|()| 0),

@@ -5,7 +5,7 @@ use std::io::{ErrorKind, Write};
 
 /// Exit codes for the help.
 pub(crate) const EXIT_CODES: &str = "\
-Exit codes: 0 done; 1 an error of a run; 2 an error of a scene or of the command line;
+Exit codes: 0 done; 1 an error of a run, or a missed tolerance of `table`; 2 an error of a scene or of the command line;
 3 a steady flow has not converged; 130 stopped by Ctrl-C, with a saved state.";
 
 /// Error with its exit code.
@@ -29,6 +29,11 @@ impl Failure {
     /// Error of a file or the terminal.
     pub(crate) fn of_output(error: impl Into<Box<dyn Error>>) -> Self {
         Self { code: 1, error: error.into() }
+    }
+
+    /// Stop by Ctrl-C.
+    pub(crate) fn of_stop(message: String) -> Self {
+        Self { code: 130, error: message.into() }
     }
 
     /// Message without the exit code.

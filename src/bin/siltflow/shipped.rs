@@ -92,9 +92,14 @@ fn write() -> std::io::Result<TempDir> {
     Ok(folder)
 }
 
+/// Names of the scenes.
+pub(crate) fn names() -> impl Iterator<Item = &'static str> {
+    SCENES.iter().map(|(file, _)| file.trim_end_matches(".toml"))
+}
+
 /// Names and titles, line by line or as JSON.
 pub(crate) fn list(as_json: bool) -> String {
-    let scenes = SCENES.iter().map(|(name, text)| (name.trim_end_matches(".toml"), title(text)));
+    let scenes = names().zip(SCENES.iter().map(|(_, text)| title(text)));
     if as_json {
         let all: Vec<Value> = scenes.map(|(name, title)| json!({ "name": name, "title": title })).collect();
         return format!("{:#}\n", Value::from(all));

@@ -236,6 +236,13 @@ pub(super) static REFERENCE: Table = Table {
             "\"/forces/0/coefficients/mean/0\"",
         ),
         required("value", Kind::Number(Range::Any, ""), "What it is there, in SI units.", "5.57953523384"),
-        optional("source", Kind::Text, "none", "Who says so.", "\"Schäfer & Turek 1996\""),
+        optional("source", Kind::Text, "none", "Its source.", "\"Schäfer & Turek 1996\""),
+        optional(
+            "tolerance",
+            Kind::Number(Range::Positive, ""),
+            "none",
+            "Largest deviation that `siltflow table` allows, over the value unless that is 0.",
+            "0.01",
+        ),
     ],
 };

@@ -83,13 +83,15 @@ pub(crate) struct Averages {
     pub(crate) profile: Option<usize>,
 }
 
-/// A number of the results and what it is elsewhere.
+/// Number of the results and its reference.
 #[derive(Clone, Debug)]
 pub(crate) struct Reference {
     pub(crate) name: String,
     pub(crate) pointer: String,
     pub(crate) value: f64,
     pub(crate) source: String,
+    /// Largest deviation allowed, relative unless the value is 0.
+    pub(crate) tolerance: Option<f64>,
 }
 
 pub(super) fn references(root: &Reader<'_>) -> Result<Vec<Reference>, Problem> {
@@ -108,6 +110,7 @@ pub(super) fn references(root: &Reader<'_>) -> Result<Vec<Reference>, Problem> {
                 pointer,
                 value: t.number("value").unwrap_or(0.0),
                 source: text(t, "source"),
+                tolerance: t.number("tolerance"),
             })
         })
         .collect()

@@ -1,11 +1,11 @@
 //! What the grid resolves of the film between a sphere and a wall or another sphere, and the whole with the model of the rest.
 //! `cargo bench --bench lubrication`, or with the names of cases after `--`; on one thread.
-use example_support::film::{Before, brenner, resistance, sinking, spheres};
-use example_support::{Outcome, run_cases};
 use render::cpu::Stopwatch;
 use siltflow::dem::{Chen, Lubricated};
 use siltflow::ibm::{SmoothFilm, SmoothForcing};
 use siltflow::interfaces::UnresolvedFilm;
+use validation::film::{Before, brenner, resistance, sinking, spheres};
+use validation::{Outcome, run_cases};
 
 fn main() -> Outcome<()> {
     run_cases(&[("wall", || table(Before::Wall)), ("spheres", || table(Before::Sphere)), ("sinking", sink)])

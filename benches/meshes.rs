@@ -3,13 +3,13 @@
 //! 1. Walls at rest: per cut or closed face. A body of 5 % of a periodic box.
 //! 2. Distances of all cells of 48³ from one of a diameter of 0.4 boxes: from scratch, after it moved, at rest.
 use cpu_time::ProcessTime;
-use example_support::prescribed_bodies::PrescribedBodies;
 use siltflow::dem::TriangleMesh;
 use siltflow::flow::{CartesianGrid, Fluid, Projection, Side};
 use siltflow::ibm::{WallDistance, cut_walls};
 use siltflow::interfaces::{BodyId, Lattice, Nodes, Point, Pose, Rotation, Twist, Vector};
 use std::error::Error;
 use std::f64::consts::PI;
+use validation::prescribed_bodies::PrescribedBodies;
 
 /// The least CPU time of several \[ns\].
 fn best<T>(mut work: impl FnMut(f64) -> Result<T, Box<dyn Error>>) -> Result<(f64, T), Box<dyn Error>> {

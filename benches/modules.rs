@@ -2,11 +2,11 @@
 //!
 //! Per cell and step, in nanoseconds of wall time: the median of five runs of 200 steps each, with output once in
 //! 20 steps; the plain flow loop and the paper's forcing beside it.
-use example_support::scene::{FLUID, Scene};
 use siltflow::coupling::{FileOutput, Module, Observer, StepInfo};
 use siltflow::ibm::{Forcing, Hfdib, SmoothForcing};
 use std::error::Error;
 use std::time::Instant;
+use validation::falling_discs::{FLUID, FallingDiscs};
 
 const STEPS: usize = 200;
 const RUNS: usize = 5;
@@ -20,7 +20,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 /// Nanoseconds per cell and step of the plain flow loop.
-fn plain(scene: &Scene) -> Outcome<f64> {
+fn plain(scene: &FallingDiscs) -> Outcome<f64> {
     let mut times = Vec::new();
     for _ in 0..RUNS {
         let mut flow = scene.flow()?;
@@ -37,7 +37,7 @@ fn plain(scene: &Scene) -> Outcome<f64> {
 }
 
 /// The same of every module and of output.
-fn coupled<F: Forcing>(scene: &Scene, forcing: impl Fn() -> F) -> Outcome<Vec<f64>> {
+fn coupled<F: Forcing>(scene: &FallingDiscs, forcing: impl Fn() -> F) -> Outcome<Vec<f64>> {
     let folder = std::env::temp_dir().join(format!("siltflow-bench-{}", std::process::id()));
     let mut runs = vec![Vec::new(); Module::ALL.len() + 1];
     for _ in 0..RUNS {
@@ -73,8 +73,8 @@ fn main() -> Outcome<()> {
         Module::ALL.iter().for_each(|m| print!("{:>9}", m.name()));
         println!("{:>9}{:>9}{:>9}", "output", "sum", "plain");
         for cells in [10, 15, 30] {
-            let smooth = Scene { cells_per_diameter: cells, ..Scene::default() };
-            let paper = Scene { virtual_mass: Some(1.0), ..smooth.clone() };
+            let smooth = FallingDiscs { cells_per_diameter: cells, ..FallingDiscs::default() };
+            let paper = FallingDiscs { virtual_mass: Some(1.0), ..smooth.clone() };
             let rows = [
                 ("smooth", coupled(&smooth, || SmoothForcing::new(FLUID.density))?),
                 ("hfdib", coupled(&paper, || Hfdib::new(FLUID.density))?),

@@ -1,13 +1,13 @@
 //! What bodies cost: a step with 5 % of the box solid over one without. A ball as a wall at rest, with what it takes to set it up;
 //! balls about ten cells wide by forcings, at rest and moving.
-use example_support::Outcome;
-use example_support::prescribed_bodies::{PrescribedBodies, forced_step};
 use render::cpu::Stopwatch;
 use siltflow::dem::{Disc, Sphere};
 use siltflow::flow::{CartesianGrid, Fluid, Projection, Side};
 use siltflow::ibm::{Forcing, Hfdib, SmoothForcing, cut_walls};
 use siltflow::interfaces::{Kinematics, Solid, Twist, Vector};
 use std::f64::consts::PI;
+use validation::Outcome;
+use validation::prescribed_bodies::{PrescribedBodies, forced_step};
 
 const SHARE: f64 = 0.05;
 const STEPS: usize = 40;

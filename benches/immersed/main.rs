@@ -5,16 +5,16 @@
 mod cost;
 mod steady;
 
-use example_support::channel_cylinder::{self, Cells, DRAG, Found, LIFT, Way};
-use example_support::free_stream;
-use example_support::walled_flows::{
-    COUETTE_TORQUE, ForcedChannel, SphereArray, TurnedChannel, couette, couette_velocity, settle,
-    surface_loads, velocity_errors,
-};
-use example_support::{Outcome, run_cases};
 use render::cpu::Stopwatch;
 use siltflow::flow::Convection;
 use siltflow::ibm::{Kernel, SmoothForcing};
+use validation::channel_cylinder::{self, Cells, DRAG, Found, LIFT, Way};
+use validation::free_stream;
+use validation::walled_flows::{
+    COUETTE_TORQUE, ForcedChannel, SphereArray, TurnedChannel, couette, couette_velocity, settle,
+    surface_loads, velocity_errors,
+};
+use validation::{Outcome, run_cases};
 
 /// Flows are steady when they change by less than this part.
 const STEADY: f64 = 1e-6;

@@ -1,11 +1,11 @@
 //! Steady flows past bodies of exact or published drag: eccentric cylinders, a cylinder across a duct, a sphere in a stream.
 use crate::STEADY;
-use example_support::Outcome;
-use example_support::duct_cylinder::{self, DRAG, DROP, LIFT};
-use example_support::eccentric_cylinders::EccentricCylinders;
-use example_support::sphere_stream::{self, REFERENCES};
-use example_support::walled_flows::{settle, surface_loads, velocity_errors};
 use render::cpu::Stopwatch;
+use validation::Outcome;
+use validation::duct_cylinder::{self, DRAG, DROP, LIFT};
+use validation::eccentric_cylinders::EccentricCylinders;
+use validation::sphere_stream::{self, REFERENCES};
+use validation::walled_flows::{settle, surface_loads, velocity_errors};
 
 pub(crate) fn eccentric() -> Outcome<()> {
     println!(

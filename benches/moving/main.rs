@@ -2,12 +2,12 @@
 //! comes from the grid. And free ones in creeping shear. On one thread: `cargo bench --bench moving`, or with the names of cases after `--`.
 mod shear;
 
-use example_support::moved_body::{Noise, Swinging, passing, turning};
-use example_support::settling_sphere::{Case, SettlingSphere};
-use example_support::{Outcome, periodic_cube, run_cases};
 use render::cpu::Stopwatch;
 use siltflow::flow::Diffusion;
 use siltflow::ibm::{Forcing, Hfdib, Kernel, SmoothForcing};
+use validation::moved_body::{Noise, Swinging, passing, turning};
+use validation::settling_sphere::{Case, SettlingSphere};
+use validation::{Outcome, periodic_cube, run_cases};
 
 /// Harmonics that belong to the flow.
 const HARMONICS: usize = 12;

@@ -1,10 +1,10 @@
 //! Free bodies in creeping shear against Jeffery (1922).
-use example_support::reference_curve::passes;
-use example_support::sheared_body::{Shear, jeffery_angle, jeffery_period, orbit, settled_spin};
-use example_support::{Outcome, sheared_body};
 use render::cpu::Stopwatch;
 use siltflow::ibm::Kernel;
 use std::f64::consts::FRAC_PI_2;
+use validation::reference_curve::passes;
+use validation::sheared_body::{Shear, jeffery_angle, jeffery_period, orbit, settled_spin};
+use validation::{Outcome, sheared_body};
 
 const KERNELS: [(&str, Kernel); 3] =
     [("Yang", Kernel::Yang), ("quartic", Kernel::QuarticSpline), ("quintic", Kernel::QuinticSpline)];
@@ -86,7 +86,7 @@ impl Orbit {
         let off = |p: &(f64, f64)| (p.1 - jeffery_angle(aspect, p.0 - upright)).abs();
         let angle = quarter.map(off).fold(0.0, f64::max);
         let span = (level - upright) / 20.0;
-        let at = |t: f64| example_support::reference_curve::at(series, t).unwrap_or(f64::NAN);
+        let at = |t: f64| validation::reference_curve::at(series, t).unwrap_or(f64::NAN);
         let rate = (0..20)
             .map(|i| {
                 let (from, to) = (upright + span * f64::from(i), upright + span * f64::from(i + 1));

@@ -1,10 +1,10 @@
 //! What is compared.
-use example_support::Outcome;
 use siltflow::dem::{
     Capsule, Cuboid, Cylinder, Ellipsoid, Implicit, Normal, OverlapSolver, Refinement, Route, Shape, Sphere,
     TriangleMesh,
 };
 use siltflow::interfaces::{Aabb, Point, Solid, Vector};
+use validation::Outcome;
 
 /// What the normals from edge boxes are called.
 pub(crate) const PLANE_FIT: &str = "tree, plane fit";

@@ -9,13 +9,13 @@ mod poses;
 
 use cases::{Case, Way};
 use cpu_time::ProcessTime;
-use example_support::Outcome;
 use poses::{Placed, poses};
 use render::plot::{self, Panel, Series};
 use siltflow::dem::{Overlap, OverlapSolver, Shape};
 use siltflow::interfaces::Pose;
 use std::fmt::Write as _;
 use std::path::Path;
+use validation::Outcome;
 
 /// What a way costs, and what it is worth.
 struct Row {

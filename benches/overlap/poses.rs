@@ -1,7 +1,7 @@
 //! Where the bodies of a case are.
 use super::cases::Case;
-use example_support::Outcome;
 use siltflow::interfaces::{Point, Pose, Rotation, Vector};
+use validation::Outcome;
 
 /// A pair of poses.
 #[derive(Clone, Copy, Debug)]

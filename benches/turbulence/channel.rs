@@ -1,11 +1,11 @@
 //! Developed flow between two walls.
-use example_support::Outcome;
-use example_support::turbulent_flows::{ChannelProfile, Drive, between_walls, developed_channel, numbers};
 use render::cpu::Stopwatch;
 use render::profiles::{Curve, Panel, draw};
 use siltflow::flow::Axis;
 use std::path::Path;
 use turb::{Inflow, Law, Realizable, Sst, StandardKEpsilon, Sublayer, WallFunctions, Wilcox};
+use validation::Outcome;
+use validation::turbulent_flows::{ChannelProfile, Drive, between_walls, developed_channel, numbers};
 
 macro_rules! simple_foam {
     ($model:literal) => {

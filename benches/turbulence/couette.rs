@@ -1,8 +1,8 @@
 //! Turbulent plane Couette flow: a plate that slides through the box against a wall of the box.
-use example_support::Outcome;
-use example_support::sliding_plate::{Couette, Lower};
 use render::cpu::Stopwatch;
 use turb::{Inflow, Law, Realizable, Sst, StandardKEpsilon, Wilcox};
+use validation::Outcome;
+use validation::sliding_plate::{Couette, Lower};
 
 pub(crate) fn sliding_plate() -> Outcome<()> {
     println!(

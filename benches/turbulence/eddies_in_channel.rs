@@ -1,6 +1,4 @@
 //! Large-eddy simulation of the channel at Re_τ 178.
-use example_support::Outcome;
-use example_support::turbulent_flows::numbers;
 use render::cpu::Stopwatch;
 use render::profiles::{Curve, Panel, draw};
 use siltflow::flow::{
@@ -10,6 +8,8 @@ use siltflow::flow::{
 use std::f64::consts::PI;
 use std::path::Path;
 use turb::{Smagorinsky, SmagorinskyConstants, Wale, WaleConstants};
+use validation::Outcome;
+use validation::turbulent_flows::numbers;
 
 const RE: f64 = 178.12;
 /// Of the DNS, and its table of y+ and U+.

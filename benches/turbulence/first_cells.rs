@@ -1,8 +1,8 @@
 //! What the height of the first cells does to friction, from the viscous sublayer to the logarithmic layer.
-use example_support::Outcome;
-use example_support::turbulent_flows::{between_walls, steady_couette};
 use siltflow::flow::Axis;
 use turb::{Sst, Sublayer, WallFunctions, Wilcox};
+use validation::Outcome;
+use validation::turbulent_flows::{between_walls, steady_couette};
 
 /// Plane Couette flow at Re 10⁴ and 10⁵ (speed and distance of the walls), even cells, against 200 cells that begin at y+ 0.1.
 pub(crate) fn first_cells() -> Outcome<()> {

@@ -1,9 +1,9 @@
 //! Friction where the flow along a wall speeds up and slows down.
-use example_support::Outcome;
-use example_support::forced_duct::{DuctWalls, ForcedDuct};
 use siltflow::flow::WallStress;
 use siltflow::interfaces::LawOfTheWall;
 use turb::{Law, Sst, Wilcox};
+use validation::Outcome;
+use validation::forced_duct::{DuctWalls, ForcedDuct};
 
 /// Along the stream \[m/s²\]: past the first the flow along the walls is faster by a fourth, past the second slower by as much.
 const FORCES: [f64; 2] = [-1.5, 1.6];

@@ -1,9 +1,9 @@
 //! Large-eddy simulation.
-use example_support::Outcome;
 use render::cpu::Stopwatch;
 use siltflow::flow::{CartesianGrid, ClosureSlot, Fluid, Hooks, Modelled, Projection, Side, TransportParams};
 use std::f64::consts::TAU;
 use turb::{Wale, WaleConstants};
+use validation::Outcome;
 
 /// Peak of −dE/dt at Re 1600, 512³ spectral, and when.
 const PEAK: [f64; 2] = [1.28575e-2, 8.97];

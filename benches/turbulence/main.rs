@@ -1,6 +1,7 @@
 //! Turbulence models in flows whose walls are sides of the box, or bodies that move in it: against body-fitted runs of others, direct numerical simulation, and
 //! measurements; what they cost, and what they bear. On one thread: `cargo bench --bench turbulence`, or with the names of cases after `--`.
 //! Pictures go to `out/turbulence`.
+mod bends;
 mod channel;
 mod couette;
 mod eddies_in_channel;
@@ -15,10 +16,11 @@ mod step;
 mod turned;
 mod warm;
 
-use example_support::{Outcome, run_cases};
+use validation::{Outcome, run_cases};
 
 fn main() -> Outcome<()> {
     run_cases(&[
+        ("bends", bends::bends),
         ("channel", channel::against_simple_foam),
         ("dns", channel::against_dns),
         ("first_cells", first_cells::first_cells),

@@ -1,9 +1,9 @@
 //! Walls along the grid, wherever they cut its cells.
-use example_support::Outcome;
-use example_support::plane_duct::turbulent_duct;
-use example_support::turbulent_flows::iterate;
 use siltflow::flow::Side;
 use turb::{Law, Realizable, Sst, StandardKEpsilon, Wilcox};
+use validation::Outcome;
+use validation::plane_duct::turbulent_duct;
+use validation::turbulent_flows::iterate;
 
 const PLACES: [f64; 17] =
     [0.0, 1e-4, 0.002, 0.009, 0.019, 0.029, 0.06, 0.1, 0.11, 0.3, 0.5, 0.7, 0.9, 0.97, 0.99, 0.998, 0.9999];

@@ -1,6 +1,4 @@
 //! A flat plate at no pressure gradient.
-use example_support::Outcome;
-use example_support::turbulent_flows::{growing, numbers};
 use render::cpu::Stopwatch;
 use render::profiles::{Curve, Panel, draw};
 use siltflow::flow::{
@@ -10,6 +8,8 @@ use siltflow::flow::{
 use siltflow::interfaces::Closure;
 use std::path::Path;
 use turb::{Inflow, KOmegaSst, Sst};
+use validation::Outcome;
+use validation::turbulent_flows::{growing, numbers};
 
 /// Cf of CFL3D on 545 × 385 points.
 const FINEST: &str = include_str!("../../tests/data/turbulence/flat_plate_sstv.csv");

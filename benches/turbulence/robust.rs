@@ -1,8 +1,8 @@
 //! What models cost, and what they bear.
-use example_support::Outcome;
-use example_support::turbulent_flows::{duct, iterate};
 use render::cpu::Stopwatch;
 use turb::{Inflow, Law, Realizable, Sst, StandardKEpsilon, Wilcox};
+use validation::Outcome;
+use validation::turbulent_flows::{duct, iterate};
 
 /// Of the reference runs.
 fn inflow() -> Outcome<Inflow> {

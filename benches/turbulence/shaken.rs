@@ -1,13 +1,13 @@
 //! A cylinder that swings in fluid at rest, with models of two equations that see it.
-use example_support::Outcome;
-use example_support::moved_body::{Noise, Swinging};
-use example_support::sliding_plate::with_model;
 use render::cpu::Stopwatch;
 use render::section::{Layer, Section, Sheet};
 use siltflow::flow::Projection;
 use siltflow::ibm::SmoothForcing;
 use std::path::Path;
 use turb::{Inflow, Law, Realizable, Sst, StandardKEpsilon, Wilcox};
+use validation::Outcome;
+use validation::moved_body::{Noise, Swinging};
+use validation::sliding_plate::with_model;
 
 /// Harmonics that belong to the flow.
 const HARMONICS: usize = 12;

@@ -1,12 +1,12 @@
 //! A backward-facing step.
-use example_support::Outcome;
-use example_support::turbulent_flows::growing;
 use render::cpu::Stopwatch;
 use siltflow::flow::{
     Axis, CartesianGrid, Convection, Fluid, Modelled, Patch, Profile, Side, Simple, SimpleParams,
     TransportParams,
 };
 use turb::{Inflow, Law, Realizable, Scale, Sst, StandardKEpsilon, TwoEquation, Wilcox};
+use validation::Outcome;
+use validation::turbulent_flows::growing;
 
 /// ν of Re_H 36 000 with the step's height and the speed of the stream as units.
 const NU: f64 = 1.0 / 36_000.0;

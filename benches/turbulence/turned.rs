@@ -1,9 +1,9 @@
 //! Developed flow between immersed walls that are turned against the grid.
-use example_support::Outcome;
-use example_support::developed_duct::DevelopedDuct;
-use example_support::turbulent_flows::{Drive, between_walls, developed_channel, numbers};
 use render::cpu::Stopwatch;
 use turb::{Inflow, Law, Sst, WallFunctions, Wilcox};
+use validation::Outcome;
+use validation::developed_duct::DevelopedDuct;
+use validation::turbulent_flows::{Drive, between_walls, developed_channel, numbers};
 
 const VISCOSITY: f64 = 1e-6;
 /// That of the ducts whose first cells are in the buffer layer.

@@ -1,7 +1,7 @@
 //! Heat in developed flow between immersed walls that are turned against the grid.
-use example_support::Outcome;
-use example_support::developed_duct::DevelopedDuct;
 use turb::Sst;
+use validation::Outcome;
+use validation::developed_duct::DevelopedDuct;
 
 /// A scalar that is to be the velocity (Pr = Pr_t = 1, the force its source) in ducts turned by 0 to 45°: what the walls take of what the source brings, and how far it is
 /// from the velocity along the ducts.

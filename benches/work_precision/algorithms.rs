@@ -1,7 +1,5 @@
 //! The paper's algorithm beside ours: the falling discs by both, with what their books do not account for.
 use crate::discs::{at, percent, theory};
-use example_support::Outcome;
-use example_support::scene::FLUID;
 use render::cpu::Stopwatch;
 use siltflow::coupling::{
     self, CouplingError, Exchange, FlowSolver, Ledger, Observer, Particles, Schedule, Simulation, StepInfo,
@@ -10,6 +8,8 @@ use siltflow::dem::RigidBodies;
 use siltflow::ibm::{Forcing, SmoothForcing};
 use siltflow::interfaces::{BodyId, Kinematics};
 use std::sync::atomic::AtomicBool;
+use validation::Outcome;
+use validation::falling_discs::FLUID;
 
 /// End of the runs \[s\].
 const END: f64 = 0.2;

@@ -2,9 +2,9 @@
 //! the corner of a cell as the benchmark has it, and cut links on cells gathered round it. Beside them body-fitted simpleFoam on
 //! a machine like this one (relative error of Cd).
 use crate::{Point, Runs, Table};
-use example_support::Outcome;
-use example_support::channel_cylinder::{Cells, Way, run};
 use siltflow::flow::Convection;
+use validation::Outcome;
+use validation::channel_cylinder::{Cells, Way, run};
 
 /// Error of Cd of all runs.
 pub(crate) fn tables() -> Outcome<Vec<Table>> {

@@ -3,18 +3,18 @@
 //! 1. Speeds at 0.005 s and 0.03 s against unsteady Stokes theory (tests/data/startup_two_discs.csv).
 //! 2. Speeds at 0.2 s on 10, 15, 20 and 30 cells per diameter against 60 (takes about two minutes), and the order.
 //! 3. Half and double the time step at 15 cells per diameter.
-use example_support::Outcome;
-use example_support::scene::{FLUID, Scene};
 use render::cpu::Stopwatch;
 use siltflow::coupling::{self, Exchange, FlowSolver, Particles, Schedule, Simulation};
 use siltflow::dem::RigidBodies;
 use siltflow::ibm::{Forcing, Hfdib, SmoothForcing};
 use siltflow::interfaces::{BodyId, Kinematics};
 use std::sync::atomic::AtomicBool;
+use validation::Outcome;
+use validation::falling_discs::{FLUID, FallingDiscs};
 
 /// Speeds at each of `times`, the steps made and the CPU seconds that took.
 fn speeds(
-    scene: &Scene,
+    scene: &FallingDiscs,
     times: &[f64],
     dt: Option<f64>,
     forcing: impl Forcing,
@@ -56,8 +56,8 @@ pub(crate) fn percent(value: f64, reference: f64) -> f64 {
 }
 
 /// The scene with so many cells across a disc.
-pub(crate) fn at(cells_per_diameter: usize) -> Scene {
-    Scene { cells_per_diameter, ..Scene::default() }
+pub(crate) fn at(cells_per_diameter: usize) -> FallingDiscs {
+    FallingDiscs { cells_per_diameter, ..FallingDiscs::default() }
 }
 
 /// Prints the tables.
@@ -69,7 +69,7 @@ pub(crate) fn run() -> Outcome<()> {
         "cells", "forcing", "at 0.005 s", "at 0.03 s", "CPU s to 0.03 s"
     );
     for cells in [10, 15, 20, 30, 60] {
-        let paper = Scene { virtual_mass: Some(1.0), ..at(cells) };
+        let paper = FallingDiscs { virtual_mass: Some(1.0), ..at(cells) };
         let times = [0.005, 0.03];
         let mut rows = vec![
             ("smooth", speeds(&at(cells), &times, None, smooth())?),

@@ -6,12 +6,12 @@
 //!    the finest grid.
 //! 3. The cavity at Re 400, t 4, against the finest grid; with the lid gathering the cells too.
 use crate::{Point, Runs, Table};
-use example_support::Outcome;
 use render::cpu::Stopwatch;
 use siltflow::flow::{
     Axis, CartesianGrid, Cluster, FlowError, Fluid, GridMismatch, Integrals, Projection, Sampler, Side,
 };
 use std::f64::consts::TAU;
+use validation::Outcome;
 
 /// A flow and the CPU seconds it took.
 type Run = Result<(Projection<2>, f64), FlowError>;

@@ -15,9 +15,9 @@ mod discs;
 mod flows;
 mod settling;
 
-use example_support::Outcome;
 use render::plot::{self, Panel, Series};
 use std::path::Path;
+use validation::Outcome;
 
 /// What a run costs and what it is worth.
 #[derive(Clone, Debug)]

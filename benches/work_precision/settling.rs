@@ -3,14 +3,14 @@
 //! 1. One sphere in 4 × 4 × 8 d, by several strategies, 8 to 32 cells per diameter: its speed over ten √(d/g) against the finest run's.
 //! 2. 64 spheres in 8 × 8 × 8 d: their mean speed, and what a body costs.
 use super::{Point, Runs, Table};
-use example_support::Outcome;
-use example_support::free_body::{FreeBody, Speeds};
 use render::cpu::Stopwatch;
 use render::plot;
 use siltflow::coupling::{Exchange, Explicit, Iterated, Module, OneSolve, Schedule, Timings, run as run_to};
 use siltflow::flow::Projection;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
+use validation::Outcome;
+use validation::free_body::{FreeBody, Speeds};
 
 /// End time \[√(d/g)\].
 const END: f64 = 10.0;

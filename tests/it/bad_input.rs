@@ -1,12 +1,12 @@
 //! Bad input is told which value, why, and what to do.
-use example_support::scene::{FLUID, Scene, SceneError};
 use siltflow::coupling::{self, CouplingError, FileOutput, Particles, Schedule, Simulation, WeightBalance};
 use siltflow::dem::{DemError, Disc, Material, RigidBodies};
 use siltflow::ibm::{IbmError, SmoothForcing};
 use siltflow::interfaces::{BodyId, Freedom, Periods, Pose, Twist, Vector};
 use std::sync::atomic::AtomicBool;
+use validation::falling_discs::{FLUID, FallingDiscs, SetupError};
 
-fn build(scene: Scene) -> SceneError {
+fn build(scene: FallingDiscs) -> SetupError {
     scene.build(SmoothForcing::new(FLUID.density)).err().expect("an error")
 }
 
@@ -20,21 +20,21 @@ fn told(error: impl std::fmt::Display, parts: &[&str]) {
 
 #[test]
 fn negative_density() {
-    let error = build(Scene { densities: vec![-5.0], ..Scene::default() });
-    assert!(matches!(error, SceneError::Bodies(DemError::Material { property: "density", .. })), "{error}");
+    let error = build(FallingDiscs { densities: vec![-5.0], ..FallingDiscs::default() });
+    assert!(matches!(error, SetupError::Bodies(DemError::Material { property: "density", .. })), "{error}");
     told(error, &["density", "-5", "give"]);
 }
 
 #[test]
 fn body_larger_than_the_box() {
-    let error = build(Scene { diameter: 12e-3, bodies: 1, ..Scene::default() });
-    assert!(matches!(error, SceneError::Bodies(DemError::Period { .. })), "{error}");
+    let error = build(FallingDiscs { diameter: 12e-3, bodies: 1, ..FallingDiscs::default() });
+    assert!(matches!(error, SetupError::Bodies(DemError::Period { .. })), "{error}");
     told(error, &["1.200e-2", "1.000e-2", "smaller"]);
     // In a box with walls all round it is the coupling that sees it.
     let mut bodies = RigidBodies::new(Periods::default());
     let (disc, pose) = (Disc::new(6e-3).unwrap(), Pose::at([5e-3, 10e-3, 0.0]));
     bodies.add(disc, Material::default(), pose, Twist::default(), Freedom::PLANAR).unwrap();
-    let flow = Scene { floor: true, ..Scene::default() }.flow().unwrap();
+    let flow = FallingDiscs { floor: true, ..FallingDiscs::default() }.flow().unwrap();
     let particles = Particles::new(bodies, SmoothForcing::new(1000.0), 1000.0, Vector::zeros());
     let error = Simulation::new(flow, particles, WeightBalance::None).err().unwrap();
     assert!(matches!(error, CouplingError::TooLarge { axis: 0, .. }), "{error}");
@@ -44,23 +44,24 @@ fn body_larger_than_the_box() {
 #[test]
 fn overlapping_start() {
     // Diameters for which the two centres, 2.5 mm apart, are too near.
-    let error = build(Scene { diameter: 2.6e-3, ..Scene::default() });
+    let error = build(FallingDiscs { diameter: 2.6e-3, ..FallingDiscs::default() });
     assert!(
-        matches!(error, SceneError::Bodies(DemError::OverlappingStart { a: BodyId(0), b: BodyId(1), .. })),
+        matches!(error, SetupError::Bodies(DemError::OverlappingStart { a: BodyId(0), b: BodyId(1), .. })),
         "{error}"
     );
     told(error, &["bodies 0 and 1", "apart"]);
-    let error = build(Scene { floor: true, bodies: 1, shift: [0.0, -15.6e-3], ..Scene::default() });
-    assert!(matches!(error, SceneError::Bodies(DemError::InWall { .. })), "{error}");
+    let error =
+        build(FallingDiscs { floor: true, bodies: 1, shift: [0.0, -15.6e-3], ..FallingDiscs::default() });
+    assert!(matches!(error, SetupError::Bodies(DemError::InWall { .. })), "{error}");
 }
 
 #[test]
 fn too_few_cells_per_diameter() {
-    let error = build(Scene { cells_per_diameter: 3, ..Scene::default() });
-    assert!(matches!(error, SceneError::TooCoarse { found: 3 }), "{error}");
+    let error = build(FallingDiscs { cells_per_diameter: 3, ..FallingDiscs::default() });
+    assert!(matches!(error, SetupError::TooCoarse { found: 3 }), "{error}");
     told(error, &["3 cells", "4 are needed", "raise"]);
     // The library says so itself when the scene does not.
-    let coarse = Scene { cells_per_diameter: 4, ..Scene::default() };
+    let coarse = FallingDiscs { cells_per_diameter: 4, ..FallingDiscs::default() };
     let mut bodies = RigidBodies::new(Periods::new([Some(10e-3), Some(20e-3), None]));
     let (disc, pose) = (Disc::new(0.2e-3).unwrap(), Pose::at([5e-3, 10e-3, 0.0]));
     bodies.add(disc, Material::default(), pose, Twist::default(), Freedom::PLANAR).unwrap();
@@ -84,12 +85,18 @@ fn unwritable_folder() {
 
 #[test]
 fn senseless_numbers() {
-    assert!(matches!(build(Scene { bodies: 0, ..Scene::default() }), SceneError::Count { .. }));
-    assert!(matches!(build(Scene { bodies: 1_000_000, ..Scene::default() }), SceneError::Count { .. }));
-    assert!(matches!(build(Scene { densities: vec![], ..Scene::default() }), SceneError::NoDensity));
+    assert!(matches!(build(FallingDiscs { bodies: 0, ..FallingDiscs::default() }), SetupError::Count { .. }));
+    assert!(matches!(
+        build(FallingDiscs { bodies: 1_000_000, ..FallingDiscs::default() }),
+        SetupError::Count { .. }
+    ));
+    assert!(matches!(
+        build(FallingDiscs { densities: vec![], ..FallingDiscs::default() }),
+        SetupError::NoDensity
+    ));
     for diameter in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let error = build(Scene { diameter, ..Scene::default() });
-        assert!(matches!(error, SceneError::Diameter { .. }), "{diameter}: {error}");
+        let error = build(FallingDiscs { diameter, ..FallingDiscs::default() });
+        assert!(matches!(error, SetupError::Diameter { .. }), "{diameter}: {error}");
     }
     let good = Schedule { end: 1e-3, intervals: 1, ..Schedule::default() };
     let schedules = [
@@ -102,7 +109,7 @@ fn senseless_numbers() {
         Schedule { ramp: [0.0, 1.1], ..good },
         Schedule { ramp: [0.1, 1.0], ..good },
     ];
-    let scene = Scene { cells_per_diameter: 5, ..Scene::default() };
+    let scene = FallingDiscs { cells_per_diameter: 5, ..FallingDiscs::default() };
     let mut simulation = scene.build(SmoothForcing::new(FLUID.density)).unwrap();
     for schedule in schedules {
         let error = coupling::run(&mut simulation, &schedule, &mut (), &AtomicBool::new(false)).unwrap_err();

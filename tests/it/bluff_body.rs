@@ -1,5 +1,4 @@
 //! A cylinder in a turbulent stream, with its walls immersed.
-use example_support::axes::gathered;
 use siltflow::dem::Disc;
 use siltflow::flow::{
     Axis, CartesianGrid, Convection, Fluid, Modelled, Profile, Side, Simple, SimpleParams, TransportParams,
@@ -8,6 +7,7 @@ use siltflow::flow::{
 use siltflow::ibm::{StaticBodies, cut_cells};
 use siltflow::interfaces::Pose;
 use turb::{Inflow, KOmegaSst, Sst};
+use validation::axes::gathered;
 
 /// Of half a cylinder at Re 10⁴ with so many cells per diameter: Cd, and friction's part of it.
 fn drag(cells: usize, stress: WallStress) -> [f64; 2] {

@@ -1,10 +1,10 @@
 //! What is on disk after a run, and after one that was cut short.
 use crate::with_threads;
-use example_support::scene::{FLUID, Scene};
 use siltflow::coupling::{self, CouplingError, FileOutput, Observer, Schedule, StepInfo};
 use siltflow::ibm::SmoothForcing;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
+use validation::falling_discs::{FLUID, FallingDiscs};
 
 fn folder(name: &str) -> PathBuf {
     let path = std::env::temp_dir().join(format!("siltflow-files-{}-{name}", std::process::id()));
@@ -24,7 +24,7 @@ impl<S> Observer<S> for StopAfter<'_> {
 
 fn run(out: &Path, stop_after: usize, resume: bool) {
     with_threads(1, || {
-        let mut fall = Scene { cells_per_diameter: 6, ..Scene::default() }
+        let mut fall = FallingDiscs { cells_per_diameter: 6, ..FallingDiscs::default() }
             .build(SmoothForcing::new(FLUID.density))
             .unwrap();
         let state = out.join("state.bin");

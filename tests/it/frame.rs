@@ -1,11 +1,11 @@
 //! What every later part relies on: no allocation in a step, the same numbers for any number of threads.
 use crate::with_threads;
-use example_support::scene::{FLUID, Scene};
 use siltflow::coupling::{Ledger, Observer, StepInfo};
 use siltflow::ibm::{Forcing, Hfdib, SmoothForcing};
 use siltflow::interfaces::{BodyId, Kinematics};
+use validation::falling_discs::{FLUID, FallingDiscs};
 
-fn allocations(scene: &Scene, forcing: impl Forcing, threads: usize) -> u64 {
+fn allocations(scene: &FallingDiscs, forcing: impl Forcing, threads: usize) -> u64 {
     with_threads(threads, || {
         let mut simulation = scene.build(forcing).unwrap();
         let mut ledger = Ledger::new();
@@ -25,25 +25,25 @@ fn allocations(scene: &Scene, forcing: impl Forcing, threads: usize) -> u64 {
 
 #[test]
 fn a_warmed_up_step_allocates_nothing() {
-    let scene = Scene { cells_per_diameter: 8, ..Scene::default() };
+    let scene = FallingDiscs { cells_per_diameter: 8, ..FallingDiscs::default() };
     assert_eq!(allocations(&scene, SmoothForcing::new(FLUID.density), 1), 0);
     assert_eq!(allocations(&scene, SmoothForcing::new(FLUID.density), 2), 0);
-    let paper = Scene { virtual_mass: Some(1.0), ..scene.clone() };
+    let paper = FallingDiscs { virtual_mass: Some(1.0), ..scene.clone() };
     assert_eq!(allocations(&paper, Hfdib::new(FLUID.density), 1), 0);
-    let floor = Scene { floor: true, ..scene };
+    let floor = FallingDiscs { floor: true, ..scene };
     assert_eq!(allocations(&floor, SmoothForcing::new(FLUID.density), 1), 0);
 }
 
 #[test]
 fn contacts_allocate_nothing() {
     // A heavy disc a hundredth of a millimetre above the floor lands while steps are still warming up.
-    let scene = Scene {
+    let scene = FallingDiscs {
         cells_per_diameter: 8,
         floor: true,
         bodies: 1,
         densities: vec![8000.0],
         shift: [0.0, -15.495e-3],
-        ..Scene::default()
+        ..FallingDiscs::default()
     };
     assert_eq!(allocations(&scene, SmoothForcing::new(FLUID.density), 1), 0);
 }
@@ -51,7 +51,7 @@ fn contacts_allocate_nothing() {
 /// Every bit of flow and bodies after 60 steps.
 fn fingerprint(floor: bool, threads: usize) -> Vec<u64> {
     with_threads(threads, || {
-        let scene = Scene { cells_per_diameter: 9, floor, ..Scene::default() };
+        let scene = FallingDiscs { cells_per_diameter: 9, floor, ..FallingDiscs::default() };
         let mut simulation = scene.build(SmoothForcing::new(FLUID.density)).unwrap();
         for _ in 0..60 {
             simulation.step(2e-4).unwrap();

@@ -1,16 +1,16 @@
 //! Bodies that the flow moves, coarsely, beside what was measured, computed or derived by others. The examples `settling_sphere` and
 //! `drafting_kissing_tumbling` and `cargo bench --bench moving -- shear jeffery` do the same on finer grids.
 use crate::with_threads;
-use example_support::coupled::{Fall, Motion};
-use example_support::film::{brenner, sinking};
-use example_support::reference_curve::{Distance, read};
-use example_support::settling_sphere::{Case, SettlingSphere};
-use example_support::sheared_body::{Shear, settled_spin};
-use example_support::sinking_discs::{BOX, DIAMETER, FLUID_DENSITY, SinkingDiscs};
 use siltflow::coupling::{self, Schedule};
 use siltflow::dem::{Chen, ContactLaw, Lubricated};
 use siltflow::ibm::{SmoothFilm, SmoothForcing};
 use std::sync::atomic::AtomicBool;
+use validation::film::{brenner, sinking};
+use validation::motion::{Fall, Motion};
+use validation::reference_curve::{Distance, read};
+use validation::settling_sphere::{Case, SettlingSphere};
+use validation::sheared_body::{Shear, settled_spin};
+use validation::sinking_discs::{BOX, DIAMETER, FLUID_DENSITY, SinkingDiscs};
 
 /// How the bodies moved up to `end` \[s\].
 fn motion<const D: usize, L: ContactLaw>(fall: &mut Fall<D, L>, end: f64, courant: f64) -> Motion {

@@ -1,9 +1,9 @@
 //! Scalars with conditions on bodies.
-use example_support::prescribed_bodies::{Bore, PrescribedBodies};
 use siltflow::dem::Disc;
 use siltflow::flow::{CartesianGrid, Fluid, Projection, Scalar, ScalarSide, ScalarTransport, Side};
 use siltflow::ibm::{Given, ImmersedScalar};
 use siltflow::interfaces::BodyId;
+use validation::prescribed_bodies::{Bore, PrescribedBodies};
 
 /// Largest error of steady conduction from R 0.25 to R 0.5 where φ = 0, `cells` per unit of length: φ = ln(2r)/ln ½, given as 1 on the
 /// inner cylinder or as its gradient there.

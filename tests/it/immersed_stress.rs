@@ -1,12 +1,12 @@
 //! Shapes that are hard on a grid, by all ways to immerse them: a flow that stays finite and bounded, or an error with a name.
 //! (Surfaces that are not closed: crates/ibm/src/mesh/tests.rs.)
-use example_support::Outcome;
-use example_support::prescribed_bodies::{PrescribedBodies, forced_step};
-use example_support::walled_flows::put_walls;
 use siltflow::dem::Disc;
 use siltflow::flow::{CartesianGrid, Fluid, Profile, Projection, Side};
 use siltflow::ibm::{Forcing, Hfdib, SmoothForcing};
 use siltflow::interfaces::{Aabb, Bodies, Kinematics, Point, Solid, Vector, VelocityField};
+use validation::Outcome;
+use validation::prescribed_bodies::{PrescribedBodies, forced_step};
+use validation::walled_flows::put_walls;
 
 /// A closed polygon, its corners counter-clockwise.
 #[derive(Clone)]

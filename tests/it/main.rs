@@ -1,4 +1,4 @@
-//! Tests across crates, in one binary. Their scene is that of the example `falling_discs` (crate `example-support`).
+//! Tests across crates, in one binary.
 mod bad_input;
 mod bluff_body;
 mod command;
@@ -32,13 +32,12 @@ mod steady_scalars;
 mod steady_walls;
 mod strategies;
 mod stretched;
-mod suspension;
 mod turbulence;
 mod wall_rows;
 mod walls;
 mod window;
 
-/// Runs `f` where the examples run: inside a pool of so many threads.
+/// Runs `f` inside a pool of so many threads.
 fn with_threads<R: Send>(threads: usize, f: impl FnOnce() -> R + Send) -> R {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool").install(f)
 }

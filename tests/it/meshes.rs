@@ -1,8 +1,8 @@
 //! Bodies made of triangles (`dem`) on grids (`ibm`).
-use example_support::prescribed_bodies::PrescribedBodies;
 use siltflow::dem::{Shape, TriangleMesh};
 use siltflow::ibm::{SolidFraction, SolidNode, WallDistance};
 use siltflow::interfaces::{BodyId, Kinematics, Lattice, Nodes, Point, Pose, Rotation, Twist, Vector};
+use validation::prescribed_bodies::PrescribedBodies;
 
 /// A brick with these edges.
 fn brick(size: [f64; 3]) -> TriangleMesh {

@@ -1,12 +1,12 @@
 //! Bodies that move through the grid. `benches/moving` has more forcings, resolutions and steps.
-use example_support::moved_body::{MovedScene, Noise, Swinging, passing, turning};
-use example_support::periodic_cube;
 use siltflow::coupling::{Particles, Simulation, WeightBalance};
 use siltflow::dem::{Disc, Material, RigidBodies, Sphere};
 use siltflow::flow::{CartesianGrid, Diffusion, Fluid, Projection, Side};
 use siltflow::ibm::{ControlVolume, Forcing, Hfdib, Kernel, SmoothForcing};
 use siltflow::interfaces::{BodyId, Freedom, Kinematics, Periods, Point, Pose, Twist, Vector};
 use std::f64::consts::PI;
+use validation::moved_body::{MovedScene, Noise, Swinging, passing, turning};
+use validation::periodic_cube;
 
 fn quiet() -> Box<dyn Forcing> {
     Box::new(SmoothForcing::new(1.0).with_kernel(Kernel::QuinticSpline))

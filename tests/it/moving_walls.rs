@@ -1,8 +1,5 @@
 //! Turbulence models beside bodies that move. `cargo bench --bench turbulence -- couette shaken` has more models, cells and Reynolds numbers.
 use crate::state::{assert_same, saved};
-use example_support::moved_body::{Noise, Swinging};
-use example_support::prescribed_bodies::{PrescribedBodies, forced_step};
-use example_support::sliding_plate::{Couette, Lower, TurbulentFlow, with_model};
 use siltflow::coupling::{Particles, Simulation, Walled, WeightBalance};
 use siltflow::dem::{Disc, Material, RigidBodies};
 use siltflow::flow::{
@@ -14,6 +11,9 @@ use siltflow::interfaces::{
 };
 use std::sync::Arc;
 use turb::{Inflow, KOmegaSst, Smagorinsky, SmagorinskyConstants, Sst, StandardKEpsilon};
+use validation::moved_body::{Noise, Swinging};
+use validation::prescribed_bodies::{PrescribedBodies, forced_step};
+use validation::sliding_plate::{Couette, Lower, TurbulentFlow, with_model};
 
 const NU: f64 = 1e-4;
 
@@ -48,7 +48,7 @@ fn a_plate_that_slides_is_a_wall() {
     let drifts = couette.run(Sst::default(), Lower::Plate(0.25), -0.5).unwrap();
     let off = |a: f64, b: f64| (a / b - 1.0).abs();
     for y in [0.15, 0.3, 0.5, 0.8] {
-        let both = |list: fn(&example_support::sliding_plate::CouetteProfile) -> &Vec<f64>| {
+        let both = |list: fn(&validation::sliding_plate::CouetteProfile) -> &Vec<f64>| {
             [&plate, &side, &drifts].map(|p| p.at(list(p), y))
         };
         let [u, k, nu_t] = [both(|p| &p.u), both(|p| &p.k), both(|p| &p.nu_t)];

@@ -1,13 +1,13 @@
 //! The coupled scene against theory and conservation laws. The full tables are in docs/results.md.
 use crate::with_threads;
-use example_support::scene::{FLUID, GRAVITY, Scene};
 use siltflow::coupling::{self, Ledger, LedgerReport, Schedule};
 use siltflow::ibm::{Forcing, Hfdib, SmoothForcing};
 use siltflow::interfaces::{BodyId, Kinematics};
 use std::sync::atomic::AtomicBool;
+use validation::falling_discs::{FLUID, FallingDiscs, GRAVITY};
 
 /// Falling speeds at the end, and the books.
-fn run(scene: &Scene, end: f64, dt: Option<f64>, forcing: impl Forcing) -> (Vec<f64>, LedgerReport) {
+fn run(scene: &FallingDiscs, end: f64, dt: Option<f64>, forcing: impl Forcing) -> (Vec<f64>, LedgerReport) {
     with_threads(1, || {
         let mut simulation = scene.build(forcing).unwrap();
         let schedule = Schedule { end, intervals: 5, dt, ..Schedule::default() };
@@ -36,7 +36,7 @@ fn theory(column: &str, time: f64) -> f64 {
 #[test]
 fn discs_start_as_unsteady_stokes_theory_says() {
     for (cells, tolerance) in [(15, 0.08), (60, 0.03)] {
-        let scene = Scene { cells_per_diameter: cells, ..Scene::default() };
+        let scene = FallingDiscs { cells_per_diameter: cells, ..FallingDiscs::default() };
         let (speeds, _) = run(&scene, 0.005, None, smooth());
         for (speed, column) in speeds.iter().zip(["pair_1060", "pair_1030"]) {
             let exact = theory(column, 0.005);
@@ -44,12 +44,12 @@ fn discs_start_as_unsteady_stokes_theory_says() {
         }
     }
     for (density, column) in [(1060.0, "alone_1060"), (1030.0, "alone_1030")] {
-        let scene = Scene { bodies: 1, densities: vec![density], ..Scene::default() };
+        let scene = FallingDiscs { bodies: 1, densities: vec![density], ..FallingDiscs::default() };
         let (speeds, _) = run(&scene, 0.005, None, smooth());
         let exact = theory(column, 0.005);
         assert!((speeds[0] / exact - 1.0).abs() < 0.08, "{column}: {:e}, {exact:e}", speeds[0]);
     }
-    let (speeds, _) = run(&Scene::default(), 0.03, None, smooth());
+    let (speeds, _) = run(&FallingDiscs::default(), 0.03, None, smooth());
     for (speed, column) in speeds.iter().zip(["pair_1060", "pair_1030"]) {
         let exact = theory(column, 0.03);
         assert!((speed / exact - 1.0).abs() < 0.08, "{column}: {speed:e}, {exact:e}");
@@ -59,8 +59,9 @@ fn discs_start_as_unsteady_stokes_theory_says() {
 #[test]
 fn the_start_does_not_depend_on_the_grid_offset() {
     let h = 1e-3 / 15.0;
-    let speeds = [[0.0, 0.0], [0.31, 0.77], [0.5, 0.5]]
-        .map(|s| run(&Scene { shift: s.map(|s| s * h), ..Scene::default() }, 0.01, None, smooth()).0[0]);
+    let speeds = [[0.0, 0.0], [0.31, 0.77], [0.5, 0.5]].map(|s| {
+        run(&FallingDiscs { shift: s.map(|s| s * h), ..FallingDiscs::default() }, 0.01, None, smooth()).0[0]
+    });
     let spread = speeds.iter().fold(0.0, |m, s| f64::max(m, (s / speeds[0] - 1.0).abs()));
     assert!(spread < 3e-3, "{speeds:?}");
 }
@@ -68,7 +69,7 @@ fn the_start_does_not_depend_on_the_grid_offset() {
 #[test]
 fn halving_the_step_changes_little() {
     for end in [0.005, 0.03] {
-        let speeds = [4e-4, 2e-4, 1e-4].map(|dt| run(&Scene::default(), end, Some(dt), smooth()).0);
+        let speeds = [4e-4, 2e-4, 1e-4].map(|dt| run(&FallingDiscs::default(), end, Some(dt), smooth()).0);
         for b in 0..2 {
             for pair in speeds.windows(2) {
                 let change = (pair[0][b] / pair[1][b] - 1.0).abs();
@@ -80,10 +81,11 @@ fn halving_the_step_changes_little() {
 
 #[test]
 fn books_are_kept() {
-    let coarse = Scene { cells_per_diameter: 10, ..Scene::default() };
-    let floor = Scene { floor: true, ..coarse.clone() };
-    let landing = Scene { bodies: 1, densities: vec![8000.0], shift: [0.0, -15.4e-3], ..floor.clone() };
-    let paper = Scene { virtual_mass: Some(1.0), ..coarse.clone() };
+    let coarse = FallingDiscs { cells_per_diameter: 10, ..FallingDiscs::default() };
+    let floor = FallingDiscs { floor: true, ..coarse.clone() };
+    let landing =
+        FallingDiscs { bodies: 1, densities: vec![8000.0], shift: [0.0, -15.4e-3], ..floor.clone() };
+    let paper = FallingDiscs { virtual_mass: Some(1.0), ..coarse.clone() };
     let reports = [
         // What the forcing itself takes from the kinetic energy, as a share of the work: nothing else
         // is unaccounted for. The paper's sets velocities that the pressure then has to correct.
@@ -107,7 +109,7 @@ fn books_are_kept() {
 /// A run may go on under another schedule whose times differ by round-off, and after a very short step.
 #[test]
 fn other_schedules_and_very_short_steps_do_no_harm() {
-    let scene = Scene { cells_per_diameter: 10, ..Scene::default() };
+    let scene = FallingDiscs { cells_per_diameter: 10, ..FallingDiscs::default() };
     let stop = AtomicBool::new(false);
     let mut simulation = scene.build(smooth()).unwrap();
     // 0.03 and 0.2·30/200 differ in the last bit.
@@ -130,7 +132,7 @@ fn other_schedules_and_very_short_steps_do_no_harm() {
 /// With the parabola extrapolated into the body this run diverges.
 #[test]
 fn the_papers_forcing_is_stable_at_small_steps() {
-    let scene = Scene { cells_per_diameter: 10, virtual_mass: Some(1.0), ..Scene::default() };
+    let scene = FallingDiscs { cells_per_diameter: 10, virtual_mass: Some(1.0), ..FallingDiscs::default() };
     let (speeds, report) = run(&scene, 0.15, Some(5e-5), Hfdib::new(FLUID.density));
     let (reference, _) = run(&scene, 0.15, None, smooth());
     for (a, b) in speeds.iter().zip(&reference) {
@@ -142,7 +144,8 @@ fn the_papers_forcing_is_stable_at_small_steps() {
 /// A velocity that runs away ends in an error, not in ever smaller steps.
 #[test]
 fn a_collapsing_step_is_an_error() {
-    let mut simulation = Scene { cells_per_diameter: 5, ..Scene::default() }.build(smooth()).unwrap();
+    let mut simulation =
+        FallingDiscs { cells_per_diameter: 5, ..FallingDiscs::default() }.build(smooth()).unwrap();
     simulation.flow.set_velocity(|_| [1e9, 0.0]);
     simulation.step(1e-20).unwrap();
     let error =
@@ -153,7 +156,7 @@ fn a_collapsing_step_is_an_error() {
 #[test]
 fn the_balanced_box_holds_its_mean_flow() {
     use siltflow::coupling::WeightBalance;
-    let scene = |balance| Scene { cells_per_diameter: 10, balance, ..Scene::default() };
+    let scene = |balance| FallingDiscs { cells_per_diameter: 10, balance, ..FallingDiscs::default() };
     let flow = |balance| {
         let (speeds, report) = run(&scene(balance), 0.05, None, smooth());
         report.volume_flow.norm() / (10e-3 * 20e-3) / speeds[0]
@@ -174,13 +177,13 @@ fn the_balanced_box_holds_its_mean_flow() {
 #[test]
 fn a_disc_lands_and_stays() {
     // Heavy enough to break through the film of fluid under it, which a light disc rests on for long.
-    let scene = Scene {
+    let scene = FallingDiscs {
         cells_per_diameter: 8,
         floor: true,
         bodies: 1,
         densities: vec![8000.0],
         shift: [0.0, -15.3e-3],
-        ..Scene::default()
+        ..FallingDiscs::default()
     };
     with_threads(1, || {
         let mut simulation = scene.build(smooth()).unwrap();
@@ -189,7 +192,7 @@ fn a_disc_lands_and_stays() {
         let bodies = &simulation.particles.bodies;
         let (pose, twist) = (bodies.pose(BodyId(0)), bodies.twist(BodyId(0)));
         // Sunk in by what bears its weight: Y V/L_c with V = (4/3)√(2r) δ^1.5 for small δ, L_c = 4r.
-        let material = example_support::scene::MATERIAL;
+        let material = validation::falling_discs::MATERIAL;
         let stiffness = material.youngs_modulus / (2.0 * (1.0 - material.poisson_ratio.powi(2)));
         let (r, area) = (0.5e-3_f64, std::f64::consts::PI * 0.25e-6);
         let weight = 7000.0 * area * GRAVITY;
@@ -206,7 +209,12 @@ fn a_disc_lands_and_stays() {
 #[test]
 fn a_start_in_motion_kicks_nobody() {
     use siltflow::interfaces::{Dynamics, Twist, Vector};
-    let scene = Scene { cells_per_diameter: 10, bodies: 1, densities: vec![1000.0], ..Scene::default() };
+    let scene = FallingDiscs {
+        cells_per_diameter: 10,
+        bodies: 1,
+        densities: vec![1000.0],
+        ..FallingDiscs::default()
+    };
     let mut simulation = scene.build(smooth()).unwrap();
     simulation.flow.set_velocity(|_| [0.01, 0.0]);
     let moving = Twist { linear: Vector::new(0.01, 0.0, 0.0), ..Twist::default() };
@@ -223,7 +231,7 @@ fn a_start_in_motion_kicks_nobody() {
 #[test]
 fn held_bodies_weigh_nothing_on_the_box() {
     use siltflow::interfaces::Freedom;
-    let scene = Scene { cells_per_diameter: 8, freedom: Freedom::NONE, ..Scene::default() };
+    let scene = FallingDiscs { cells_per_diameter: 8, freedom: Freedom::NONE, ..FallingDiscs::default() };
     let (_, still) = run(&scene, 0.02, None, smooth());
     assert!(still.volume_flow.norm() < 1e-18, "{}", still.volume_flow);
     let mut simulation = scene.build(smooth()).unwrap();
@@ -240,7 +248,12 @@ fn held_bodies_weigh_nothing_on_the_box() {
 #[test]
 fn light_discs_are_stable() {
     for density in [1.0, 100.0, 500.0] {
-        let scene = Scene { cells_per_diameter: 10, bodies: 1, densities: vec![density], ..Scene::default() };
+        let scene = FallingDiscs {
+            cells_per_diameter: 10,
+            bodies: 1,
+            densities: vec![density],
+            ..FallingDiscs::default()
+        };
         let (speeds, report) = run(&scene, 0.02, None, smooth());
         // Started by buoyancy against the added mass: a ≈ (ρ − ρ_s) g/(ρ_s + ρ) less viscosity.
         let inviscid = -(1000.0 - density) / (1000.0 + density) * 9.81 * 0.02;
@@ -253,13 +266,13 @@ fn light_discs_are_stable() {
 #[test]
 fn what_does_not_fit_is_refused() {
     use coupling::CouplingError;
-    let scene = Scene { cells_per_diameter: 8, ..Scene::default() };
+    let scene = FallingDiscs { cells_per_diameter: 8, ..FallingDiscs::default() };
     let error = scene.build(SmoothForcing::new(1.0)).err().unwrap();
     assert!(error.to_string().contains("1000"), "{error}");
     use siltflow::interfaces::{Dynamics, Freedom, Twist, Vector};
     // Contacts would stop it at the floor, were it not told how to move.
     let told = Freedom::NONE;
-    let floor = Scene { floor: true, bodies: 1, freedom: told, shift: [0.0, -14e-3], ..scene };
+    let floor = FallingDiscs { floor: true, bodies: 1, freedom: told, shift: [0.0, -14e-3], ..scene };
     let mut simulation = floor.build(smooth()).unwrap();
     let fast = Twist { linear: Vector::new(0.0, -40.0, 0.0), ..Twist::default() };
     simulation.particles.bodies.set_twist(BodyId(0), fast);
@@ -272,7 +285,7 @@ fn what_does_not_fit_is_refused() {
 fn a_rejected_step_leaves_no_trace() {
     use siltflow::interfaces::Checkpoint;
     use std::collections::HashMap;
-    let scene = Scene { cells_per_diameter: 8, ..Scene::default() };
+    let scene = FallingDiscs { cells_per_diameter: 8, ..FallingDiscs::default() };
     let mut simulation = scene.build(smooth()).unwrap();
     for _ in 0..5 {
         simulation.step(2e-4).unwrap();

@@ -1,6 +1,5 @@
 //! Bodies that come into a flow and go out of it while it runs.
 use crate::with_threads;
-use example_support::scene::{FLUID, Scene};
 use siltflow::coupling::{self, Ledger, Particles, Schedule, Simulation};
 use siltflow::dem::placing::Region;
 use siltflow::dem::{Disc, Entrant, HalfSpace, Inflow, Material, Population};
@@ -8,12 +7,13 @@ use siltflow::ibm::SmoothForcing;
 use siltflow::interfaces::{Aabb, Freedom, Kinematics, Point, Twist, Vector};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use validation::falling_discs::{FLUID, FallingDiscs};
 
 pub(crate) type Rain = Simulation<2, Particles<SmoothForcing, Population>>;
 
 /// Discs of 0.8 to 1 mm come in at the top of a closed box; one fell there before. Below 8 mm they are gone.
 pub(crate) fn rain() -> Rain {
-    let scene = Scene { cells_per_diameter: 8, floor: true, bodies: 1, ..Scene::default() };
+    let scene = FallingDiscs { cells_per_diameter: 8, floor: true, bodies: 1, ..FallingDiscs::default() };
     let at = Aabb { min: Point::new(1e-3, 17e-3, 0.0), max: Point::new(9e-3, 19e-3, 0.0) };
     let recipe = |serial: u64| Entrant {
         shape: Arc::new(Disc::new(1e-4 * (4.0 + (serial % 2) as f64)).unwrap()),

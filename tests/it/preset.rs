@@ -1,12 +1,12 @@
 //! The paper's algorithm, as one call.
 use crate::with_threads;
-use example_support::scene::{FLUID, Scene};
 use siltflow::coupling::{self, HfdibDem, Ledger, LedgerReport, Particles, Schedule, Simulation};
 use siltflow::flow::{PisoParams, TimeScheme};
 use siltflow::ibm::SmoothForcing;
 use siltflow::interfaces::{BodyId, Checkpoint, Kinematics, Twist};
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
+use validation::falling_discs::{FLUID, FallingDiscs};
 
 /// Speeds of the two discs at 0.03 s \[mm/s\].
 fn speeds(mut simulation: HfdibDem<2>) -> [f64; 2] {
@@ -20,7 +20,7 @@ fn speeds(mut simulation: HfdibDem<2>) -> [f64; 2] {
 #[test]
 fn two_discs_sink_by_the_papers_algorithm() {
     with_threads(1, || {
-        let found = speeds(Scene::default().hfdib_dem().unwrap());
+        let found = speeds(FallingDiscs::default().hfdib_dem().unwrap());
         for (speed, theory) in found.into_iter().zip([5.45, 2.96]) {
             assert!((speed / theory - 1.0).abs() < 0.05, "{speed} {theory}");
         }
@@ -31,7 +31,8 @@ fn two_discs_sink_by_the_papers_algorithm() {
 #[test]
 fn the_scheme_in_time_does_not_matter_to_heavy_discs() {
     with_threads(1, || {
-        let scene = Scene { densities: vec![2000.0], cells_per_diameter: 10, ..Scene::default() };
+        let scene =
+            FallingDiscs { densities: vec![2000.0], cells_per_diameter: 10, ..FallingDiscs::default() };
         let euler = speeds(scene.hfdib_dem().unwrap());
         let mut simulation = scene.hfdib_dem().unwrap();
         let params = PisoParams { time_scheme: TimeScheme::Bdf2, ..*simulation.flow.params() };
@@ -46,7 +47,7 @@ fn the_scheme_in_time_does_not_matter_to_heavy_discs() {
 #[test]
 fn the_papers_algorithm_is_resumed() {
     with_threads(1, || {
-        let scene = Scene { cells_per_diameter: 8, ..Scene::default() };
+        let scene = FallingDiscs { cells_per_diameter: 8, ..FallingDiscs::default() };
         let run = |from: Option<&BTreeMap<String, Vec<f64>>>, steps: usize| {
             let mut simulation = scene.hfdib_dem().unwrap();
             if let Some(state) = from {
@@ -69,7 +70,8 @@ fn the_papers_algorithm_is_resumed() {
 fn one_solution_works_on_piso() {
     for density in [100.0, 1060.0] {
         with_threads(1, || {
-            let scene = Scene { densities: vec![density], cells_per_diameter: 10, ..Scene::default() };
+            let scene =
+                FallingDiscs { densities: vec![density], cells_per_diameter: 10, ..FallingDiscs::default() };
             let speed = |twist: Twist| 1e3 * twist.linear.norm();
             let schedule = Schedule { end: 0.03, intervals: 30, dt: Some(2.5e-4), ..Schedule::default() };
             let mut ours = scene.build(SmoothForcing::new(FLUID.density)).unwrap();
@@ -95,7 +97,7 @@ fn one_solution_works_on_piso() {
 fn the_papers_algorithm_keeps_books() {
     let books = |floor: bool, tolerance: f64| -> LedgerReport {
         with_threads(1, || {
-            let scene = Scene { cells_per_diameter: 10, floor, ..Scene::default() };
+            let scene = FallingDiscs { cells_per_diameter: 10, floor, ..FallingDiscs::default() };
             let mut simulation = scene.hfdib_dem().unwrap();
             let params = PisoParams {
                 momentum_tolerance: tolerance,

@@ -1,16 +1,16 @@
 //! Bodies that are taken out of a flow, and put into it.
 use crate::with_threads;
-use example_support::scene::{FLUID, Scene};
 use siltflow::coupling::{CouplingError, Particles, Simulation};
 use siltflow::dem::{Disc, Material, RigidBodies};
 use siltflow::ibm::{Forcing, Hfdib, SmoothForcing};
 use siltflow::interfaces::{BodyId, Freedom, Kinematics, Pose, Twist};
+use validation::falling_discs::{FLUID, FallingDiscs};
 
 type Fall<F> = Simulation<2, Particles<F, RigidBodies>>;
 
 /// Two discs that have fallen for a while, and a third, of another size, that was put in on the way.
 fn three<F: Forcing>(forcing: F) -> Fall<F> {
-    let scene = Scene { cells_per_diameter: 10, ..Scene::default() };
+    let scene = FallingDiscs { cells_per_diameter: 10, ..FallingDiscs::default() };
     let mut fall = scene.build(forcing).unwrap();
     (0..10).for_each(|_| fall.step(1e-3).unwrap());
     let bodies = &mut fall.particles.bodies;

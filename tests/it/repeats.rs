@@ -3,8 +3,6 @@ use crate::moving_walls::drifting;
 use crate::population::rain;
 use crate::state::{assert_same, saved};
 use crate::with_threads;
-use example_support::prescribed_bodies::PrescribedBodies;
-use example_support::walled_flows::put_walls;
 use siltflow::coupling::{
     self, CouplingError, Evolving, Explicit, FlowSolver, Observer, Particles, RunSummary, Schedule,
     Simulation, StepInfo, WeightBalance, WithScalars,
@@ -16,6 +14,8 @@ use siltflow::flow::{
 use siltflow::ibm::{Forcing, Hfdib, SmoothForcing};
 use siltflow::interfaces::{Freedom, Periods, Pose, Twist, Vector};
 use std::sync::atomic::AtomicBool;
+use validation::prescribed_bodies::PrescribedBodies;
+use validation::walled_flows::put_walls;
 
 const COURANT: f64 = 0.4;
 

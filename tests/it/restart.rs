@@ -1,12 +1,12 @@
 //! A run that is stopped goes on as if it had not been.
 use crate::with_threads;
-use example_support::scene::{FLUID, Scene};
 use siltflow::coupling::{self, CheckpointError, CouplingError, Particles, Schedule, Simulation, StepInfo};
 use siltflow::dem::RigidBodies;
 use siltflow::ibm::SmoothForcing;
 use siltflow::interfaces::{BodyId, Kinematics};
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
+use validation::falling_discs::{FLUID, FallingDiscs};
 
 type Fall = Simulation<2, Particles<SmoothForcing, RigidBodies>>;
 
@@ -18,7 +18,7 @@ fn scratch(name: &str) -> PathBuf {
 
 /// Two discs, or one that lands on the floor and is in contact when the run is cut.
 fn build(floor: bool) -> Fall {
-    let mut scene = Scene { cells_per_diameter: 8, floor, ..Scene::default() };
+    let mut scene = FallingDiscs { cells_per_diameter: 8, floor, ..FallingDiscs::default() };
     if floor {
         scene.bodies = 1;
         scene.densities = vec![8000.0];
@@ -132,8 +132,9 @@ fn a_damaged_or_foreign_state_is_refused() {
     }
 
     std::fs::write(&path, &good).unwrap();
-    let mut other =
-        Scene { cells_per_diameter: 9, ..Scene::default() }.build(SmoothForcing::new(1000.0)).unwrap();
+    let mut other = FallingDiscs { cells_per_diameter: 9, ..FallingDiscs::default() }
+        .build(SmoothForcing::new(1000.0))
+        .unwrap();
     assert!(matches!(coupling::load(&path, &mut other), Err(CheckpointError::Mismatch(_))));
     let missing = scratch("is-not-there.bin");
     assert!(matches!(coupling::load(&missing, &mut fall), Err(CheckpointError::Io { .. })));

@@ -1,13 +1,13 @@
 //! What a scene does not need costs nothing. Instructions are counted by docs/skipping.sh.
-use example_support::scene::{FLUID, Scene};
 use siltflow::coupling::{Simulation, WeightBalance};
 use siltflow::flow::Projection;
 use siltflow::ibm::{Hfdib, SmoothForcing};
 use siltflow::interfaces::Freedom;
+use validation::falling_discs::{FLUID, FallingDiscs};
 
 #[test]
 fn a_static_body_is_projected_once() {
-    let scene = Scene { cells_per_diameter: 8, freedom: Freedom::NONE, ..Scene::default() };
+    let scene = FallingDiscs { cells_per_diameter: 8, freedom: Freedom::NONE, ..FallingDiscs::default() };
     let mut simulation = scene.build(SmoothForcing::new(FLUID.density)).unwrap();
     for _ in 0..10 {
         simulation.step(1e-4).unwrap();
@@ -15,7 +15,7 @@ fn a_static_body_is_projected_once() {
     // Two bodies, two velocity components.
     assert_eq!(simulation.particles.forcing.updates(), 4);
     let mut moving =
-        Scene { freedom: Freedom::PLANAR, ..scene }.build(SmoothForcing::new(FLUID.density)).unwrap();
+        FallingDiscs { freedom: Freedom::PLANAR, ..scene }.build(SmoothForcing::new(FLUID.density)).unwrap();
     for _ in 0..10 {
         moving.step(1e-4).unwrap();
     }
@@ -25,7 +25,7 @@ fn a_static_body_is_projected_once() {
 
 #[test]
 fn no_overlap_is_computed_while_boxes_are_apart() {
-    let scene = Scene { cells_per_diameter: 8, ..Scene::default() };
+    let scene = FallingDiscs { cells_per_diameter: 8, ..FallingDiscs::default() };
     let mut simulation = scene.build(SmoothForcing::new(FLUID.density)).unwrap();
     for _ in 0..20 {
         simulation.step(1e-4).unwrap();
@@ -35,7 +35,7 @@ fn no_overlap_is_computed_while_boxes_are_apart() {
 
 #[test]
 fn nothing_immersed_is_the_plain_flow_loop() {
-    let scene = Scene { cells_per_diameter: 8, ..Scene::default() };
+    let scene = FallingDiscs { cells_per_diameter: 8, ..FallingDiscs::default() };
     let swirl = |x: [f64; 2]| [(x[1] * 314.16).sin() * 1e-3, (x[0] * 628.32).cos() * 1e-3];
     let mut plain: Projection<2> = scene.flow().unwrap();
     plain.set_velocity(swirl);
@@ -48,7 +48,7 @@ fn nothing_immersed_is_the_plain_flow_loop() {
     assert_eq!(plain.velocity().field(0).data(), coupled.flow.velocity().field(0).data());
     assert_eq!(size_of_val(&coupled.particles), 0);
     // The paper's forcing projects static bodies once as well.
-    let still = Scene { freedom: Freedom::NONE, ..scene };
+    let still = FallingDiscs { freedom: Freedom::NONE, ..scene };
     let mut simulation = still.build(Hfdib::new(FLUID.density)).unwrap();
     for _ in 0..3 {
         simulation.step(1e-4).unwrap();

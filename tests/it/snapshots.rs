@@ -1,10 +1,10 @@
 //! Snapshots handed on by a running simulation.
-use example_support::scene::Scene;
 use siltflow::coupling::{BodyPaths, CouplingError, FileOutput, Quantity, Schedule, SnapshotFeed, run};
 use siltflow::ibm::SmoothForcing;
 use siltflow::interfaces::{BodyId, Kinematics, SnapshotSink};
 use std::error::Error;
 use std::sync::atomic::AtomicBool;
+use validation::falling_discs::FallingDiscs;
 
 /// Keeps all, up to a certain time.
 struct Kept(Vec<(f64, Vec<f64>)>, f64);
@@ -26,7 +26,7 @@ fn schedule() -> Schedule {
 /// λ is that of the files; velocity and pressure are those of the flow; paths are those of the bodies.
 #[test]
 fn snapshots_reach_their_sinks() {
-    let scene = Scene { cells_per_diameter: 8, ..Scene::default() };
+    let scene = FallingDiscs { cells_per_diameter: 8, ..FallingDiscs::default() };
     let mut fall = scene.build(SmoothForcing::new(1000.0)).unwrap();
     let feed = |quantity| SnapshotFeed::new(quantity, Kept(Vec::new(), f64::INFINITY));
     let folder = std::env::temp_dir().join(format!("siltflow-snapshots-{}", std::process::id()));
@@ -58,7 +58,7 @@ fn snapshots_reach_their_sinks() {
 /// What the sink says ends the run, and is told.
 #[test]
 fn a_sink_that_refuses_ends_the_run() {
-    let scene = Scene { cells_per_diameter: 8, ..Scene::default() };
+    let scene = FallingDiscs { cells_per_diameter: 8, ..FallingDiscs::default() };
     let mut fall = scene.build(SmoothForcing::new(1000.0)).unwrap();
     let mut feed = SnapshotFeed::new(Quantity::Velocity, Kept(Vec::new(), 0.012));
     let error = run(&mut fall, &schedule(), &mut feed, &AtomicBool::new(false)).unwrap_err();

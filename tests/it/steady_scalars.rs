@@ -1,9 +1,9 @@
 //! Scalars in steady flow beside immersed walls.
-use example_support::developed_duct::DevelopedDuct;
-use example_support::turned_ducts::TurnedDucts;
 use siltflow::flow::{Convection, Fluid, Scalar, ScalarSide, Settling, Side, Simple, WallStress};
 use siltflow::ibm::{StaticBodies, cut_cells};
 use turb::Sst;
+use validation::developed_duct::DevelopedDuct;
+use validation::turned_ducts::TurnedDucts;
 
 /// What gains per time what the force gives the flow, and is conducted and mixed as momentum, is the velocity, wherever walls lie on the grid; and they take all of it: what
 /// passes through cells without fluid at their centre is not lost there. (It was, so that nothing came to rest but along the grid.)

@@ -1,9 +1,4 @@
 //! Immersed walls in the steady flow: what does not depend on how the walls lie.
-use example_support::developed_duct::DevelopedDuct;
-use example_support::forced_duct::{DuctWalls, ForcedDuct};
-use example_support::plane_duct::{PlaneDuct, turbulent_duct};
-use example_support::turbulent_flows::{Drive, between_walls, developed_channel, numbers};
-use example_support::turned_ducts::TurnedDucts;
 use siltflow::flow::{
     Axis, CartesianGrid, Convection, FlowError, Fluid, Modelled, Profile, Side, Simple, SimpleParams,
     TransportParams, WallStress,
@@ -14,6 +9,11 @@ use siltflow::interfaces::{
 };
 use std::collections::HashMap;
 use turb::{Inflow, KOmegaSst, Law, Realizable, Sst, WallFunctions, Wilcox};
+use validation::developed_duct::DevelopedDuct;
+use validation::forced_duct::{DuctWalls, ForcedDuct};
+use validation::plane_duct::{PlaneDuct, turbulent_duct};
+use validation::turbulent_flows::{Drive, between_walls, developed_channel, numbers};
+use validation::turned_ducts::TurnedDucts;
 
 struct Disc(f64);
 

@@ -1,8 +1,5 @@
 //! All ways to couple flow and bodies keep the same books and agree where they are stable.
 use crate::with_threads;
-use example_support::free_body::{FreeBody, Speeds};
-use example_support::rock::Rock;
-use example_support::scene::{FLUID, Scene};
 use siltflow::coupling::{
     self, Exchange, Explicit, Iterated, Ledger, LedgerReport, OneSolve, Schedule, Simulation,
 };
@@ -10,9 +7,12 @@ use siltflow::flow::Projection;
 use siltflow::ibm::SmoothForcing;
 use siltflow::interfaces::{BodyId, Kinematics};
 use std::sync::atomic::AtomicBool;
+use validation::falling_discs::{FLUID, FallingDiscs};
+use validation::free_body::{FreeBody, Speeds};
+use validation::rock::Rock;
 
 fn run<S: Exchange<2, Projection<2>>>(
-    scene: &Scene,
+    scene: &FallingDiscs,
     schedule: &Schedule,
     strategy: S,
 ) -> Result<(Vec<f64>, LedgerReport), coupling::CouplingError> {
@@ -20,7 +20,7 @@ fn run<S: Exchange<2, Projection<2>>>(
 }
 
 fn run_with<S: Exchange<2, Projection<2>>>(
-    scene: &Scene,
+    scene: &FallingDiscs,
     schedule: &Schedule,
     forcing: SmoothForcing,
     strategy: S,
@@ -39,7 +39,8 @@ fn run_with<S: Exchange<2, Projection<2>>>(
 /// Measured: within 6e-4 of one another.
 #[test]
 fn heavy_discs_fall_alike_by_every_strategy() {
-    let scene = Scene { cells_per_diameter: 10, densities: vec![3000.0, 2000.0], ..Scene::default() };
+    let scene =
+        FallingDiscs { cells_per_diameter: 10, densities: vec![3000.0, 2000.0], ..FallingDiscs::default() };
     let schedule = Schedule { end: 0.05, intervals: 5, ..Schedule::default() };
     let one = run(&scene, &schedule, OneSolve::default()).unwrap();
     let explicit = run(&scene, &schedule, Explicit).unwrap();
@@ -58,8 +59,9 @@ fn heavy_discs_fall_alike_by_every_strategy() {
 fn markers_on_the_surface_keep_the_books() {
     let forcing = || SmoothForcing::new(FLUID.density);
     let schedule = Schedule { end: 0.05, intervals: 5, ..Schedule::default() };
-    let apart = Scene { cells_per_diameter: 10, densities: vec![3000.0, 2000.0], ..Scene::default() };
-    let meeting = Scene { densities: vec![3000.0, 1.0], ..apart.clone() };
+    let apart =
+        FallingDiscs { cells_per_diameter: 10, densities: vec![3000.0, 2000.0], ..FallingDiscs::default() };
+    let meeting = FallingDiscs { densities: vec![3000.0, 1.0], ..apart.clone() };
     let one = run_with(&apart, &schedule, forcing(), OneSolve::default()).unwrap();
     let iterated = run_with(&apart, &schedule, forcing(), Iterated::default()).unwrap();
     let met = run_with(&meeting, &schedule, forcing(), OneSolve::default()).unwrap();
@@ -77,7 +79,12 @@ fn markers_on_the_surface_keep_the_books() {
 #[test]
 fn light_discs_need_the_reaction_within_the_step() {
     for density in [1.0, 10.0] {
-        let scene = Scene { cells_per_diameter: 10, bodies: 1, densities: vec![density], ..Scene::default() };
+        let scene = FallingDiscs {
+            cells_per_diameter: 10,
+            bodies: 1,
+            densities: vec![density],
+            ..FallingDiscs::default()
+        };
         let schedule = Schedule { end: 0.03, intervals: 3, ..Schedule::default() };
         let one = run(&scene, &schedule, OneSolve::default()).unwrap();
         let iterated = run(&scene, &schedule, Iterated::default()).unwrap();
@@ -93,7 +100,12 @@ fn light_discs_need_the_reaction_within_the_step() {
 #[test]
 fn iterations_agree_in_three_rounds() {
     with_threads(1, || {
-        let scene = Scene { cells_per_diameter: 10, bodies: 1, densities: vec![1.0], ..Scene::default() };
+        let scene = FallingDiscs {
+            cells_per_diameter: 10,
+            bodies: 1,
+            densities: vec![1.0],
+            ..FallingDiscs::default()
+        };
         let Simulation { flow, particles, .. } = scene.build(SmoothForcing::new(FLUID.density)).unwrap();
         let particles = particles.with_strategy(Iterated::new(1e-9, 20));
         let mut simulation = Simulation::new(flow, particles, scene.balance).unwrap();
@@ -150,7 +162,7 @@ fn one_solution_does_at_any_density_ratio() {
 fn a_tethered_disc_hangs() {
     use siltflow::dem::Tether;
     use siltflow::interfaces::Point;
-    let scene = Scene { cells_per_diameter: 8, floor: true, bodies: 1, ..Scene::default() };
+    let scene = FallingDiscs { cells_per_diameter: 8, floor: true, bodies: 1, ..FallingDiscs::default() };
     with_threads(1, || {
         let mut simulation = scene.build(SmoothForcing::new(FLUID.density)).unwrap();
         let bodies = &mut simulation.particles.bodies;

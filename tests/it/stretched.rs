@@ -1,12 +1,12 @@
 //! Bodies on grids that are stretched away from them.
 use crate::with_threads;
-use example_support::axes::gathered;
-use example_support::scene::{BOX, FLUID, GRAVITY, MATERIAL};
 use siltflow::coupling::{CouplingError, Particles, Simulation, WeightBalance};
 use siltflow::dem::{Disc, Material, RigidBodies};
 use siltflow::flow::{Axis, CartesianGrid, Diffusion, Projection, Side};
 use siltflow::ibm::{Forcing, Hfdib, IbmError, SmoothForcing};
 use siltflow::interfaces::{BodyId, Freedom, Kinematics, Periods, Pose, Twist, Vector};
+use validation::axes::gathered;
+use validation::falling_discs::{BOX, FLUID, GRAVITY, MATERIAL};
 
 const DIAMETER: f64 = 1e-3;
 const CELLS: f64 = 15.0;

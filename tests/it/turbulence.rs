@@ -1,14 +1,14 @@
 //! Turbulence models in flows between walls, against body-fitted runs of others and direct numerical simulation.
-use example_support::reference_curve;
-use example_support::turbulent_flows::{
-    ChannelProfile, Drive, between_walls, developed_channel, duct, growing, iterate, numbers, steady_couette,
-};
 use siltflow::flow::{
     Axis, CartesianGrid, Convection, Fluid, Modelled, Profile, Scalar, ScalarSide, Settling, Side, Simple,
     SimpleParams, TransportParams,
 };
 use turb::{
     Inflow, Law, Realizable, Sst, StandardKEpsilon, Sublayer, TwoEquation, WallFunctions, Wilcox, YPlus,
+};
+use validation::reference_curve;
+use validation::turbulent_flows::{
+    ChannelProfile, Drive, between_walls, developed_channel, duct, growing, iterate, numbers, steady_couette,
 };
 
 /// y, y+, u+, k+, ω+ and ν_t/ν of OpenFOAM's simpleFoam.

@@ -1,9 +1,9 @@
 //! Wall distances and wall rows of bodies in a flow, as a turbulence model on `fv-mesh` gets them.
-use example_support::prescribed_bodies::PrescribedBodies;
 use siltflow::dem::Disc;
 use siltflow::flow::{Axis, CartesianGrid, CellTransport, Fluid, Projection, Side, Sides, TransportParams};
 use siltflow::ibm::{WallCell, WallDistance, WallRows};
 use siltflow::interfaces::{BodyId, Kinematics, Transport, Vector};
+use validation::prescribed_bodies::PrescribedBodies;
 
 const CENTRE: [f64; 2] = [0.13, 0.47];
 const RADIUS: f64 = 0.2;

@@ -1,18 +1,18 @@
 //! Immersed walls at rest: exact and published values. `benches/immersed` has the orders and the costs.
 use crate::with_threads;
-use example_support::eccentric_cylinders::EccentricCylinders;
-use example_support::prescribed_bodies::PrescribedBodies;
-use example_support::unfolded::Unfolded;
-use example_support::walled_flows::{
-    COUETTE_TORQUE, ForcedChannel, SphereArray, TurnedChannel, couette, couette_velocity, put_walls, settle,
-    surface_loads, velocity_errors,
-};
 use siltflow::coupling::{Particles, Simulation, WeightBalance};
 use siltflow::dem::{Disc, Material, Polygon, RigidBodies, Sphere};
 use siltflow::flow::{CartesianGrid, Fluid, Profile, Projection, Side};
 use siltflow::ibm::{SmoothForcing, StaticBodies, cut_walls};
 use siltflow::interfaces::{
     BodyId, Freedom, Kinematics, Periods, Pose, Rotation, Solid, Twist, Vector, VelocityField,
+};
+use validation::eccentric_cylinders::EccentricCylinders;
+use validation::prescribed_bodies::PrescribedBodies;
+use validation::unfolded::Unfolded;
+use validation::walled_flows::{
+    COUETTE_TORQUE, ForcedChannel, SphereArray, TurnedChannel, couette, couette_velocity, put_walls, settle,
+    surface_loads, velocity_errors,
 };
 
 /// Flows are steady when they change by less than this part.

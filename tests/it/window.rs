@@ -1,6 +1,5 @@
 //! A box that follows a body which sinks for long.
 use crate::with_threads;
-use example_support::scene::{FLUID, MATERIAL};
 use siltflow::coupling::{
     self, CouplingError, MovingWindow, Observer, Particles, Schedule, Simulation, StepInfo,
 };
@@ -9,6 +8,7 @@ use siltflow::flow::{Axis, CartesianGrid, FlowError, Projection, Side};
 use siltflow::ibm::SmoothForcing;
 use siltflow::interfaces::{BodyId, Freedom, Kinematics, Periods, Pose, Twist, Vector};
 use std::sync::atomic::AtomicBool;
+use validation::falling_discs::{FLUID, MATERIAL};
 
 const D: f64 = 1e-3;
 const CELLS: usize = 8;

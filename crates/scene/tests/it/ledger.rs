@@ -1,5 +1,5 @@
 //! The books of a scene: momentum to round-off, energy to the step's second order.
-use crate::{folder, quiet, run};
+use crate::{folder, quiet, root, run};
 use scene::Options;
 
 /// A disc that is driven to and fro and turned in a box whose lid moves, in a fluid that a scalar makes buoyant.
@@ -103,4 +103,37 @@ fn books_go_on_after_an_interruption() {
     [whole, halves].iter().for_each(|out| std::fs::remove_dir_all(out).unwrap());
     assert_eq!(all, rest);
     assert_ne!(half, rest);
+}
+
+/// Twelve polyhedra settle in a closed box onto one another: none leaves it, momentum is kept to
+/// round-off, and energy but for what 6 cells per body do not resolve.
+#[test]
+fn books_of_settling_polyhedra_balance() {
+    let out = folder("settling");
+    let text = std::fs::read_to_string(root().join("scenes/sedimenting_polyhedra.toml")).unwrap();
+    let more = [
+        "sides.x='wall'",
+        "sides.y='wall'",
+        "grid.cells=[30, 30, 60]",
+        "factories.0.number=12",
+        "factories.0.region.lower=[0, 0, 0]",
+        "factories.0.region.upper=[0.01, 0.01, 0.008]",
+        "time.end=0.12",
+        "output.snapshots=2",
+        "output.fields=false",
+        "output.images=false",
+    ];
+    let result = run(&text, &more, &quiet(&out)).result;
+    let paths = std::fs::read_to_string(out.join("trajectories.csv")).unwrap();
+    std::fs::remove_dir_all(&out).unwrap();
+    let of = |key: &str| result["ledger"][key].as_f64().unwrap();
+    assert!(of("momentum_worst_step") < 1e-12 && of("momentum_whole_run") < 1e-12, "{}", result["ledger"]);
+    assert!(of("divergence") < 1e-12 && of("work") > 0.0, "{}", result["ledger"]);
+    assert!(left(&of).abs() < 0.05, "{}", left(&of));
+    assert!(result["contacts"].as_u64().unwrap() >= 10, "{result}");
+    let rows: Vec<&str> = paths.lines().collect();
+    for row in &rows[rows.len() - 12..] {
+        let x: Vec<f64> = row.split(',').skip(2).take(3).map(|x| x.parse().unwrap()).collect();
+        assert!(x.iter().zip([0.01, 0.01, 0.02]).all(|(x, end)| (0.0..end).contains(x)), "{row}");
+    }
 }

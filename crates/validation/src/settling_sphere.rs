@@ -1,16 +1,14 @@
 //! A sphere that settles in a closed box (ten Cate, Nieuwstad, Derksen & Van den Akker 2002, Phys. Fluids 14, 4012).
 use crate::Outcome;
 use crate::axes::gathered;
-use crate::coupled::{Fall, Slice, View};
+use crate::motion::Fall;
 use crate::prescribed_bodies::{PrescribedBodies, forced_step};
 use crate::reference_curve;
-use clap::ValueEnum;
 use coupling::{Particles, Simulation, WeightBalance};
 use dem::{Chen, ContactLaw, HalfSpace, Lubricated, Material, RigidBodies, Sphere};
-use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Sampler, Side};
+use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Side};
 use ibm::{Forcing, SmoothFilm, SmoothForcing};
-use interfaces::{BodyId, Freedom, Kinematics, Periods, Point, Pose, Twist, Vector};
-use render::{Disc, Domain};
+use interfaces::{BodyId, Freedom, Periods, Point, Pose, Twist, Vector};
 use std::f64::consts::PI;
 
 /// Edges of the box \[m\]; gravity acts along −z.
@@ -29,13 +27,11 @@ const YOUNGS_MODULUS: f64 = 1e6;
 const MARGIN: f64 = 8.0;
 /// Widths of neighbouring cells elsewhere.
 const GROWTH: f64 = 1.1;
-/// Edge of a picture's pixels \[m\].
-const PIXEL: f64 = 1.25e-3;
 /// Fewer cells across the sphere cannot hold its markers.
 const LEAST_CELLS: usize = 4;
 
 /// The four silicone oils of the experiment.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Case {
     /// Re 1.5.
     E1,
@@ -87,18 +83,6 @@ impl Case {
             }
             Self::E4 => {
                 reference_curve::read(include_str!("../../../tests/data/ten_cate_2002_e4_velocity.csv"))
-            }
-            Self::E2 | Self::E3 => Vec::new(),
-        }
-    }
-    /// Gap between sphere and floor over the diameter, over time \[s\], as measured; empty where it is not known.
-    pub fn gap_over_diameter(self) -> Vec<(f64, f64)> {
-        match self {
-            Self::E1 => {
-                reference_curve::read(include_str!("../../../tests/data/ten_cate_2002_e1_height_over_d.csv"))
-            }
-            Self::E4 => {
-                reference_curve::read(include_str!("../../../tests/data/ten_cate_2002_e4_height_over_d.csv"))
             }
             Self::E2 | Self::E3 => Vec::new(),
         }
@@ -209,43 +193,5 @@ impl SettlingSphere {
             }
             last = settled;
         }
-    }
-
-    /// The plane through the sphere's centre, x to the right and z upwards.
-    pub fn view<L: ContactLaw>(&self) -> View<3, L> {
-        let domain = Domain { width: BOX[0], height: BOX[2], periodic: [false; 2] };
-        // A little more than the sphere reaches.
-        let max_speed = match self.case {
-            Case::E1 => 0.04,
-            Case::E2 => 0.06,
-            Case::E3 => 0.09,
-            Case::E4 => 0.125,
-        };
-        View { domain, max_speed, slice }
-    }
-}
-
-fn slice<L: ContactLaw>(fall: &Fall<3, L>) -> Slice {
-    let (flow, bodies) = (&fall.flow, &fall.particles.bodies);
-    let pose = bodies.pose(BodyId(0));
-    let [nx, nz] = [BOX[0], BOX[2]].map(|l| (l / PIXEL).round() as usize);
-    let sampler = Sampler::new(flow.grid(), flow.sides());
-    let at = |i: usize| {
-        let [x, z] = [i % nx, i / nx].map(|i| (i as f64 + 0.5) * PIXEL);
-        let x = [x, pose.position.y, z];
-        sampler.velocity(flow.velocity(), x).map_or(f64::NAN, |u| Vector::from(u).norm())
-    };
-    let disc = Disc {
-        x: pose.position.x,
-        y: pose.position.z,
-        radius: 0.5 * DIAMETER,
-        angle: -pose.orientation.scaled_axis().y,
-    };
-    Slice {
-        time: flow.time(),
-        cells: [nx, nz],
-        speed: (0..nx * nz).map(at).collect(),
-        discs: vec![disc],
-        ..Slice::default()
     }
 }

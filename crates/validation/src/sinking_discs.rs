@@ -1,14 +1,12 @@
 //! Discs that sink in a closed plane box of 2 × 6 cm: two that draft, kiss and tumble (Uhlmann 2005, J. Comput. Phys. 209, 448), and one
 //! alone (Glowinski, Pan, Hesla, Joseph & Périaux 2001, J. Comput. Phys. 169, 363; Wan & Turek 2006, Int. J. Numer. Meth. Fluids 51, 531).
 use crate::Outcome;
-use crate::coupled::{Fall, Slice, View};
+use crate::motion::Fall;
 use coupling::{Particles, Simulation, WeightBalance};
-use dem::{Chen, ContactLaw, Disc, HalfSpace, Material, Repulsive, RigidBodies};
+use dem::{ContactLaw, Disc, HalfSpace, Material, RigidBodies};
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Side};
 use ibm::SmoothForcing;
-use interfaces::{BodyId, Freedom, Kinematics, Periods, Point, Pose, Twist, Vector};
-use render::{Disc as Outline, Domain};
-use std::f64::consts::PI;
+use interfaces::{Freedom, Periods, Point, Pose, Twist, Vector};
 
 /// Edges of the box \[m\]; gravity acts along −y.
 pub const BOX: [f64; 2] = [0.02, 0.06];
@@ -80,16 +78,6 @@ impl SinkingDiscs {
         BOX.map(|l| (l / self.spacing()).round().max(1.0) as usize)
     }
 
-    /// [`Chen`] with a repulsion over so many `cells`, which where surfaces touch is 50 times a disc's weight less buoyancy.
-    ///
-    /// # Errors
-    /// Of a range that is not positive and finite.
-    pub fn repulsive(&self, cells: f64) -> Outcome<Repulsive<Chen>> {
-        let excess = (self.density_ratio - 1.0) * FLUID_DENSITY;
-        let weight = excess * GRAVITY * 0.25 * PI * DIAMETER * DIAMETER;
-        Ok(Repulsive::new(Chen::default(), 50.0 * weight.abs(), cells * self.spacing())?)
-    }
-
     /// Discs, walls and fluid at rest.
     ///
     /// # Errors
@@ -119,29 +107,5 @@ impl SinkingDiscs {
         let gravity = Vector::new(0.0, -GRAVITY, 0.0);
         let particles = Particles::new(bodies, forcing, FLUID_DENSITY, gravity);
         Ok(Simulation::new(flow, particles, WeightBalance::None)?)
-    }
-
-    /// All of the box.
-    pub fn view<L: ContactLaw>(&self) -> View<2, L> {
-        let domain = Domain { width: BOX[0], height: BOX[1], periodic: [false; 2] };
-        let max_speed = if self.starts.len() > 1 { 0.18 } else { 0.07 };
-        View { domain, max_speed, slice }
-    }
-}
-
-fn slice<L: ContactLaw>(fall: &Fall<2, L>) -> Slice {
-    let (flow, bodies) = (&fall.flow, &fall.particles.bodies);
-    let speed = flow.centred_velocity(0).zip(flow.centred_velocity(1)).map(|(u, v)| u.hypot(v)).collect();
-    let outline = |b: BodyId| {
-        let pose = bodies.pose(b);
-        let angle = pose.orientation.scaled_axis().z;
-        Outline { x: pose.position.x, y: pose.position.y, radius: 0.5 * DIAMETER, angle }
-    };
-    Slice {
-        time: flow.time(),
-        cells: flow.grid().cells(),
-        speed,
-        discs: bodies.ids().map(outline).collect(),
-        ..Slice::default()
     }
 }

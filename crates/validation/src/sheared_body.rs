@@ -5,7 +5,7 @@
 //! slows a body down by a share of the order of Re^{3/2}/10, Re = γ̇R²/ν.
 use crate::Outcome;
 use crate::axes::gathered;
-use crate::coupled::Fall;
+use crate::motion::Fall;
 use coupling::{Particles, Simulation, WeightBalance};
 use dem::{Ellipsoid, Material, RigidBodies, Sphere};
 use fv_mesh::{CartesianGrid, Diffusion, Fluid, Projection, Side};

@@ -1,4 +1,4 @@
-//! The falling discs (see examples/falling_discs): the scene as data, and its parts put together.
+//! Two discs of different weight that fall through a fluid (Isoz et al. 2023, section 5 and figure 9).
 use coupling::{CouplingError, HfdibDem, Particles, Simulation, WeightBalance, hfdib_dem};
 use dem::{DemError, Disc, HalfSpace, Material, RigidBodies};
 use fv_mesh::{CartesianGrid, Diffusion, FlowError, Fluid, Piso, Projection, Side};
@@ -29,7 +29,7 @@ const MOST_CELLS: usize = 200_000_000;
 
 /// What may vary.
 #[derive(Clone, Debug)]
-pub struct Scene {
+pub struct FallingDiscs {
     /// Cells across a disc.
     pub cells_per_diameter: usize,
     /// How many discs.
@@ -54,7 +54,7 @@ pub struct Scene {
     pub shift: [f64; 2],
 }
 
-impl Default for Scene {
+impl Default for FallingDiscs {
     fn default() -> Self {
         Self {
             cells_per_diameter: 15,
@@ -74,7 +74,7 @@ impl Default for Scene {
 
 /// Why the scene cannot be built.
 #[derive(Debug, thiserror::Error)]
-pub enum SceneError {
+pub enum SetupError {
     /// The grid or the flow.
     #[error(transparent)]
     Flow(#[from] FlowError),
@@ -117,14 +117,14 @@ pub enum SceneError {
     },
 }
 
-impl Scene {
+impl FallingDiscs {
     /// Cells along x and y, so many to a diameter.
     pub fn cells(&self) -> [usize; 2] {
         BOX.map(|l| (l / self.diameter * self.cells_per_diameter as f64).round().max(1.0) as usize)
     }
 
     /// Where the discs start: the paper's two, further ones in rows from the top.
-    pub fn centres(&self) -> Result<Vec<[f64; 2]>, SceneError> {
+    pub fn centres(&self) -> Result<Vec<[f64; 2]>, SetupError> {
         let d = self.diameter;
         let mut all = vec![[5e-3, 16e-3], [5e-3 + self.aside, 13.5e-3]];
         let per_row = ((BOX[0] / (2.0 * d)).floor() as usize).min(1000);
@@ -134,7 +134,7 @@ impl Scene {
             all.push([d * (2.0 * place + 1.0), 11e-3 - 2.0 * d * (row + 0.5)]);
         }
         if self.bodies == 0 || self.bodies > all.len() {
-            return Err(SceneError::Count { found: self.bodies, most: 2 + per_row * rows });
+            return Err(SetupError::Count { found: self.bodies, most: 2 + per_row * rows });
         }
         all.truncate(self.bodies);
         Ok(all.into_iter().map(|[x, y]| [x + self.shift[0], y + self.shift[1]]).collect())
@@ -144,7 +144,7 @@ impl Scene {
     ///
     /// # Errors
     /// Where the scene makes no sense.
-    pub fn flow(&self) -> Result<Projection<2>, SceneError> {
+    pub fn flow(&self) -> Result<Projection<2>, SetupError> {
         let flow = Projection::new(self.grid()?, self.sides(), self.fluid())?;
         // The immersed boundary's accuracy is known for explicit diffusion.
         Ok(flow.with_diffusion(Diffusion::Explicit))
@@ -158,26 +158,26 @@ impl Scene {
         [Side::Periodic.both(), if self.floor { Side::WALL.both() } else { Side::Periodic.both() }]
     }
 
-    fn grid(&self) -> Result<CartesianGrid<2>, SceneError> {
+    fn grid(&self) -> Result<CartesianGrid<2>, SetupError> {
         if !(self.diameter.is_finite() && self.diameter > 0.0) {
-            return Err(SceneError::Diameter { found: self.diameter });
+            return Err(SetupError::Diameter { found: self.diameter });
         }
         if self.cells_per_diameter < LEAST_CELLS {
-            return Err(SceneError::TooCoarse { found: self.cells_per_diameter });
+            return Err(SetupError::TooCoarse { found: self.cells_per_diameter });
         }
         let cells = self.cells();
         if cells[0].saturating_mul(cells[1]) > MOST_CELLS {
-            return Err(SceneError::TooFine { cells });
+            return Err(SetupError::TooFine { cells });
         }
         Ok(CartesianGrid::new(cells, BOX)?)
     }
 
     /// The discs alone, without fluid.
-    pub fn discs(&self) -> Result<RigidBodies, SceneError> {
+    pub fn discs(&self) -> Result<RigidBodies, SetupError> {
         let periods = Periods::new([Some(BOX[0]), (!self.floor).then_some(BOX[1]), None]);
         let mut bodies = RigidBodies::new(periods);
         if self.densities.is_empty() {
-            return Err(SceneError::NoDensity);
+            return Err(SetupError::NoDensity);
         }
         let material = |density: f64| Material { density, ..MATERIAL };
         for (centre, &density) in self.centres()?.into_iter().zip(self.densities.iter().cycle()) {
@@ -201,7 +201,7 @@ impl Scene {
     pub fn build<F: Forcing>(
         &self,
         forcing: F,
-    ) -> Result<Simulation<2, Particles<F, RigidBodies>>, SceneError> {
+    ) -> Result<Simulation<2, Particles<F, RigidBodies>>, SetupError> {
         let flow = self.flow()?;
         let gravity = Vector::new(0.0, -GRAVITY, 0.0);
         let mut particles = Particles::new(self.discs()?, forcing, FLUID.density, gravity);
@@ -219,7 +219,7 @@ impl Scene {
     ///
     /// # Errors
     /// Where the scene makes no sense.
-    pub fn hfdib_dem(&self) -> Result<HfdibDem<2>, SceneError> {
+    pub fn hfdib_dem(&self) -> Result<HfdibDem<2>, SetupError> {
         let flow = Piso::new(self.grid()?, self.sides(), self.fluid())?;
         Ok(hfdib_dem(flow, self.discs()?, Vector::new(0.0, -GRAVITY, 0.0), self.weight_balance())?)
     }

@@ -165,7 +165,7 @@ impl FirstSteps<'_> {
     fn write(&mut self, simulation: &mut dyn AnySimulation) -> Result<(), CouplingError> {
         self.cost.step = self.timer.shortest();
         let mut view = simulation.view(self.setup);
-        self.cost.iterations = WallIterations::of(&*view);
+        self.cost.iterations = WallIterations::of(&*view, self.timer.share());
         self.files.write(&mut *view, &mut self.cost)?;
         drop(view);
         self.files.save(simulation, &mut self.cost);
@@ -176,6 +176,7 @@ impl FirstSteps<'_> {
 /// Clock of the first steps.
 struct Timer {
     begin: Instant,
+    start: ThreadTime,
     last: ThreadTime,
     steps: u32,
     shortest: f64,
@@ -183,7 +184,8 @@ struct Timer {
 
 impl Timer {
     fn start() -> Self {
-        Self { begin: Instant::now(), last: ThreadTime::now(), steps: 0, shortest: f64::INFINITY }
+        let now = ThreadTime::now();
+        Self { begin: Instant::now(), start: now, last: now, steps: 0, shortest: f64::INFINITY }
     }
 
     /// Notes a step; returns whether another may begin.
@@ -192,6 +194,12 @@ impl Timer {
         self.last = ThreadTime::now();
         self.steps += 1;
         self.steps < STEPS[0] || self.steps < STEPS[1] && self.begin.elapsed() < TIME
+    }
+
+    /// CPU time over wall time, which is less than 1 where other processes are busy.
+    fn share(&self) -> f64 {
+        let wall = self.begin.elapsed().as_secs_f64();
+        if wall > 0.0 { (self.start.elapsed().as_secs_f64() / wall).min(1.0) } else { 1.0 }
     }
 
     /// Shortest step that was noted; 0 without one.

@@ -14,12 +14,13 @@ pub(crate) struct WallIterations {
 }
 
 impl WallIterations {
-    /// Iterations of the last step; none without an inverse to come.
-    pub(crate) fn of(view: &dyn View) -> Option<Self> {
+    /// Iterations of the last step, whose CPU time is this `share` of their wall time; none without
+    /// an inverse to come.
+    pub(crate) fn of(view: &dyn View, share: f64) -> Option<Self> {
         let InverseOutlook { unknowns, iterations, seconds } = view.inverse_outlook()?;
         Some(Self {
             per_step: view.pressure_iterations() as f64,
-            time: seconds / iterations as f64,
+            time: share * seconds / iterations as f64,
             unknowns: unknowns as f64,
         })
     }

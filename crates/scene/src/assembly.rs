@@ -1,18 +1,17 @@
 //! Assembly of a simulation, and the one choice of its types.
 use crate::any_simulation::{AnySimulation, Budget, Viewed, WithBudget};
+use crate::build_error::BuildError;
 use crate::cast::Cast;
 use crate::physics::Physics;
 use crate::run::RunError;
-use crate::setup::{Algorithm, ContactLawChoice, ForcingChoice, Setup, StrategyChoice};
+use crate::setup::{Algorithm, ForcingChoice, Setup, StrategyChoice};
 use crate::steady::Steady;
 use crate::still::Still;
 use coupling::{
     CouplingError, Evolving, Exchange, Explicit, FlowSolver, Grains, Immersed, Iterated, Ledger, Particles,
     Schedule, Simulation, Strategy,
 };
-use dem::{ContactLaw, Population, Rolling};
 use ibm::Forcing;
-use interfaces::Checkpoint;
 
 /// Simulation of a scene.
 pub(crate) enum Assembled {
@@ -70,13 +69,13 @@ impl Setup {
         Assembled: From<Steady<D>>,
     {
         if self.fluid.is_none() {
-            return self.grains();
+            return Ok(unsteady(Grains::new(self.bodies()?), ()));
         }
         let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
         match self.flow.algorithm {
             Algorithm::Simple => return Ok(self.steady::<D>()?.into()),
             Algorithm::Piso if bodies => {
-                let particles = self.particles(self.hfdib(), self.cast(self.chen())?).with_strategy(Explicit);
+                let particles = self.particles(self.hfdib())?.with_strategy(Explicit);
                 return Ok(unsteady(self.simulation(self.piso::<D>()?, particles)?, self.books()));
             }
             Algorithm::Piso => {
@@ -94,44 +93,12 @@ impl Setup {
         }
     }
 
-    /// Bodies without a fluid.
-    fn grains(&self) -> Result<Assembled, RunError> {
-        if let Some(repulsion) = self.bodies.repulsion {
-            return Ok(unsteady(Grains::new(self.cast(self.repulsive(repulsion)?)?), ()));
-        }
-        Ok(match self.bodies.law {
-            ContactLawChoice::Chen => unsteady(Grains::new(self.cast(self.chen())?), ()),
-            ContactLawChoice::Potential => unsteady(Grains::new(self.cast(self.potential())?), ()),
-            ContactLawChoice::Rolling => unsteady(Grains::new(self.cast(Rolling(self.chen()))?), ()),
-            ContactLawChoice::None => unsteady(Grains::new(self.cast(())?), ()),
-        })
-    }
-
     fn bodies_by<const D: usize, F: Forcing + 'static>(&self, forcing: F) -> Result<Assembled, RunError> {
-        let flow = self.physics(self.projection::<D>()?)?;
-        if let Some(repulsion) = self.bodies.repulsion {
-            return self.with_bodies(flow, self.particles(forcing, self.cast(self.repulsive(repulsion)?)?));
-        }
-        match (self.bodies.law, self.bodies.coupling.strategy, self.bodies.lubrication) {
-            (ContactLawChoice::Chen, StrategyChoice::OneSolve, Some(roughness)) => {
-                self.with_bodies(flow, self.particles(forcing, self.cast(self.lubricated(roughness)?)?))
-            }
-            (ContactLawChoice::Chen, StrategyChoice::Iterated, _) => self.with_bodies(
-                flow,
-                self.particles(forcing, self.cast(self.chen())?).with_strategy(Iterated::default()),
-            ),
-            (ContactLawChoice::Chen, StrategyChoice::Explicit, _) => self
-                .with_bodies(flow, self.particles(forcing, self.cast(self.chen())?).with_strategy(Explicit)),
-            (ContactLawChoice::Chen, ..) => {
-                self.with_bodies(flow, self.particles(forcing, self.cast(self.chen())?))
-            }
-            (ContactLawChoice::Potential, ..) => {
-                self.with_bodies(flow, self.particles(forcing, self.cast(self.potential())?))
-            }
-            (ContactLawChoice::Rolling, ..) => {
-                self.with_bodies(flow, self.particles(forcing, self.cast(Rolling(self.chen()))?))
-            }
-            (ContactLawChoice::None, ..) => self.with_bodies(flow, self.particles(forcing, self.cast(())?)),
+        let (flow, particles) = (self.physics(self.projection::<D>()?)?, self.particles(forcing)?);
+        match self.bodies.coupling.strategy {
+            StrategyChoice::OneSolve => self.with_bodies(flow, particles),
+            StrategyChoice::Iterated => self.with_bodies(flow, particles.with_strategy(Iterated::default())),
+            StrategyChoice::Explicit => self.with_bodies(flow, particles.with_strategy(Explicit)),
         }
     }
 
@@ -140,15 +107,12 @@ impl Setup {
         self.why_no_books().is_none().then(Ledger::new)
     }
 
-    fn particles<F: Forcing, L: ContactLaw>(&self, forcing: F, cast: Cast<L>) -> Particles<F, Cast<L>>
-    where
-        Population<L>: Checkpoint,
-    {
-        let particles = Particles::new(cast, forcing, self.fluid().density, self.gravity);
-        match self.bodies.coupling.virtual_mass {
+    fn particles<F: Forcing>(&self, forcing: F) -> Result<Particles<F, Cast>, BuildError> {
+        let particles = Particles::new(self.bodies()?, forcing, self.fluid().density, self.gravity);
+        Ok(match self.bodies.coupling.virtual_mass {
             Some(factor) => particles.with_virtual_mass(factor),
             None => particles,
-        }
+        })
     }
 
     fn simulation<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>>(
@@ -163,16 +127,14 @@ impl Setup {
         })
     }
 
-    fn with_bodies<const D: usize, F, L, S>(
+    fn with_bodies<const D: usize, F, S>(
         &self,
         flow: Physics<D>,
-        particles: Particles<F, Cast<L>, S>,
+        particles: Particles<F, Cast, S>,
     ) -> Result<Assembled, RunError>
     where
         F: Forcing + 'static,
-        L: ContactLaw + 'static,
         S: Strategy + Exchange<D, Physics<D>> + 'static,
-        Population<L>: Checkpoint,
     {
         Ok(unsteady(self.simulation(flow, particles)?, self.books()))
     }

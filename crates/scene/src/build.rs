@@ -2,11 +2,13 @@
 use crate::build_error::BuildError;
 use crate::cast::{Cast, Script};
 use crate::physics::{Physics, Segregated};
-use crate::setup::{Algorithm, Bodies, ContactLawChoice, ForcingChoice, InflowSetup, Motion, Setup};
+use crate::setup::{
+    Algorithm, Bodies, ContactLawChoice, ForcingChoice, InflowSetup, Motion, Setup, StrategyChoice,
+};
 use crate::still::Still;
 use coupling::WithScalars;
 use dem::placing::{PlacingError, Region};
-use dem::{Chen, ContactLaw, Entrant, Inflow, Lubricated, Population, Repulsive, RigidBodies};
+use dem::{Chen, ContactLaw, Entrant, Inflow, Lubricated, Population, Repulsive, RigidBodies, Rolling};
 use fv_mesh::{
     CartesianGrid, Convection, Diffusion, FlowError, Piso, PisoParams, Projection, Side, TimeScheme,
 };
@@ -172,8 +174,29 @@ impl Setup {
         [0, 1, 2].map(|a| self.periodic(a).then(|| [self.axes[a].lower(), self.axes[a].length()]))
     }
 
-    /// The bodies under a law of contact.
-    pub(crate) fn cast<L: ContactLaw>(&self, law: L) -> Result<Cast<L>, BuildError> {
+    /// Bodies under the law of contact of the scene.
+    pub(crate) fn bodies(&self) -> Result<Cast, BuildError> {
+        if let Some(repulsion) = self.bodies.repulsion {
+            return self.cast(self.repulsive(repulsion)?);
+        }
+        match (self.bodies.law, self.film()) {
+            (ContactLawChoice::Chen, Some(roughness)) => self.cast(self.lubricated(roughness)?),
+            (ContactLawChoice::Chen, None) => self.cast(self.chen()),
+            (ContactLawChoice::Potential, _) => self.cast(self.potential()),
+            (ContactLawChoice::Rolling, _) => self.cast(Rolling(self.chen())),
+            (ContactLawChoice::None, _) => self.cast(()),
+        }
+    }
+
+    /// Roughness of bodies between which films of fluid are computed.
+    fn film(&self) -> Option<f64> {
+        let one_solve = self.bodies.coupling.strategy == StrategyChoice::OneSolve;
+        let resolved = self.fluid.is_some() && self.flow.algorithm == Algorithm::Projection;
+        self.bodies.lubrication.filter(|_| one_solve && resolved)
+    }
+
+    /// Bodies under a law of contact.
+    fn cast<L: ContactLaw + 'static>(&self, law: L) -> Result<Cast, BuildError> {
         let period = |a: usize| self.periodic(a).then(|| self.axes[a].length());
         let mut bodies = RigidBodies::with_law(Periods::new([0, 1, 2].map(period)), law);
         if self.fluid.is_none() {

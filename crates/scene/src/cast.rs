@@ -1,15 +1,62 @@
-//! The bodies of a scene: free, held, told how to move, coming and going.
+//! Bodies of a scene: free, fixed, in prescribed motion, coming in and going out.
 use crate::setup::Motion;
 use dem::placing::PlacingError;
-use dem::{ContactLaw, Origin, Population, PrescribedMotion, RigidBodies, RigidDynamics};
+use dem::{BodyFrames, ContactLaw, Depth, Origin, Population, PrescribedMotion, RigidDynamics};
 use interfaces::{
-    Bodies, BodyId, Checkpoint, Dynamics, Freedom, Inertia, Kinematics, Load, Pose, Renumbering,
+    Bodies, BodyId, Checkpoint, Dynamics, Freedom, Inertia, Kinematics, Load, Point, Pose, Renumbering,
     RestartError, Solid, Twist, Vector, Wrench,
 };
+use std::io;
 
-/// A [`Population`] some of whose bodies move by formulas.
-pub(crate) struct Cast<L: ContactLaw> {
-    bodies: Population<L>,
+/// Population under any law of contact: what couples it to a flow is compiled once for all laws.
+pub(crate) trait AnyPopulation: Dynamics<Error = PlacingError> {
+    /// Origin of body `b`.
+    fn origin(&self, b: BodyId) -> Origin;
+    /// Number of bodies that came in by an inflow.
+    fn entered(&self, inflow: usize) -> u64;
+    /// Number of bodies that left.
+    fn left(&self) -> u64;
+    /// Number of contacts.
+    fn contacts(&self) -> usize;
+    /// Deepest overlap of the last step.
+    fn deepest(&self) -> Option<Depth>;
+    /// Kinetic energy \[J\].
+    fn kinetic_energy(&self) -> f64;
+    /// Writes a frame of the bodies for ParaView; returns its path.
+    fn write(&self, frames: &mut BodyFrames, corner: Point, index: usize) -> io::Result<String>;
+}
+
+impl<L: ContactLaw> AnyPopulation for Population<L>
+where
+    Self: Checkpoint,
+{
+    fn origin(&self, b: BodyId) -> Origin {
+        Self::origin(self, b)
+    }
+    fn entered(&self, inflow: usize) -> u64 {
+        Self::entered(self, inflow)
+    }
+    fn left(&self) -> u64 {
+        Self::left(self)
+    }
+    fn contacts(&self) -> usize {
+        self.rigid_bodies().n_contacts()
+    }
+    fn deepest(&self) -> Option<Depth> {
+        self.rigid_bodies().deepest()
+    }
+    fn kinetic_energy(&self) -> f64 {
+        self.rigid_bodies().kinetic_energy()
+    }
+    fn write(&self, frames: &mut BodyFrames, corner: Point, index: usize) -> io::Result<String> {
+        let bodies = self.rigid_bodies();
+        frames.write(bodies, corner, bodies.ids(), index)
+    }
+}
+
+/// Population some of whose bodies move by formulas.
+pub(crate) struct Cast {
+    pub(crate) bodies: Box<dyn AnyPopulation>,
     inflows: usize,
     /// In the order of their numbers.
     scripts: Vec<Script>,
@@ -28,16 +75,23 @@ pub(crate) struct Script {
     pub(crate) motion: PrescribedMotion,
 }
 
-impl<L: ContactLaw> Cast<L> {
+impl Cast {
     /// Bodies with so many inflows, of whom some (by their number at the start, in this order) move
     /// by formulas.
-    pub(crate) fn new(bodies: Population<L>, inflows: usize, scripts: Vec<Script>) -> Self {
+    pub(crate) fn new<L: ContactLaw + 'static>(
+        bodies: Population<L>,
+        inflows: usize,
+        scripts: Vec<Script>,
+    ) -> Self
+    where
+        Population<L>: Checkpoint,
+    {
         let places = vec![None; scripts.len()];
-        let mut cast = Self { bodies, inflows, scripts, places, time: 0.0 };
+        let mut cast = Self { bodies: Box::new(bodies), inflows, scripts, places, time: 0.0 };
         cast.find();
         cast
     }
-    /// How many came in and how many left so far.
+    /// Numbers of bodies that came in and that left.
     pub(crate) fn turnover(&self) -> [u64; 2] {
         [(0..self.inflows).map(|i| self.bodies.entered(i)).sum(), self.bodies.left()]
     }
@@ -48,7 +102,7 @@ impl<L: ContactLaw> Cast<L> {
             return;
         }
         self.places.fill(None);
-        for b in self.bodies.ids() {
+        for b in (0..self.bodies.n_bodies()).map(BodyId) {
             if let Origin::Start(start) = self.bodies.origin(b)
                 && let Ok(place) = self.scripts.binary_search_by_key(&start, |script| script.number)
             {
@@ -66,7 +120,7 @@ impl<L: ContactLaw> Cast<L> {
     }
 }
 
-impl<L: ContactLaw> Kinematics for Cast<L> {
+impl Kinematics for Cast {
     fn n_bodies(&self) -> usize {
         self.bodies.n_bodies()
     }
@@ -81,7 +135,7 @@ impl<L: ContactLaw> Kinematics for Cast<L> {
     }
 }
 
-impl<L: ContactLaw> Bodies for Cast<L> {
+impl Bodies for Cast {
     fn solid(&self, b: BodyId) -> &dyn Solid {
         self.bodies.solid(b)
     }
@@ -93,14 +147,7 @@ impl<L: ContactLaw> Bodies for Cast<L> {
     }
 }
 
-impl<L: ContactLaw> RigidDynamics for Cast<L> {
-    type Law = L;
-    fn rigid_bodies(&self) -> &RigidBodies<L> {
-        self.bodies.rigid_bodies()
-    }
-}
-
-impl<L: ContactLaw> Dynamics for Cast<L> {
+impl Dynamics for Cast {
     type Error = PlacingError;
     fn apply(&mut self, b: BodyId, load: Load) {
         self.bodies.apply(b, load);
@@ -136,10 +183,7 @@ impl<L: ContactLaw> Dynamics for Cast<L> {
     }
 }
 
-impl<L: ContactLaw> Checkpoint for Cast<L>
-where
-    Population<L>: Checkpoint,
-{
+impl Checkpoint for Cast {
     fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
         self.bodies.save(sink);
     }

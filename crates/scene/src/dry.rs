@@ -5,30 +5,24 @@ use crate::setup::Setup;
 use crate::view::View;
 use crate::watch::Solids;
 use coupling::{Evolving, Grains, StepInfo, Timings};
-use dem::{BodyFrames, ContactLaw, Depth, Population, RigidDynamics};
+use dem::{BodyFrames, Depth};
 use fv_mesh::Axis;
-use interfaces::{Bodies, BodyId, Checkpoint, Dynamics, Kinematics, Lattice, Wrench};
+use interfaces::{Bodies, BodyId, Dynamics, Kinematics, Lattice, Wrench};
 use std::io;
 
-impl<L: ContactLaw> Viewed for Grains<Cast<L>>
-where
-    Population<L>: Checkpoint,
-{
+impl Viewed for Grains<Cast> {
     fn view<'a>(&'a mut self, setup: &'a Setup) -> Box<dyn View + 'a> {
         Box::new(Dry { setup, grains: self })
     }
 }
 
 /// Bodies, and the box that they are in.
-struct Dry<'a, L: ContactLaw> {
+struct Dry<'a> {
     setup: &'a Setup,
-    grains: &'a Grains<Cast<L>>,
+    grains: &'a Grains<Cast>,
 }
 
-impl<L: ContactLaw> View for Dry<'_, L>
-where
-    Population<L>: Checkpoint,
-{
+impl View for Dry<'_> {
     fn axis(&self, a: usize) -> &Axis {
         &self.setup.axes[a]
     }
@@ -45,7 +39,7 @@ where
         self.grains.steps()
     }
     fn kinetic_energy(&mut self) -> f64 {
-        self.grains.bodies.rigid_bodies().kinetic_energy()
+        self.grains.bodies.bodies.kinetic_energy()
     }
     fn status(&mut self, info: &StepInfo) -> String {
         let (n, contacts) = (self.grains.bodies.n_bodies(), self.contacts());
@@ -81,16 +75,15 @@ where
         [Wrench::default(), self.grains.bodies.contact_impulse(b) * (1.0 / dt)]
     }
     fn contacts(&self) -> usize {
-        self.grains.bodies.rigid_bodies().n_contacts()
+        self.grains.bodies.bodies.contacts()
     }
     fn deepest(&self) -> Option<Depth> {
-        self.grains.bodies.rigid_bodies().deepest()
+        self.grains.bodies.bodies.deepest()
     }
     fn turnover(&self) -> [u64; 2] {
         self.grains.bodies.turnover()
     }
     fn write_bodies(&self, frames: &mut BodyFrames, index: usize) -> io::Result<Option<String>> {
-        let bodies = self.grains.bodies.rigid_bodies();
-        frames.write(bodies, self.setup.corner(), bodies.ids(), index).map(Some)
+        self.grains.bodies.bodies.write(frames, self.setup.corner(), index).map(Some)
     }
 }

@@ -157,7 +157,7 @@ impl Setup {
     /// flow alone.
     pub(crate) fn untried<const D: usize>(&self) -> Result<Tried, BuildError> {
         let longest = match self.flow.algorithm {
-            _ if self.fluid.is_none() => Some(Grains::new(self.cast(self.chen())?).longest_dt()),
+            _ if self.fluid.is_none() => Some(Grains::new(self.bodies()?).longest_dt()),
             Algorithm::Simple => None,
             Algorithm::Piso => Some(f64::INFINITY),
             Algorithm::Projection => {

@@ -81,7 +81,7 @@ impl Setup {
             bodies,
             ..self.clone()
         };
-        let mut grains = Grains::new(pile.cast(pile.chen())?);
+        let mut grains = Grains::new(pile.bodies()?);
         let dt = grains.longest_dt();
         let start = ThreadTime::now();
         for _ in 0..STEPS {

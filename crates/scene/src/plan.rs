@@ -3,7 +3,7 @@ use crate::available_memory::AvailableMemory;
 use crate::build_error::BuildError;
 use crate::estimate::{Estimate, one_thread};
 use crate::pace::Pace;
-use crate::setup::{Algorithm, ContactLawChoice, ForcingChoice, Setup};
+use crate::setup::{Algorithm, ForcingChoice, Setup};
 use coupling::check_places;
 use fv_mesh::Axis;
 use serde_json::{Value, json};
@@ -56,12 +56,7 @@ impl Setup {
         // Bodies are put together without a flow, which they do not need for that.
         if self.is_forced() {
             let (grid, periodic) = (self.grid::<D>()?, |a| self.periodic(a));
-            match (self.flow.algorithm, self.bodies.law) {
-                (Algorithm::Projection, ContactLawChoice::None) => {
-                    check_places(&grid, periodic, &self.cast(())?)?;
-                }
-                _ => check_places(&grid, periodic, &self.cast(self.chen())?)?,
-            }
+            check_places(&grid, periodic, &self.bodies()?)?;
             if self.flow.algorithm == Algorithm::Projection && self.bodies.forcing() == ForcingChoice::Smooth
             {
                 self.check_sizes()?;

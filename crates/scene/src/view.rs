@@ -5,13 +5,13 @@ use crate::steady::Steady;
 use crate::still::Still;
 use crate::watch::Solids;
 use coupling::{Particles, StepInfo, Strategy, Timings};
-use dem::{BodyFrames, ContactLaw, Depth, Population, RigidDynamics};
+use dem::{BodyFrames, Depth};
 use fv_mesh::{
     Axis, CartesianGrid, CellWriter, Field, FlowStatistics, Hooked, InverseOutlook, OutputError, SampleError,
     Sampler, Sides, Velocity,
 };
 use ibm::{FluidSampler, Forcing};
-use interfaces::{Bodies, BodyId, Checkpoint, Closure, Kinematics, Lattice, Point, ThinPart, Wrench};
+use interfaces::{Bodies, BodyId, Closure, Lattice, Point, ThinPart, Wrench};
 use render::progress::Status;
 use std::io::{self, Write};
 use turb::YPlus;
@@ -317,10 +317,7 @@ impl Guests for Still {
     }
 }
 
-impl<F: Forcing, L: ContactLaw, S: Strategy> Guests for Particles<F, Cast<L>, S>
-where
-    Population<L>: Checkpoint,
-{
+impl<F: Forcing, S: Strategy> Guests for Particles<F, Cast, S> {
     fn bodies(&self) -> &dyn Bodies {
         &self.bodies
     }
@@ -332,17 +329,16 @@ where
         [report.hydrodynamic, report.contact]
     }
     fn contacts(&self) -> usize {
-        self.bodies.rigid_bodies().n_contacts()
+        self.bodies.bodies.contacts()
     }
     fn deepest(&self) -> Option<Depth> {
-        self.bodies.rigid_bodies().deepest()
+        self.bodies.bodies.deepest()
     }
     fn turnover(&self) -> [u64; 2] {
         self.bodies.turnover()
     }
     fn write(&self, corner: Point, frames: &mut BodyFrames, index: usize) -> io::Result<Option<String>> {
-        let bodies = self.bodies.rigid_bodies();
-        frames.write(bodies, corner, bodies.ids(), index).map(Some)
+        self.bodies.bodies.write(frames, corner, index).map(Some)
     }
 }
 

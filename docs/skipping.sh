@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Instructions per step of each mode of examples/skipping, by callgrind (valgrind must be installed):
+# Instructions per step of each mode of benches/skipping.rs, by callgrind (valgrind must be installed):
 # the difference between a run of 20 and one of 10 steps, which leaves out set-up and reading of files.
 # Then, for each absent part, the program with its slot, filled with `()`, against one that has no such slot. Fails if any costs more than 2 %.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 command -v valgrind >/dev/null || { echo "valgrind is not installed; no instructions counted" >&2; exit 1; }
-cargo build --quiet --release --example skipping
-binary="${CARGO_TARGET_DIR:-target}/release/examples/skipping"
+binary=$(cargo build --quiet --release --bench skipping --message-format=json |
+    sed -n 's/.*"name":"skipping".*"executable":"\([^"]*\)".*/\1/p')
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 
@@ -17,7 +17,7 @@ count() { # mode steps
 
 declare -A per
 printf '%-20s %17s %10s\n' mode instructions/step "of plain"
-for mode in plain hooks nobody fixed moving apart scalar_by_hand scalar closure_by_hand closure contactless_by_hand contactless; do
+for mode in plain hooks nobody fixed moving apart scalar_by_hand scalar closure_by_hand closure contactless; do
     few=$(count "$mode" 10)
     many=$(count "$mode" 20)
     per[$mode]=$(((many - few) / 10))
@@ -32,11 +32,7 @@ compare() { # absent part, program with the slot, leaner program
 }
 printf '\n%-8s %-12s %17s   %-20s %17s %8s at most 1.02\n' absent "slot is ()" instructions/step "no slot" instructions/step ratio
 compare bodies nobody plain
-compare contact contactless contactless_by_hand
 compare closure scalar scalar_by_hand
 compare scalar closure closure_by_hand
 compare all hooks plain
-
-echo
-for mode in fixed moving apart contactless_by_hand contactless; do "$binary" "$mode" 20; done
 exit $failed

@@ -53,10 +53,13 @@ impl Closure for MixingLength {
     }
 }
 
-/// Profile (y⁺, u⁺) of the lower half of the developed channel, and the mean velocity.
+/// y⁺ and u⁺ of the lower half.
+type Profile = Vec<(f64, f64)>;
+
+/// Profile of the developed channel, and the mean velocity.
 fn channel<C: Closure>(
     closure: impl FnOnce(usize) -> Result<C, Box<dyn Error>>,
-) -> Result<(Vec<(f64, f64)>, f64), Box<dyn Error>> {
+) -> Result<(Profile, f64), Box<dyn Error>> {
     // 96 cells across, the first at y⁺ < 1.
     let y = Axis::tanh(96, 0.0, 2.0, 2.4, Cluster::Both)?;
     let grid = CartesianGrid::from_axes([Axis::uniform(2, 0.0, 0.2)?, y])?;
@@ -89,7 +92,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         Some((y.parse().ok()?, u.parse().ok()?))
     };
     let dns = include_str!("../tests/data/turbulence/dns_590.csv").lines().filter_map(row);
-    let curve = |label: &str, points: Vec<(f64, f64)>, line| Curve { label: label.into(), points, line };
+    let curve = |label: &str, points: Profile, line| Curve { label: label.into(), points, line };
     let panel = Panel {
         title: "Channel at Re_τ 587".into(),
         x: "y⁺".into(),

@@ -8,10 +8,9 @@
 //! ```
 //!
 //! and the coefficients a between snapshots are those of the method (networks, splines, radial
-//! functions) that predicts held-out snapshots best. Every second snapshot of λ makes the models, the
-//! others assess them: error ‖λ − λ̂‖/‖λ‖, of which the projection error is what the modes cannot
-//! represent. Beyond 10 moving modes it still falls, but the coefficients of the last ones change from
-//! cell to cell, too fast for the interpolation in time.
+//! functions) that predicts held-out snapshots best. Every second snapshot makes the models, the
+//! others assess them by ‖λ − λ̂‖/‖λ‖; the projection error is what the modes cannot represent. With 20
+//! moving modes, coefficients of the last ones change from cell to cell, too fast to interpolate.
 //!
 //! `cargo run --release --example reduced_discs [FOLDER]`, 8 s; `out/reduced_discs/lambda.png`.
 use mor::Mat;
@@ -49,8 +48,11 @@ impl SnapshotSink for Snapshots {
     }
 }
 
+/// Poses of each disc at all times.
+type Paths = Vec<Vec<Pose>>;
+
 /// λ at 201 times, and the poses of both discs.
-fn fall() -> Result<(Snapshots, Vec<Vec<Pose>>), Box<dyn Error>> {
+fn fall() -> Result<(Snapshots, Paths), Box<dyn Error>> {
     let grid = CartesianGrid::new(CELLS, SIZE)?;
     let flow = Projection::new(grid, Side::Periodic.everywhere(), WATER)?.with_diffusion(Diffusion::Explicit);
     let mut discs = RigidBodies::new(Periods::new([Some(SIZE[0]), Some(SIZE[1]), None]));

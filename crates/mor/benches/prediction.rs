@@ -1,6 +1,6 @@
 //! What a prediction costs: CPU microseconds a field, the best of several rounds. `cargo bench -p siltflow-mor --bench prediction`.
 //!
-//! 150 × 300 cells, as in the example `parameter_study`: λ of two discs in frames that move both ways (1 and 3 modes each), a velocity of 20 modes; alone and nine times together, in double and
+//! 150 × 300 cells: λ of two discs in frames that move both ways (1 and 3 modes each), a velocity of 20 modes; alone and nine times together, in double and
 //! single precision.
 use cpu_time::ProcessTime;
 use interfaces::Vector;

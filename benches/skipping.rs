@@ -8,7 +8,6 @@
 //! 5. `contactless`: two free discs whose contact law is `()`.
 //! 6. `closure`, `scalar`: hooks of which one is used and the others are `()`; `closure_by_hand`,
 //!    `scalar_by_hand`: the same without hooks.
-use example_support::scene::{FLUID, GRAVITY, Scene};
 use siltflow::coupling::{Immersed, Particles, Simulation, WeightBalance};
 use siltflow::dem::{Disc, Material, RigidBodies};
 use siltflow::flow::{CellTransport, FlowError, Hooks, Modelled, Projection, Scalar, ScalarSide};
@@ -17,6 +16,7 @@ use siltflow::ibm::SmoothForcing;
 use siltflow::interfaces::WallRow;
 use siltflow::interfaces::{Bodies, Closure, Freedom, Kinematics, SolveError, Transport, Vector};
 use std::error::Error;
+use validation::falling_discs::{FLUID, FallingDiscs, GRAVITY};
 
 const DT: f64 = 1e-4;
 
@@ -67,7 +67,7 @@ fn advance_by_parts(flow: &mut Projection<2>) -> Result<(), FlowError> {
 }
 
 /// The discs of the scene with the contact law `()`.
-fn contactless(scene: &Scene) -> Result<RigidBodies<()>, Box<dyn Error>> {
+fn contactless(scene: &FallingDiscs) -> Result<RigidBodies<()>, Box<dyn Error>> {
     let discs = scene.discs()?;
     let mut bodies = RigidBodies::with_law(discs.periods(), ());
     for b in discs.ids() {
@@ -83,7 +83,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut args = std::env::args().skip(1).filter(|arg| !arg.starts_with("--"));
     let mode = args.next().unwrap_or_else(|| "plain".into());
     let n: usize = args.next().map_or(Ok(20), |n| n.parse())?;
-    let mut scene = Scene { cells_per_diameter: 8, ..Scene::default() };
+    let mut scene = FallingDiscs { cells_per_diameter: 8, ..FallingDiscs::default() };
     let flow = scene.flow()?;
     let mut scalar = Scalar::new(flow.grid(), [const { [const { ScalarSide::Periodic }; 2] }; 2], 1e-6)?;
     scalar.set(|x| (x[0] * 628.32).sin());

@@ -31,7 +31,7 @@ fn crates_meet_only_through_interfaces() {
         "render",
         "report",
         "scene",
-        "example-support",
+        "validation",
     ] {
         assert!(all.contains(crate_), "{crate_} is gone");
     }
@@ -42,11 +42,11 @@ fn crates_meet_only_through_interfaces() {
             // A crate may ask itself, for its tests, to take all its features.
             if all.contains(&to) && to != from {
                 let allowed = match (from.as_str(), to.as_str()) {
-                    // What the examples share stays out of the libraries and of the command.
-                    (_, "example-support") => from == "siltflow" && dependency["kind"] == "dev",
+                    // Cases of validation stay out of the libraries and of the command.
+                    (_, "validation") => from == "siltflow" && dependency["kind"] == "dev",
                     // Pictures are for what shows runs; their tests draw shapes.
                     ("siltflow", "render") => dependency["kind"] == "dev" || dependency["optional"] == true,
-                    ("example-support" | "report" | "scene", "render") => true,
+                    ("validation" | "report" | "scene", "render") => true,
                     ("siltflow", "report") => dependency["optional"] == true,
                     ("scene", "report") => true,
                     (_, "render" | "report") | ("report", _) => false,
@@ -54,7 +54,7 @@ fn crates_meet_only_through_interfaces() {
                     ("siltflow", "scene") => dependency["optional"] == true,
                     ("siltflow", _) => true,
                     (_, "scene") => false,
-                    ("coupling" | "example-support" | "scene", _) => to != "siltflow",
+                    ("coupling" | "validation" | "scene", _) => to != "siltflow",
                     ("interfaces" | "monomorphic", _) => false,
                     // Knows nobody, so nobody meets there.
                     (_, "monomorphic") => true,

@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::axes::{Look, colour_bar};
 use crate::canvas::{Canvas, Rect};
 use crate::colour::{INK, Map, WHITE};
-use crate::frames::{Scalar, paint};
+use crate::scalar::{Scalar, paint};
 use crate::text::Type;
 
 /// One field.
@@ -70,9 +70,7 @@ impl Gallery<'_> {
                 let frame = Rect::new(rect.left - 1.0, rect.top - 1.0, width + 2.0, height + 2.0);
                 canvas.fill(frame, INK, 1.0);
                 canvas.fill(rect, WHITE, 1.0);
-                paint(&mut canvas, rect, self.periodic, [&tile.field], |[v]| {
-                    map.at((v - low) / (high - low))
-                });
+                paint(&mut canvas, rect, self.periodic, &tile.field, |v| map.at((v - low) / (high - low)));
                 let above = (rect.left + 0.5 * width, top - 0.5 * LOOK.font);
                 canvas.text(above, Type::new(LOOK.font, (0.5, 0.0)), &tile.title);
             }

@@ -1,4 +1,4 @@
-//! Instructions of a step with absent physics, counted by `docs/skipping.sh`: see `docs/skipping.md`.
+//! Instructions of a step with absent physics, counted by `docs/skipping.sh` (`docs/skipping.md`).
 //!
 //! `cargo bench --bench skipping -- MODE STEPS` makes the steps. Modes:
 //! 1. `plain`: the flow loop by hand, `Projection::advance`.

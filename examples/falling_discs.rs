@@ -9,7 +9,7 @@
 //! net weight, since nothing else in a periodic box can. The numbers are those of
 //! `scenes/two_discs.toml`, and so is the fall.
 //!
-//! `cargo run --release --example falling_discs [FOLDER]`, 3 s; the folder (`out/falling_discs`) has
+//! `cargo run --release --example falling_discs [FOLDER]`, 3 s; `out/falling_discs` has
 //! `speed.png`, `trajectories.csv`, and `fields.pvd` and `bodies.pvd` for ParaView.
 use render::progress::{Progress, Status};
 use render::section::{BodySection, Layer, Section, Sheet};

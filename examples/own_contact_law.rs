@@ -6,10 +6,10 @@
 //! e = exp(−2ζ arccos ζ/√(1 − ζ²))
 //! ```
 //!
-//! The depth δ follows from the overlap volume V and its area A = ∂V/∂δ: δ = 2V/A, dδ/dt = (dV/dt)/A,
-//! exact for a ball as δ/R → 0. The restitution e is that of a contact without tension (Schwager &
-//! Pöschel 2007, Granul. Matter 9, 465); the measured one is the speed after over the speed before
-//! the first rebound.
+//! The depth δ follows from the overlap volume V and its area A = ∂V/∂δ: δ = 2V/A,
+//! dδ/dt = (dV/dt)/A, exact for a ball as δ/R → 0. The restitution e is that of a contact without
+//! tension (Schwager & Pöschel 2007, Granul. Matter 9, 465); the measured one is the speed after over
+//! the speed before the first rebound.
 //!
 //! `cargo run --release --example own_contact_law [FOLDER]`, 1 s;
 //! `out/own_contact_law/height.png`.

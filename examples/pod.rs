@@ -7,8 +7,8 @@
 //!
 //! R is the rate of the flow solver itself ([`Projection::rate`]), a polynomial of second degree of
 //! the velocities, so that c, L and Q are exact. The modes are orthonormal in the inner product of
-//! the kinetic energy. The projection error ‖u − Πu‖ is the best that the modes can do; the Galerkin
-//! model knows the first snapshot alone.
+//! the kinetic energy. The projection error ‖u − Πu‖ is the best that the modes can do; the
+//! Galerkin model knows the first snapshot alone.
 //!
 //! `cargo run --release --example pod [FOLDER]`, 1 s; `out/pod/vorticity.png`.
 use mor::Mat;

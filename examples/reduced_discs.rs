@@ -9,8 +9,8 @@
 //!
 //! and the coefficients a between snapshots are those of the method (networks, splines, radial
 //! functions) that predicts held-out snapshots best. Every second snapshot makes the models, the
-//! others assess them by ‖λ − λ̂‖/‖λ‖; the projection error is what the modes cannot represent. With 20
-//! moving modes, coefficients of the last ones change from cell to cell, too fast to interpolate.
+//! others assess them by ‖λ − λ̂‖/‖λ‖; the projection error is what the modes cannot show. With 20
+//! moving modes, coefficients of the last ones vary from cell to cell, too fast to interpolate.
 //!
 //! `cargo run --release --example reduced_discs [FOLDER]`, 8 s; `out/reduced_discs/lambda.png`.
 use mor::Mat;

@@ -88,7 +88,7 @@ pub fn draw(path: &Path, columns: usize, drawings: &[Drawing]) -> io::Result<()>
 }
 
 impl Drawing {
-    /// Rectangular cells between the faces of both axes, numbered x fastest, with lines between them.
+    /// Rectangular cells between the faces of both axes, x fastest, with lines between them.
     pub fn lattice(title: &str, faces: [&[f64]; 2], paint: impl Fn(usize) -> Paint) -> Self {
         let [across, up] = faces;
         let n = across.len().saturating_sub(1);

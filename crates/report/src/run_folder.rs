@@ -28,6 +28,8 @@ pub(crate) struct RunFolder {
     pub(crate) residuals: Option<RunTable>,
     pub(crate) trajectories: Option<RunTable>,
     pub(crate) forces: Option<RunTable>,
+    /// Means over time and two axes.
+    pub(crate) profile: Option<RunTable>,
     /// Tables of probes by name.
     pub(crate) probes: Vec<(String, RunTable)>,
     pub(crate) pictures: Vec<Listed>,
@@ -139,6 +141,9 @@ impl RunFolder {
         let residuals = files.table("residuals.csv", listed);
         let trajectories = files.table("trajectories.csv", listed);
         let forces = if steady { None } else { files.table("forces.csv", listed) };
+        // It is written at the end.
+        let done = result["complete"] == true;
+        let profile = if done { files.table("profile.csv", listed) } else { None };
         let of_result = || -> Vec<String> {
             let names = result["probes"].as_array().into_iter().flatten();
             names.filter_map(|p| Some(format!("probes/{}.csv", p["name"].as_str()?))).collect()
@@ -182,6 +187,7 @@ impl RunFolder {
             residuals,
             trajectories,
             forces,
+            profile,
             probes,
             pictures,
             notes: files.notes,

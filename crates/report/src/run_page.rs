@@ -27,6 +27,7 @@ pub(crate) fn body(run: &RunFolder, series: &[Series], pictures: Option<&Picture
         (overview(run))
         (results(run, series))
         @if let Some(pictures) = pictures { (self::pictures(run, pictures)) }
+        (models(run))
         (figures::charts(series))
         (cost(run))
         (versions(run))
@@ -143,6 +144,36 @@ fn results(run: &RunFolder, series: &[Series]) -> Markup {
                 } }
             } }
         }
+    }
+}
+
+/// Reduced models of the run with their relative errors.
+fn models(run: &RunFolder) -> Markup {
+    let Some(models) = run.result["models"].as_array() else { return html! {} };
+    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+    let ranks = |model: &Value| {
+        let ranks = model["ranks"].as_array().into_iter().flatten();
+        ranks.map(Value::to_string).collect::<Vec<_>>().join(" + ")
+    };
+    let share = |x: f64| format!("{:.2} %", 100.0 * x);
+    let error = |value: &Value| value["total"].as_f64().map_or_else(|| "–".into(), share);
+    html! {
+        h2 { "Reduced models" }
+        div.scroll { table {
+            thead { tr {
+                th { "model" } th { "kind" } th { "field" } th.n { "modes" } th.n { "snapshots" }
+                th.n { "error, snapshots of the fit" } th.n { "error, snapshots held out" }
+            } }
+            tbody { @for model in models { tr {
+                th { (text(&model["model"])) }
+                td { (text(&model["kind"])) }
+                td { (text(&model["field"])) }
+                td.n { (ranks(model)) }
+                td.n { (model["snapshots"]) }
+                td.n { (error(&model["training"])) }
+                td.n { (error(&model["held_out"])) }
+            } } }
+        } }
     }
 }
 

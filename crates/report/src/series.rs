@@ -154,27 +154,12 @@ impl Charts<'_> {
         let run = self.run;
         let Some(table) = &run.trajectories else { return };
         self.section = "Bodies";
+        let plane = run.dim() == 2;
         let axes = &AXES[..run.dim().clamp(2, 3)];
-        for axis in axes {
-            let lines = self.by_body(table, axis, |_| Some(1.0));
-            self.add(
-                &format!("Position {axis}"),
-                self.time(),
-                ChartAxis::linear(format!("position {axis}"), "m"),
-                lines,
-                &|_| None,
-            );
-        }
-        for axis in axes {
-            let lines = self.by_body(table, &format!("v{axis}"), |_| Some(1.0));
-            self.add(
-                &format!("Velocity along {axis}"),
-                self.time(),
-                ChartAxis::linear(format!("velocity v{axis}"), "m/s"),
-                lines,
-                &|_| None,
-            );
-        }
+        let turns = if plane { &AXES[2..] } else { &AXES[..] };
+        let [newton, newton_metre] = if plane { ["N/m", "N m/m"] } else { ["N", "N m"] };
+        self.components(table, "", ["Position", "position "], "m", axes);
+        self.components(table, "v", ["Velocity along", "velocity v"], "m/s", axes);
         let names = names_of(&run.result["trajectories"]);
         let speed = |i: usize| -> Option<Vec<(f64, f64)>> {
             let [x, y, z] = [table.points(i, "vx")?, table.points(i, "vy")?, table.points(i, "vz")?];
@@ -196,29 +181,55 @@ impl Charts<'_> {
             let body = pointer.strip_prefix("/trajectories/")?.strip_suffix("/largest_speed")?;
             names.get(body.parse::<usize>().ok()?).cloned()
         });
-        let spin = if run.dim() == 2 { &AXES[2..] } else { &AXES[..] };
-        for axis in spin {
-            let lines = self.by_body(table, &format!("w{axis}"), |_| Some(1.0));
-            self.add(
-                &format!("Angular velocity about {axis}"),
-                self.time(),
-                ChartAxis::linear(format!("angular velocity ω{axis}"), "rad/s"),
-                lines,
-                &|_| None,
-            );
-        }
+        self.components(table, "w", ["Angular velocity about", "angular velocity ω"], "rad/s", turns);
         if run.forces.is_none() {
-            let unit = if run.dim() == 2 { "N/m" } else { "N" };
-            for axis in axes {
-                let lines = self.by_body(table, &format!("f{axis}"), |_| Some(1.0));
-                self.add(
-                    &format!("Load of the fluid along {axis}"),
-                    self.time(),
-                    ChartAxis::linear(format!("force F{axis}"), unit),
-                    lines,
-                    &|_| None,
-                );
-            }
+            self.components(table, "f", ["Load of the fluid along", "force F"], newton, axes);
+        }
+        self.components(table, "t", ["Torque of the fluid about", "torque T"], newton_metre, turns);
+        // Without contacts there are no charts of them.
+        let shown = self.out.len();
+        self.components(table, "fc", ["Contact force along", "force F"], newton, axes);
+        self.components(table, "tc", ["Contact torque about", "torque T"], newton_metre, turns);
+        let mut number = 0;
+        self.out.retain(|series| {
+            number += 1;
+            number <= shown || !series.zero
+        });
+    }
+
+    /// Adds a chart for each of the `axes`: columns `prefix` and axis, with the beginnings of title
+    /// and label.
+    fn components(
+        &mut self,
+        table: &RunTable,
+        prefix: &str,
+        [title, label]: [&str; 2],
+        unit: &'static str,
+        axes: &[&str],
+    ) {
+        for axis in axes {
+            let lines = self.by_body(table, &format!("{prefix}{axis}"), |_| Some(1.0));
+            let y = ChartAxis::linear(format!("{label}{axis}"), unit);
+            self.add(&format!("{title} {axis}"), self.time(), y, lines, &|_| None);
+        }
+    }
+
+    /// Means over time and two axes, along the third.
+    fn averages(&mut self) {
+        let Some(table) = &self.run.profile else { return };
+        self.section = "Averages";
+        let axis = table.names.first().cloned().unwrap_or_default();
+        let x = ChartAxis::linear(axis.clone(), "m");
+        let groups: [(&str, &str, &'static str, &[&str]); 3] = [
+            ("Mean velocity", "velocity", "m/s", &["u", "v", "w"]),
+            ("Mean pressure", "pressure", "Pa", &["p"]),
+            ("Reynolds stresses", "Reynolds stress", "m²/s²", &["uu", "vv", "ww", "uv", "uw", "vw"]),
+        ];
+        for (title, label, unit, columns) in groups {
+            let line = |column: &&str| Some(((*column).to_owned(), table.points(0, column)?));
+            let lines = columns.iter().filter_map(line).collect();
+            let title = format!("{title} along {axis}");
+            self.add(&title, x.clone(), ChartAxis::linear(label, unit), lines, &|_| None);
         }
     }
 
@@ -382,6 +393,7 @@ pub(crate) fn series(run: &RunFolder) -> Vec<Series> {
     charts.loads();
     charts.bodies();
     charts.probes();
+    charts.averages();
     charts.budgets();
     charts.out
 }

@@ -98,6 +98,41 @@ fn a_whole_run_lacks_nothing() {
     }
 }
 
+/// A body that touches another has charts of its contacts; one without contacts has none.
+#[test]
+fn averages_loads_and_models_are_shown() {
+    let parent = TempDir::new().unwrap();
+    let folder = run(parent.path(), "a", 8, 1.0);
+    let (mut plan, mut result) = (plan(8), result(8, 1.0));
+    plan["tables"] = json!(["history.csv", "forces.csv", "images.csv", "trajectories.csv", "profile.csv"]);
+    result["models"] = json!([{ "model": "wake", "kind": "spodiann", "field": "lambda", "ranks": [5, 3],
+        "snapshots": 201, "training": { "total": 0.0104 }, "held_out": { "total": 0.0123 } }]);
+    let write = |name: &str, text: String| fs::write(folder.join(name), text).unwrap();
+    write("plan.json", plan.to_string());
+    write("result.json", result.to_string());
+    let head = "time,body,x,y,z,vx,vy,vz,wz,tz,fcx,fcy,tcz";
+    write(
+        "trajectories.csv",
+        format!("{head}\n0,d,0,0,0,0,0,0,0,0.1,0,0.5,0\n1,d,0,0,0,0,0,0,0,0.2,0,0.6,0\n"),
+    );
+    write("profile.csv", "# units\ny,u,v,p,uu,vv,uv\n0.25,1,0,3,1,2,0.1\n0.75,2,0,3,1,2,0.2\n".into());
+    let html = page(&[&folder]);
+    assert!(!html.contains("What this report lacks"), "{html}");
+    for text in [
+        "Torque of the fluid about z",
+        "Contact force along y",
+        "Mean velocity along y",
+        "Reynolds stresses along y",
+        "Reduced models",
+        "5 + 3",
+        "1.04 %",
+        "1.23 %",
+    ] {
+        assert!(html.contains(text), "{text}");
+    }
+    assert!(!html.contains("Contact force along x") && !html.contains("Contact torque"));
+}
+
 #[test]
 fn what_is_missing_or_damaged_is_named() {
     let parent = TempDir::new().unwrap();

@@ -9,6 +9,9 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
+/// Table of the means over two axes.
+const PROFILE: &str = "profile.csv";
+
 /// Keeps ∫u dt, ∫p dt and ∫uᵢuⱼ dt of every cell since means began; writes `averages.vti` and, if asked for, `profile.csv`.
 pub(crate) struct AveragesWatch {
     folder: PathBuf,
@@ -60,7 +63,7 @@ impl AveragesWatch {
                 row[k] += volume * (mean[c] + raw);
             }
         }
-        let mut file = BufWriter::new(File::create(self.folder.join("profile.csv"))?);
+        let mut file = BufWriter::new(File::create(self.folder.join(PROFILE))?);
         let names = if self.dim == 2 { "u,v,p,uu,vv,uv" } else { "u,v,w,p,uu,vv,ww,uv,uw,vw" };
         writeln!(
             file,
@@ -102,6 +105,9 @@ impl Watch for AveragesWatch {
     fn name(&self) -> &'static str {
         "averages"
     }
+    fn tables(&self) -> Vec<String> {
+        self.averages.profile.iter().map(|_| PROFILE.into()).collect()
+    }
     fn step(&mut self, view: &mut dyn View, info: &StepInfo) -> Result<(), CouplingError> {
         if info.time <= self.averages.start {
             return Ok(());
@@ -141,7 +147,7 @@ impl Watch for AveragesWatch {
         };
         write().map_err(output("writing", &path))?;
         if let Some(axis) = self.averages.profile {
-            let path = self.folder.join("profile.csv");
+            let path = self.folder.join(PROFILE);
             self.profile(view, axis, &means).map_err(output("writing", &path))?;
         }
         Ok(())

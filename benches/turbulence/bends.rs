@@ -12,14 +12,14 @@ use validation::bent_duct::{BentDuct, Duct};
 const ITERATIONS: usize = 2000;
 const STEADY: f64 = 1e-5;
 
-/// Bends by 90° and 180° at Re 10⁶ with 80 cells across, four models: root mean square deviations of the
+/// Bends by 90° and 180° at Re 10⁶ with 160 cells across, four models: root mean square deviations of the
 /// velocity along the duct and of the eddy viscosity, friction of both walls, pressure drop.
 pub(crate) fn bends() -> Outcome<()> {
     let inflow = Inflow::from_length(1.0, 0.05, 0.07)?;
     // Constants of the reference runs: Wilcox 1998 without its corrections.
     let wilcox = Wilcox { beta: 0.072, gamma: 0.52, ..Wilcox::default() };
     for bend in [0.5 * PI, PI] {
-        let case = BentDuct { duct: Duct { bend, turn: 0.0 }, cells: 80, reynolds: 1e6 };
+        let case = BentDuct { duct: Duct { bend, turn: 0.0 }, cells: 160, reynolds: 1e6 };
         run(&case, "kOmegaSST", |n| Ok(KOmegaSst::new(Sst::default(), n, inflow)?))?;
         run(&case, "kOmega", |n| Ok(KOmega::new(wilcox, n, inflow)?))?;
         run(&case, "kEpsilon", |n| Ok(KEpsilon::new(StandardKEpsilon::default(), n, inflow)?))?;

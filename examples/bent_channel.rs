@@ -68,12 +68,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     let walls = StaticBodies::new().with(Walls, Pose::at([0.0; 3]));
     let cuts = cut_cells(flow.velocity(), &walls)?;
     flow.set_walls(Some((&cuts, WallStress::LAW_OF_THE_WALL)))?;
-    flow.set_velocity(|[x, y]| match (x < 0.0, y > 0.0) {
-        (true, _) => [1.0, 0.0],
-        (_, true) => [0.0, 1.0],
-        _ => [-y / x.hypot(y).max(0.1), x / x.hypot(y).max(0.1)],
-    });
-
     // 5 % turbulence of length scale 0.07 m enters.
     let sst = KOmegaSst::new(Sst::default(), grid.n_cells(), Inflow::from_length(1.0, 0.05, 0.07)?)?;
     let mut model = Modelled::new(sst, &grid, flow.sides(), TransportParams::steady())?;
@@ -110,6 +104,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         let number = |line: &str, k: usize| line.split(',').nth(k).and_then(|n| n.parse().ok());
         let pair = |line: &str| Some([number(line, 2)?, scale * number(line, column)?]);
         let fitted: Vec<[f64; 2]> = text.lines().skip(1).filter_map(pair).collect();
+        let between = |x: f64| {
+            let w = ours.windows(2).find(|w| w[0][0] <= x && x <= w[1][0])?;
+            Some(w[0][1] + (x - w[0][0]) * (w[1][1] - w[0][1]) / (w[1][0] - w[0][0]))
+        };
+        let off: Vec<f64> = fitted.iter().filter_map(|p| Some((between(p[0])? - p[1]).powi(2))).collect();
+        println!("{label}: rms difference {:.4}", (off.iter().sum::<f64>() / off.len() as f64).sqrt());
         let labels = ["distance from the inner wall, m", label];
         panels.push(Drawing::curves("", labels, &[("immersed", ours), ("body-fitted", fitted)]));
     }

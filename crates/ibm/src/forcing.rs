@@ -153,6 +153,64 @@ pub trait Forcing: Send {
     fn slip(&self, velocity: &dyn VelocityField, bodies: &dyn Kinematics) -> f64;
 }
 
+/// Forcing that is chosen at run time.
+impl Forcing for Box<dyn Forcing> {
+    fn begin(&mut self, step: Option<ViscousStep>) {
+        (**self).begin(step);
+    }
+    fn place(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies) -> Result<(), IbmError> {
+        (**self).place(velocity, bodies)
+    }
+    fn renumber(&mut self, numbers: &Renumbering) {
+        (**self).renumber(numbers);
+    }
+    fn density(&self) -> f64 {
+        (**self).density()
+    }
+    fn rounds(&self) -> usize {
+        (**self).rounds()
+    }
+    fn layer(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies, b: BodyId) -> Layer {
+        (**self).layer(velocity, bodies, b)
+    }
+    fn internal_momentum(&mut self, velocity: &dyn VelocityField, bodies: &dyn Bodies, b: BodyId) -> Wrench {
+        (**self).internal_momentum(velocity, bodies, b)
+    }
+    fn rigid_momentum(
+        &mut self,
+        velocity: &dyn VelocityField,
+        bodies: &dyn Bodies,
+        b: BodyId,
+        twist: Twist,
+    ) -> Wrench {
+        (**self).rigid_momentum(velocity, bodies, b, twist)
+    }
+    fn force(&mut self, velocity: &mut dyn VelocityField, bodies: &dyn Kinematics) {
+        (**self).force(velocity, bodies);
+    }
+    fn hidden_dissipation(&self) -> f64 {
+        (**self).hidden_dissipation()
+    }
+    fn inelastic_loss(
+        &mut self,
+        before: &[&[f64]],
+        velocity: &dyn VelocityField,
+        bodies: &dyn Kinematics,
+        mean: &dyn Fn(BodyId) -> Twist,
+    ) -> f64 {
+        (**self).inelastic_loss(before, velocity, bodies, mean)
+    }
+    fn surface_work(&self, bodies: &dyn Kinematics) -> f64 {
+        (**self).surface_work(bodies)
+    }
+    fn reaction(&self, b: BodyId) -> Wrench {
+        (**self).reaction(b)
+    }
+    fn slip(&self, velocity: &dyn VelocityField, bodies: &dyn Kinematics) -> f64 {
+        (**self).slip(velocity, bodies)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -75,7 +75,7 @@ impl Setup {
         match self.flow.algorithm {
             Algorithm::Simple => return Ok(self.steady::<D>()?.into()),
             Algorithm::Piso if bodies => {
-                let particles = self.particles(self.hfdib())?.with_strategy(Explicit);
+                let particles = self.particles(Box::new(self.hfdib()))?.with_strategy(Explicit);
                 return Ok(unsteady(self.simulation(self.piso::<D>()?, particles)?, self.books()));
             }
             Algorithm::Piso => {
@@ -87,13 +87,10 @@ impl Setup {
             let (flow, still) = self.walled::<D>()?;
             return Ok(unsteady(self.simulation(flow, still)?, ()));
         }
-        match self.bodies.forcing() {
-            ForcingChoice::Hfdib => self.bodies_by::<D, _>(self.hfdib()),
-            _ => self.bodies_by::<D, _>(self.smooth()),
-        }
-    }
-
-    fn bodies_by<const D: usize, F: Forcing + 'static>(&self, forcing: F) -> Result<Assembled, RunError> {
+        let forcing: Box<dyn Forcing> = match self.bodies.forcing() {
+            ForcingChoice::Hfdib => Box::new(self.hfdib()),
+            _ => Box::new(self.smooth()),
+        };
         let (flow, particles) = (self.physics(self.projection::<D>()?)?, self.particles(forcing)?);
         match self.bodies.coupling.strategy {
             StrategyChoice::OneSolve => self.with_bodies(flow, particles),
@@ -107,7 +104,7 @@ impl Setup {
         self.why_no_books().is_none().then(Ledger::new)
     }
 
-    fn particles<F: Forcing>(&self, forcing: F) -> Result<Particles<F, Cast>, BuildError> {
+    fn particles(&self, forcing: Box<dyn Forcing>) -> Result<Particles<Box<dyn Forcing>, Cast>, BuildError> {
         let particles = Particles::new(self.bodies()?, forcing, self.fluid().density, self.gravity);
         Ok(match self.bodies.coupling.virtual_mass {
             Some(factor) => particles.with_virtual_mass(factor),
@@ -127,13 +124,12 @@ impl Setup {
         })
     }
 
-    fn with_bodies<const D: usize, F, S>(
+    fn with_bodies<const D: usize, S>(
         &self,
         flow: Physics<D>,
-        particles: Particles<F, Cast, S>,
+        particles: Particles<Box<dyn Forcing>, Cast, S>,
     ) -> Result<Assembled, RunError>
     where
-        F: Forcing + 'static,
         S: Strategy + Exchange<D, Physics<D>> + 'static,
     {
         Ok(unsteady(self.simulation(flow, particles)?, self.books()))

@@ -283,9 +283,12 @@ impl<'a> Parser<'a> {
             self.steps.push(Step::Two(*f));
         } else {
             let functions: Vec<_> = ONE.iter().map(|(n, _)| *n).chain(TWO.iter().map(|(n, _)| *n)).collect();
+            let variables = match self.variables {
+                [] => String::new(),
+                variables => format!("a variable ({}), nor ", variables.join(", ")),
+            };
             return Err(format!(
-                "asks for \"{name}\", which is neither a variable ({}), nor PI or E, nor a function ({})",
-                self.variables.join(", "),
+                "asks for \"{name}\", which is neither {variables}PI or E, nor a function ({})",
                 functions.join(", ")
             ));
         }

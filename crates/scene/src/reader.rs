@@ -2,7 +2,7 @@
 use crate::document::{Item, Place, Section, Value};
 use crate::expression::Expression;
 use crate::problem::{Problem, shown};
-use crate::schema::number;
+use crate::schema::{number, whole};
 use interfaces::{Point, Vector};
 use std::cell::RefCell;
 
@@ -90,7 +90,7 @@ impl<'a> Reader<'a> {
         number(self.value(key)?)
     }
     pub(crate) fn whole(&self, key: &str) -> Option<usize> {
-        if let Value::Whole(n) = self.value(key)? { usize::try_from(*n).ok() } else { None }
+        whole(self.value(key)?).and_then(|n| usize::try_from(n).ok())
     }
     pub(crate) fn text(&self, key: &str) -> Option<&'a str> {
         if let Value::Text(text) = self.value(key)? { Some(text) } else { None }
@@ -102,8 +102,7 @@ impl<'a> Reader<'a> {
         self.list(key).map(numbers)
     }
     pub(crate) fn wholes(&self, key: &str) -> Option<Vec<usize>> {
-        let whole =
-            |item: &Item| if let Value::Whole(n) = item.value { usize::try_from(n).ok() } else { None };
+        let whole = |item: &Item| usize::try_from(whole(&item.value)?).ok();
         self.list(key).map(|items| items.iter().filter_map(whole).collect())
     }
     pub(crate) fn texts(&self, key: &str) -> Vec<&'a str> {

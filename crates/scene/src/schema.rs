@@ -11,7 +11,7 @@ mod models;
 mod physics;
 mod run;
 
-pub(crate) use check::{FileKey, check, number};
+pub(crate) use check::{FileKey, check, number, whole};
 pub use json::json_schema;
 pub use manual::manual;
 
@@ -132,7 +132,7 @@ const POINT: Kind = Kind::List(&METRES, 2, 3);
 
 /// The whole file.
 pub(crate) static SCENE: Table = Table {
-    about: "A scene. Numbers are in SI units. Formulas may use + - * / ^, sin, cos, tan, asin, acos, atan, atan2(y, x), sinh, cosh, tanh, exp, \
+    about: "A scene. Numbers are in SI units. Any number may be given as a formula without variables in quotes, \"2*PI/3\", which is evaluated once. Formulas may use + - * / ^, sin, cos, tan, asin, acos, atan, atan2(y, x), sinh, cosh, tanh, exp, \
             log, ln, log10, sqrt, cbrt, abs, sign, floor, ceil, round, step (0 before 0, then 1), min(a, b), max(a, b), mod(a, b), PI and E. A formula −x^2 is −(x²).",
     keys: &[
         optional(

@@ -99,12 +99,14 @@ pub(crate) fn check_item(item: &Item, kind: &Kind, path: &str, found: &mut Findi
         (Kind::File, _) => problem(wanted("the path of a file in quotes")),
         (Kind::Number(range, unit), value) => match number(value) {
             Some(x) if range.holds(x) => {}
-            _ => problem(wanted(&with_unit(&range.phrase(), unit))),
+            _ => problem(wanted(&with_unit(&range.phrase(), unit)) + &evaluated(value)),
         },
-        (Kind::Whole(least, most), value) => match value {
-            Value::Whole(n) if (*least..=*most).contains(n) => {}
-            _ if *most == i64::MAX => problem(wanted(&format!("a whole number from {least} on"))),
-            _ => problem(wanted(&format!("a whole number from {least} to {most}"))),
+        (Kind::Whole(least, most), value) => match whole(value) {
+            Some(n) if (*least..=*most).contains(&n) => {}
+            _ if *most == i64::MAX => {
+                problem(wanted(&format!("a whole number from {least} on")) + &evaluated(value))
+            }
+            _ => problem(wanted(&format!("a whole number from {least} to {most}")) + &evaluated(value)),
         },
         (Kind::Formula(variables, unit), value) => match value {
             Value::Text(text) => {
@@ -208,8 +210,7 @@ fn check_choice(
 
 fn fits(kind: &Kind, value: &Value) -> bool {
     match kind {
-        Kind::Number(..) => number(value).is_some(),
-        Kind::Formula(..) => number(value).is_some() || matches!(value, Value::Text(_)),
+        Kind::Number(..) | Kind::Formula(..) => number(value).is_some() || matches!(value, Value::Text(_)),
         Kind::List(..) => matches!(value, Value::List(_)),
         Kind::Table(_) => matches!(value, Value::Table(_)),
         _ => false,
@@ -231,11 +232,35 @@ fn with_unit(text: &str, unit: &str) -> String {
     if unit.is_empty() || unit == "1" { text.into() } else { format!("{text} [{unit}]") }
 }
 
-/// The number that a value is.
+/// The number that a value is; a text is a formula without variables.
 pub(crate) fn number(value: &Value) -> Option<f64> {
     match value {
         Value::Whole(n) => Some(*n as f64),
         Value::Number(x) => Some(*x),
+        Value::Text(text) => Expression::new(text, &[]).ok()?.fixed(),
         _ => None,
+    }
+}
+
+/// Largest whole number up to which doubles hold all of them.
+const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
+
+/// The whole number that a value is; a text is a formula without variables.
+pub(crate) fn whole(value: &Value) -> Option<i64> {
+    match value {
+        Value::Whole(n) => Some(*n),
+        Value::Text(_) => {
+            number(value).filter(|x| x.fract() == 0.0 && x.abs() <= LARGEST_WHOLE).map(|x| x as i64)
+        }
+        _ => None,
+    }
+}
+
+/// Value or fault of a text as a formula, as the end of a message; empty for other values.
+fn evaluated(value: &Value) -> String {
+    let Value::Text(text) = value else { return String::new() };
+    match Expression::new(text, &[]) {
+        Ok(formula) => format!("; the formula is {}", formula.at(&[])),
+        Err(error) => format!(", or a formula without variables: this one {error}"),
     }
 }

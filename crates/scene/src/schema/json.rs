@@ -45,7 +45,7 @@ fn kind(kind_: &Kind, definitions: &mut Map<String, Value>) -> Value {
     match kind_ {
         Kind::Flag => json!({ "type": "boolean" }),
         Kind::Number(range, unit) => {
-            let mut out = json!({ "type": "number" });
+            let mut out = json!({ "type": ["number", "string"] });
             match range {
                 Range::Any => {}
                 Range::Positive => out["exclusiveMinimum"] = json!(0),
@@ -56,7 +56,9 @@ fn kind(kind_: &Kind, definitions: &mut Map<String, Value>) -> Value {
             out["$comment"] = json!(unit);
             out
         }
-        Kind::Whole(least, most) => json!({ "type": "integer", "minimum": least, "maximum": most }),
+        Kind::Whole(least, most) => {
+            json!({ "type": ["integer", "string"], "minimum": least, "maximum": most })
+        }
         Kind::Text | Kind::File => json!({ "type": "string" }),
         Kind::Formula(..) => json!({ "type": ["number", "string"] }),
         Kind::Word(words) => {

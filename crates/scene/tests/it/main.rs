@@ -2,6 +2,7 @@
 mod contacts;
 mod dry;
 mod exits;
+mod expressions;
 mod files;
 mod first_steps;
 mod heat;

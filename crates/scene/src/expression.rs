@@ -9,6 +9,7 @@
 //! ```
 //!
 //! (No kept library does this: one reads −x^2 as (−x)² and no 1e-3, one is left alone since 2018, one is under a licence that binds its users.)
+use crate::time_table::TimeTable;
 use std::f64::consts::{E, PI};
 use std::sync::{Arc, OnceLock};
 
@@ -17,6 +18,8 @@ use std::sync::{Arc, OnceLock};
 pub(crate) struct Expression {
     /// What to do, one after the other, on a stack.
     steps: Arc<[Step]>,
+    /// Columns for [`Step::Column`].
+    table: Option<Arc<TimeTable>>,
     /// The variables that had no finite value, and what it was, if there were any.
     fault: Arc<OnceLock<([f64; 4], f64)>>,
 }
@@ -33,6 +36,8 @@ enum Step {
     Power,
     One(One),
     Two(Two),
+    /// Value of a column of the table at the time on the stack.
+    Column(usize),
 }
 
 /// Functions of one and of two numbers.
@@ -75,7 +80,13 @@ const DEEPEST: usize = 60;
 
 impl Expression {
     pub(crate) fn constant(value: f64) -> Self {
-        Self { steps: Arc::new([Step::Number(value)]), fault: Arc::default() }
+        Self { steps: Arc::new([Step::Number(value)]), table: None, fault: Arc::default() }
+    }
+
+    /// Value of a column of `table` at the time that the variable with this number is.
+    pub(crate) fn column(table: &Arc<TimeTable>, column: usize, variable: usize) -> Self {
+        let steps = Arc::new([Step::Variable(variable), Step::Column(column)]);
+        Self { steps, table: Some(table.clone()), fault: Arc::default() }
     }
 
     /// Understands `text` as a formula of `variables`; the error is the rest of a sentence that begins "the formula …".
@@ -92,7 +103,7 @@ impl Expression {
                 parser.rest.chars().count()
             ));
         }
-        let formula = Self { steps: parser.steps.into(), fault: Arc::default() };
+        let formula = Self { steps: parser.steps.into(), table: None, fault: Arc::default() };
         if formula.fixed().is_some() {
             let value = formula.at(&[]);
             if !value.is_finite() {
@@ -120,6 +131,10 @@ impl Expression {
                 }
                 Step::Negate => stack[top - 1] = -stack[top - 1],
                 Step::One(f) => stack[top - 1] = f(stack[top - 1]),
+                Step::Column(c) => {
+                    stack[top - 1] =
+                        self.table.as_ref().map_or(f64::NAN, |table| table.at(c, stack[top - 1]));
+                }
                 two => {
                     top -= 1;
                     let (a, b) = (stack[top - 1], stack[top]);

@@ -67,6 +67,7 @@ mod stand_in;
 mod steady;
 mod still;
 mod summary;
+mod time_table;
 mod trial;
 mod view;
 mod wall_iterations;

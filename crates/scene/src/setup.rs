@@ -12,6 +12,7 @@ mod shapes;
 mod sides;
 mod steady;
 mod surfaces;
+mod tables;
 mod time;
 
 pub(crate) use bodies::{
@@ -93,6 +94,8 @@ pub(crate) struct Context<'a> {
     /// Folder of the file: paths in it begin there.
     pub(crate) folder: &'a Path,
     pub(crate) dim: usize,
+    /// End of the run \[s\]; none for a steady flow.
+    pub(crate) end: Option<f64>,
     /// Changes of files, for warnings.
     notes: RefCell<Vec<(String, String)>>,
 }
@@ -125,18 +128,8 @@ impl Setup {
     fn read(root: &Reader<'_>, folder: &Path, name: String) -> Result<Self, Problem> {
         let axes = grid::read(root, folder)?;
         let dim = axes.len();
-        let context = Context { folder, dim, notes: RefCell::default() };
-        let sides = sides::read(root, &context)?;
-        let fluid = flow::fluid(root)?;
         let turbulence = physics::turbulence(root, dim)?;
         let flow = flow::read(root, turbulence.as_ref().is_some_and(|t| t.model.averages()))?;
-        let gravity = root.vector_of("gravity", dim)?.unwrap_or_default();
-        let bodies = bodies::read(root, &context, &axes, &sides, (fluid, gravity))?;
-        let force = root.formulas("force", &["t"], dim)?;
-        let initial = match root.table("initial") {
-            Some(table) => table.formulas("velocity", &["x", "y", "z"], dim)?,
-            None => None,
-        };
         let empty = crate::document::Section::default();
         let unread = Formulas::default();
         let table =
@@ -145,6 +138,16 @@ impl Setup {
         let output = table("output");
         let steady = flow.algorithm == Algorithm::Simple;
         let Span { end, snapshots } = if steady { Span::STEADY } else { Span::read(&time, &output)? };
+        let context = Context { folder, dim, end: (!steady).then_some(end), notes: RefCell::default() };
+        let sides = sides::read(root, &context)?;
+        let fluid = flow::fluid(root)?;
+        let gravity = root.vector_of("gravity", dim)?.unwrap_or_default();
+        let bodies = bodies::read(root, &context, &axes, &sides, (fluid, gravity))?;
+        let force = root.formulas("force", &["t"], dim)?;
+        let initial = match root.table("initial") {
+            Some(table) => table.formulas("velocity", &["x", "y", "z"], dim)?,
+            None => None,
+        };
         let moved = bodies.any_moves();
         let periodic_along = |a: usize| matches!(sides[a][0], Side::Periodic);
         let balance = match bodies.coupling.balance {

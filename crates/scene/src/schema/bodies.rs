@@ -289,7 +289,7 @@ pub(super) static BODY: Table = Table {
         ),
         optional(
             "surface_spin",
-            Kind::Either(&[Kind::Formula(TIME, "rad/s"), Kind::List(&Kind::Formula(TIME, "rad/s"), 3, 3)]),
+            Kind::Either(&SPINS),
             "0",
             "The same by a turn of the surface about the centre of mass: a roller. About z, or a vector in the body's frame.",
             "\"10*sin(t)\"",
@@ -305,8 +305,24 @@ pub(super) static BODY: Table = Table {
 };
 
 const MOVING: Kind = Kind::Formula(TIME, "m");
+static SPINS: [Kind; 2] = [Kind::Formula(TIME, "rad/s"), Kind::List(&Kind::Formula(TIME, "rad/s"), 3, 3)];
 
-static MOTIONS: [(&str, &Table); 5] = [
+const AXIS: Key = optional(
+    "axis",
+    Kind::List(&Kind::Number(Range::Any, "1"), 3, 3),
+    "z",
+    "About which axis.",
+    "[0.0, 0.0, 1.0]",
+);
+const PIVOT: Key = optional(
+    "pivot",
+    POINT,
+    "its centre of mass",
+    "A point of the axis, a hinge, by its place in the scene at t = 0. A shift or velocity moves it, too.",
+    "[0.0, 0.0]",
+);
+
+static MOTIONS: [(&str, &Table); 6] = [
     ("free", &Table { about: "The flow, gravity and other bodies.", keys: &[] }),
     (
         "axes",
@@ -344,7 +360,7 @@ static MOTIONS: [(&str, &Table); 5] = [
     (
         "prescribed",
         &Table {
-            about: "Formulas of the time t, added to where it stands: `shift`, and the `angle` about an axis.",
+            about: "Formulas of the time t: `shift` from its position, or `velocity`, and the `angle` about an axis, or `spin`. Velocity and spin are integrated from position and orientation at t = 0, with an error of sixth order in the step.",
             keys: &[
                 optional(
                     "shift",
@@ -353,21 +369,39 @@ static MOTIONS: [(&str, &Table); 5] = [
                     "How far it has come.",
                     "[\"-0.79577*sin(2*PI*t/5)\", 0.0]",
                 ),
+                optional(
+                    "velocity",
+                    Kind::List(&Kind::Formula(TIME, "m/s"), 2, 3),
+                    "`shift` tells",
+                    "Velocity of its centre of mass, or of the pivot.",
+                    "[\"-cos(2*PI*t/5)\", 0.0]",
+                ),
                 optional("angle", Kind::Formula(TIME, "rad"), "none", "How far it has turned.", "\"2*t\""),
                 optional(
-                    "axis",
-                    Kind::List(&Kind::Number(Range::Any, "1"), 3, 3),
-                    "z",
-                    "About which axis.",
-                    "[0.0, 0.0, 1.0]",
+                    "spin",
+                    Kind::Either(&SPINS),
+                    "`angle` tells",
+                    "Angular velocity about its centre of mass: about z, or a vector.",
+                    "\"2*cos(t)\"",
                 ),
-                optional(
-                    "pivot",
-                    POINT,
-                    "its centre of mass",
-                    "A point of the axis, a hinge, by its place in the scene at t = 0. `shift` moves it, too.",
-                    "[0.0, 0.0]",
+                AXIS,
+                PIVOT,
+            ],
+        },
+    ),
+    (
+        "table",
+        &Table {
+            about: "Position and angle over time from a file. Values between rows are interpolated linearly, so that velocities are constant between two rows.",
+            keys: &[
+                required(
+                    "file",
+                    Kind::File,
+                    "CSV file: a header with `time` [s] and any of `x`, `y`, `z` [m] and `angle` [rad], rows in order of time, from 0 to the end of the run. Only differences from the values at t = 0 count.",
+                    "\"wing.csv\"",
                 ),
+                AXIS,
+                PIVOT,
             ],
         },
     ),

@@ -221,21 +221,28 @@ static SIDE_TYPES: [(&str, &Table); 7] = [
     (
         "inlet",
         &Table {
-            about: "Fluid enters: `velocity`, or a parabola with this `peak`.",
+            about: "Fluid enters: `velocity`, a parabola with this `peak`, or a `table` over time.",
             keys: &[
                 optional(
                     "velocity",
                     Kind::List(&Kind::Formula(SPACE_TIME, "m/s"), 2, 3),
-                    "`peak` tells",
+                    "`peak` or `table` tells",
                     "What enters.",
                     "[\"1.5*4*y*(0.41-y)/0.41^2\", 0.0]",
                 ),
                 optional(
                     "peak",
                     SPEED,
-                    "`velocity` tells",
+                    "`velocity` or `table` tells",
                     "Speed in the middle of a developed flow into the box (a product of parabolas in a duct).",
                     "0.3",
+                ),
+                optional(
+                    "table",
+                    Kind::File,
+                    "`velocity` or `peak` tells",
+                    "CSV file of the velocity [m/s] over time [s], the same all over the side: a header with `time` and `u`, `v`, `w` (0 where absent), rows in order of time, from 0 to the end of the run. Values between rows are interpolated linearly.",
+                    "\"inflow.csv\"",
                 ),
             ],
         },

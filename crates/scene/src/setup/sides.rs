@@ -1,5 +1,6 @@
 //! The sides of the box.
-use super::{Context, surfaces};
+use super::{Context, surfaces, tables};
+use crate::expression::Expression;
 use crate::problem::Problem;
 use crate::reader::Reader;
 use fv_mesh::{Patch, Profile, Side};
@@ -78,21 +79,30 @@ fn side(sides: &Reader<'_>, key: &str, context: &Context<'_>, axis: usize) -> Re
 }
 
 fn inlet(t: &Reader<'_>, context: &Context<'_>) -> Result<Profile, Problem> {
-    let velocity = t.formulas("velocity", &["x", "y", "z", "t"], context.dim)?;
-    match (velocity, t.number("peak")) {
-        (None, Some(peak)) => Ok(Profile::Parabolic { peak }),
-        (Some(u), None) => {
-            if let [Some(x), Some(y), Some(z)] = u.each_ref().map(|u| u.fixed()) {
-                return Ok(Profile::Uniform([x, y, z]));
-            }
-            Ok(Profile::function(move |x, time| {
-                let variables = [x[0], x[1], x[2], time];
-                u.each_ref().map(|u| u.needed(&variables))
-            }))
-        }
-        (Some(_), Some(_)) => Err(t.fail("peak", "the velocity is given already; leave out one of the two")),
-        (None, None) => Err(t.fail_here("what enters? Give `velocity`, or `peak` for a parabola")),
+    let given: Vec<&str> = ["velocity", "peak", "table"].into_iter().filter(|key| t.has(key)).collect();
+    if let [first, second, ..] = given[..] {
+        return Err(t.fail(second, format!("`{first}` is given already; leave out one of the two")));
     }
+    if let Some(peak) = t.number("peak") {
+        return Ok(Profile::Parabolic { peak });
+    }
+    let u = if t.has("table") {
+        let columns = tables::read(t, "table", context, ["u", "v", "w"], 3)?;
+        if context.dim == 2 && columns[2].is_some() {
+            return Err(t.fail("table", "a plane flow has no component w; leave out that column"));
+        }
+        columns.map(|column| column.unwrap_or(Expression::constant(0.0)))
+    } else {
+        t.formulas("velocity", &["x", "y", "z", "t"], context.dim)?
+            .ok_or_else(|| t.fail_here("what enters? Give `velocity`, `table`, or `peak` for a parabola"))?
+    };
+    if let [Some(x), Some(y), Some(z)] = u.each_ref().map(|u| u.fixed()) {
+        return Ok(Profile::Uniform([x, y, z]));
+    }
+    Ok(Profile::function(move |x, time| {
+        let variables = [x[0], x[1], x[2], time];
+        u.each_ref().map(|u| u.needed(&variables))
+    }))
 }
 
 /// Whether fluid may enter or leave there, on a part of the side at least.

@@ -20,6 +20,20 @@ pub(super) fn wall(t: &Reader<'_>, dim: usize) -> Result<Side, Problem> {
     Ok(Side::moving_wall(move |x, t| u.each_ref().map(|u| u.needed(&[x[0], x[1], x[2], t]))))
 }
 
+/// Angular velocity at `key` as formulas of the time: about z, or a vector.
+pub(super) fn spin(t: &Reader<'_>, key: &str, dim: usize) -> Result<Option<[Expression; 3]>, Problem> {
+    let about_z = |rate| [Expression::constant(0.0), Expression::constant(0.0), rate];
+    let spin = match t.formulas(key, &["t"], 3)? {
+        Some(spin) => Some(spin),
+        None => t.formula(key, &["t"])?.map(about_z),
+    };
+    let about = |a: usize| spin.as_ref().is_some_and(|spin| spin[a].fixed() != Some(0.0));
+    if dim == 2 && (about(0) || about(1)) {
+        return Err(t.fail(key, "bodies of a plane scene turn about z only; give a number"));
+    }
+    Ok(spin)
+}
+
 /// Velocity of a body's surface besides that of the body, in the body's frame: formulas of place and time, and a spin about the
 /// centre of mass.
 #[derive(Clone, Debug)]
@@ -32,11 +46,7 @@ impl SurfaceVelocity {
     /// The keys `surface_velocity` and `surface_spin` of the body in `t`.
     pub(super) fn read(t: &Reader<'_>, motion: &Motion, dim: usize) -> Result<Option<Self>, Problem> {
         let linear = t.formulas("surface_velocity", &PLACE_TIME, dim)?;
-        let about_z = |angle| [Expression::constant(0.0), Expression::constant(0.0), angle];
-        let spin = match t.formulas("surface_spin", &["t"], 3)? {
-            Some(spin) => Some(spin),
-            None => t.formula("surface_spin", &["t"])?.map(about_z),
-        };
+        let spin = spin(t, "surface_spin", dim)?;
         let Some(key) = [("surface_velocity", linear.is_some()), ("surface_spin", spin.is_some())]
             .into_iter()
             .find_map(|(key, given)| given.then_some(key))
@@ -48,10 +58,6 @@ impl SurfaceVelocity {
                 key,
                 "a surface that moves by itself is for bodies that are held; give motion \"fixed\" or \"prescribed\", or leave this out",
             ));
-        }
-        let about = |a: usize| spin.as_ref().is_some_and(|spin| spin[a].fixed() != Some(0.0));
-        if dim == 2 && (about(0) || about(1)) {
-            return Err(t.fail("surface_spin", "surfaces of a plane scene turn about z only; give a number"));
         }
         Ok(Some(Self { linear, spin }))
     }

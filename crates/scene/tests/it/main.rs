@@ -16,6 +16,7 @@ mod numbers;
 mod physics;
 mod placement;
 mod plan;
+mod prescribed;
 mod resume;
 mod spoilt;
 mod steady;

@@ -34,6 +34,7 @@
 mod accounts;
 mod checkpoint;
 mod error;
+mod flow_rate;
 mod flow_solver;
 mod grains;
 mod ledger;
@@ -54,6 +55,7 @@ pub use accounts::{Account, Accounts};
 pub use checkpoint::{CheckpointError, SavedState, load, previous, save};
 pub use dem;
 pub use error::{CouplingError, Escape};
+pub use flow_rate::FlowRate;
 pub use flow_solver::FlowSolver;
 pub use fv_mesh;
 pub use grains::Grains;

@@ -141,6 +141,11 @@ pub trait Observer<S: ?Sized> {
     ) -> Result<(), CouplingError> {
         Ok(())
     }
+    /// Whether the run is to end after the last step, before its time: at a steady state, or an
+    /// event. A snapshot follows.
+    fn finished(&self) -> bool {
+        false
+    }
 }
 
 impl<S: ?Sized> Observer<S> for () {}
@@ -158,6 +163,9 @@ impl<S: ?Sized, A: Observer<S>, B: Observer<S>> Observer<S> for (A, B) {
         self.0.snapshot(simulation, index, info)?;
         self.1.snapshot(simulation, index, info)
     }
+    fn finished(&self) -> bool {
+        self.0.finished() || self.1.finished()
+    }
 }
 
 impl<S: ?Sized, A: Observer<S>> Observer<S> for Option<A> {
@@ -172,6 +180,9 @@ impl<S: ?Sized, A: Observer<S>> Observer<S> for Option<A> {
     fn snapshot(&mut self, simulation: &mut S, index: usize, info: &StepInfo) -> Result<(), CouplingError> {
         self.as_mut().map_or(Ok(()), |a| a.snapshot(simulation, index, info))
     }
+    fn finished(&self) -> bool {
+        self.as_ref().is_some_and(A::finished)
+    }
 }
 
 impl<S: ?Sized, A: Observer<S>> Observer<S> for &mut A {
@@ -183,6 +194,9 @@ impl<S: ?Sized, A: Observer<S>> Observer<S> for &mut A {
     }
     fn snapshot(&mut self, simulation: &mut S, index: usize, info: &StepInfo) -> Result<(), CouplingError> {
         (**self).snapshot(simulation, index, info)
+    }
+    fn finished(&self) -> bool {
+        (**self).finished()
     }
 }
 
@@ -208,6 +222,8 @@ pub struct RunSummary {
     pub repeats: u64,
     /// Did `stop` end it?
     pub stopped: bool,
+    /// Whether an observer ended it ([`Observer::finished`]).
+    pub finished: bool,
 }
 
 /// Makes a step of `dt` \[s\]. Returns its Courant number if that exceeds the `limit`, the state then being that after the step or, when the flow has diverged, within it.
@@ -261,7 +277,9 @@ pub fn run<S: Evolving + ?Sized>(
         info.snapshot = Some(0);
         observer.snapshot(simulation, 0, &info)?;
     }
-    while index < schedule.intervals {
+    // A run that was finished has no step left.
+    summary.finished = observer.finished();
+    while index < schedule.intervals && !summary.finished {
         let target = schedule.time(index + 1);
         loop {
             if stop.load(Ordering::Relaxed) {
@@ -316,7 +334,8 @@ pub fn run<S: Evolving + ?Sized>(
             summary.dt = [summary.dt[0].min(dt), summary.dt[1].max(dt)];
             summary.courant = summary.courant.max(info.courant);
             observer.step(simulation, &info)?;
-            if steps == 1.0 {
+            summary.finished = observer.finished();
+            if steps == 1.0 || summary.finished {
                 break;
             }
         }

@@ -1,5 +1,5 @@
 //! Flow and what is immersed in it.
-use crate::{CouplingError, Evolving, FlowSolver};
+use crate::{CouplingError, Evolving, FlowRate, FlowSolver};
 use fv_mesh::Projection;
 use interfaces::{Checkpoint, RestartError, Vector};
 use std::time::{Duration, Instant};
@@ -121,6 +121,7 @@ pub struct Simulation<const D: usize, P = (), A = Projection<D>> {
     pub particles: P,
     balance: WeightBalance,
     drive: Option<Drive>,
+    flow_rate: Option<FlowRate>,
     force: Vector,
     /// Increase of the Courant number per step length, per time, over the last step and the one
     /// before it \[1/s²\].
@@ -136,7 +137,8 @@ impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Simulation<D, P, A> {
     pub fn new(flow: A, particles: P, balance: WeightBalance) -> Result<Self, CouplingError> {
         particles.check(&flow)?;
         let (drive, force, slopes) = (None, Vector::zeros(), [0.0; 2]);
-        Ok(Self { flow, particles, balance, drive, force, slopes, timings: Timings::default() })
+        let (flow_rate, timings) = (None, Timings::default());
+        Ok(Self { flow, particles, balance, drive, flow_rate, force, slopes, timings })
     }
 
     /// The same driven by a body force per mass \[m/s²\] besides, the same everywhere: `force(t)` of the time \[s\], in the middle of each step. Bodies feel it as they feel
@@ -144,6 +146,13 @@ impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Simulation<D, P, A> {
     #[must_use]
     pub fn with_force(mut self, force: impl Fn(f64) -> Vector + Send + Sync + 'static) -> Self {
         self.drive = Some(Box::new(force));
+        self
+    }
+
+    /// The same with a further body force that holds this mean velocity.
+    #[must_use]
+    pub fn with_flow_rate(mut self, flow_rate: FlowRate) -> Self {
+        self.flow_rate = Some(flow_rate);
         self
     }
 
@@ -158,7 +167,7 @@ impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Simulation<D, P, A> {
 
     /// The same after [`Immersed::begin`].
     fn advance(&mut self, dt: f64) -> Result<(), CouplingError> {
-        let Self { flow, particles, drive, timings, .. } = self;
+        let Self { flow, particles, drive, flow_rate, timings, .. } = self;
         let rate = flow.courant(1.0);
         self.force = match self.balance {
             WeightBalance::None => Vector::zeros(),
@@ -174,6 +183,10 @@ impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Simulation<D, P, A> {
         };
         if let Some(drive) = drive {
             self.force += drive(flow.time() + 0.5 * dt);
+        }
+        if let Some(rate) = flow_rate {
+            let mean = flow.statistics().volume_flow[rate.axis] / flow.grid().volume();
+            self.force[rate.axis] += rate.force(mean, flow.time(), dt);
         }
         let force = std::array::from_fn(|a| self.force[a]);
         timings.measure(Module::Advance, || flow.predict(dt, force))?;
@@ -240,20 +253,24 @@ impl<const D: usize, P: Immersed<D, A>, A: FlowSolver<D>> Checkpoint for Simulat
         self.flow.save(&mut |name, values| sink(&format!("flow.{name}"), values));
         self.particles.save(&mut |name, values| sink(&format!("particles.{name}"), values));
         sink("slopes", &self.slopes);
+        self.flow_rate.save(&mut |name, values| sink(&format!("flow_rate.{name}"), values));
     }
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         self.flow.restore(&|name| source(&format!("flow.{name}")))?;
         self.particles.restore(&|name| source(&format!("particles.{name}")))?;
-        RestartError::fill(source, "slopes", &mut self.slopes)
+        RestartError::fill(source, "slopes", &mut self.slopes)?;
+        self.flow_rate.restore(&|name| source(&format!("flow_rate.{name}")))
     }
     fn save_start(&mut self, sink: &mut dyn FnMut(&str, &[f64])) {
         self.flow.save_start(&mut |name, values| sink(&format!("flow.{name}"), values));
         self.particles.save_start(&mut |name, values| sink(&format!("particles.{name}"), values));
         sink("slopes", &self.slopes);
+        self.flow_rate.save_start(&mut |name, values| sink(&format!("flow_rate.{name}"), values));
     }
     fn take_back<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         self.flow.take_back(&|name| source(&format!("flow.{name}")))?;
         self.particles.take_back(&|name| source(&format!("particles.{name}")))?;
-        RestartError::fill(source, "slopes", &mut self.slopes)
+        RestartError::fill(source, "slopes", &mut self.slopes)?;
+        self.flow_rate.take_back(&|name| source(&format!("flow_rate.{name}")))
     }
 }

@@ -265,6 +265,8 @@ impl RunFolder {
         match r["ending"].as_str() {
             Some("done") if self.is_steady() => (true, format!("converged {reached}")),
             Some("done") => (true, format!("done {reached}")),
+            Some("steady") => (true, format!("steady {reached}")),
+            Some("event") => (true, format!("ended by the event of time.stop {reached}")),
             Some("stopped") => (false, format!("stopped {reached}; `siltflow resume` goes on")),
             Some(other) => (false, format!("{other} {reached}")),
             None if r["complete"] == true => (true, format!("complete {reached}")),

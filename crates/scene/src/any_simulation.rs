@@ -38,8 +38,8 @@ where
     A: Flow<D> + FlowSolver<D>,
 {
     fn view<'a>(&'a mut self, _: &'a Setup) -> Box<dyn View + 'a> {
-        let timings = *self.timings();
-        Box::new(Seen { flow: &mut self.flow, guests: &self.particles, timings })
+        let (timings, force) = (*self.timings(), self.body_force());
+        Box::new(Seen { flow: &mut self.flow, guests: &self.particles, timings, force })
     }
 }
 

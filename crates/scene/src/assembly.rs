@@ -8,8 +8,8 @@ use crate::setup::{Algorithm, ForcingChoice, Setup, StrategyChoice};
 use crate::steady::Steady;
 use crate::still::Still;
 use coupling::{
-    CouplingError, Evolving, Exchange, Explicit, FlowSolver, Grains, Immersed, Iterated, Ledger, Particles,
-    Schedule, Simulation, Strategy,
+    CouplingError, Evolving, Exchange, Explicit, FlowRate, FlowSolver, Grains, Immersed, Iterated, Ledger,
+    Particles, Schedule, Simulation, Strategy,
 };
 use ibm::Forcing;
 
@@ -117,7 +117,10 @@ impl Setup {
         flow: A,
         particles: P,
     ) -> Result<Simulation<D, P, A>, CouplingError> {
-        let simulation = Simulation::new(flow, particles, self.balance)?;
+        let mut simulation = Simulation::new(flow, particles, self.balance)?;
+        if let Some((axis, velocity)) = self.flow_rate.clone() {
+            simulation = simulation.with_flow_rate(FlowRate::new(axis, move |t| velocity.needed(&[t])));
+        }
         Ok(match self.force.clone() {
             Some(force) => simulation.with_force(move |t| force.each_ref().map(|f| f.needed(&[t])).into()),
             None => simulation,

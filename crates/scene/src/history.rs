@@ -13,10 +13,15 @@ const STEPS: &str = "time,step,dt,courant,kinetic_energy";
 /// Columns of the ledger, in the order of [`budgets`].
 const BUDGETS: &str = "energy_gained,work,side_work,driving_work,inner_work,dissipation,eddy_dissipation,forcing_loss,contact_work,brought,energy_residual,momentum_residual,divergence";
 
+/// Columns of a flow at a given flow rate.
+const FLOW_RATE: &str = "mean_velocity,force";
+
 /// Writes a row at every 300th of the run and after 1, 2, 4, 8, … steps.
 pub(crate) struct History {
     table: Table,
     pace: Pace,
+    /// Axis of a flow at a given flow rate.
+    flow_rate: Option<usize>,
 }
 
 impl History {
@@ -26,6 +31,7 @@ impl History {
         folder: &Path,
         end: f64,
         ledger: bool,
+        flow_rate: Option<usize>,
         resume: Option<f64>,
     ) -> Result<Self, CouplingError> {
         let path = folder.join(HISTORY);
@@ -35,14 +41,15 @@ impl History {
         if ledger {
             header += "; momentum_residual 1: momentum gained less impulses, over the impulses; divergence 1: largest |div u| dt of a step so far";
         }
-        header = format!(
-            "{header}\n{STEPS}{}{}",
-            if ledger { "," } else { "" },
-            if ledger { BUDGETS } else { "" }
-        );
+        if flow_rate.is_some() {
+            header += "; mean_velocity m/s, force m/s²: along the axis of flow_rate";
+        }
+        let columns = [Some(STEPS), ledger.then_some(BUDGETS), flow_rate.map(|_| FLOW_RATE)];
+        let columns: Vec<&str> = columns.into_iter().flatten().collect();
+        header = format!("{header}\n{}", columns.join(","));
         // States of versions without this table can be resumed.
         let resume = resume.filter(|_| path.exists());
-        Ok(Self { table: Table::open(&path, &header, resume)?, pace: Pace::new(Some(end / ROWS)) })
+        Ok(Self { table: Table::open(&path, &header, resume)?, pace: Pace::new(Some(end / ROWS)), flow_rate })
     }
 
     /// Writes a row if one is due.
@@ -57,7 +64,13 @@ impl History {
             return Ok(());
         }
         let steps = [info.step as f64, info.dt, info.courant, view.kinetic_energy()];
-        self.table.row(info.time, None, steps.into_iter().chain(ledger.into_iter().flat_map(budgets)))
+        let driven = self.flow_rate.map(|axis| {
+            let volume: f64 = (0..view.dim()).map(|a| view.axis(a).length()).product();
+            let mean = view.statistics().map_or(0.0, |flow| flow.volume_flow[axis] / volume);
+            [mean, view.body_force()[axis]]
+        });
+        let values = steps.into_iter().chain(ledger.into_iter().flat_map(budgets));
+        self.table.row(info.time, None, values.chain(driven.into_iter().flatten()))
     }
 
     pub(crate) fn flush(&mut self) -> Result<(), CouplingError> {

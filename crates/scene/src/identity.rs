@@ -11,7 +11,7 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 /// Keys that may change when a run goes on.
-const LOOSE: [&str; 9] = [
+const LOOSE: [&str; 10] = [
     "title",
     "about",
     "output",
@@ -19,6 +19,7 @@ const LOOSE: [&str; 9] = [
     "references",
     "time.end",
     "time.steps",
+    "time.stop",
     "flow.tolerance",
     "flow.iterations",
 ];

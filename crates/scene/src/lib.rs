@@ -66,6 +66,7 @@ mod setup;
 mod stand_in;
 mod steady;
 mod still;
+mod stop;
 mod summary;
 mod time_table;
 mod trial;

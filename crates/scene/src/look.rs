@@ -5,6 +5,7 @@ use crate::history::History;
 use crate::identity::Identity;
 use crate::log::{Log, warn};
 use crate::setup::Setup;
+use crate::stop::StopCheck;
 use crate::watch::{Audience, output};
 use coupling::{CouplingError, Observer, StepInfo};
 use interfaces::{Checkpoint, RestartError};
@@ -31,6 +32,7 @@ impl Default for Extremes {
 pub(crate) struct Whole<'a> {
     pub(crate) simulation: &'a mut dyn AnySimulation,
     pub(crate) extremes: &'a mut Extremes,
+    pub(crate) stop: &'a mut Option<StopCheck>,
     pub(crate) identity: &'a Identity,
     /// Absent while a state is loaded: files go on from the time that has to be known first.
     pub(crate) audience: Option<&'a Audience>,
@@ -46,6 +48,7 @@ impl Checkpoint for Whole<'_> {
         self.identity.save(sink);
         sink("extremes", &self.extremes.steps);
         self.extremes.deepest.save(sink);
+        self.stop.save(sink);
         self.simulation.save(sink);
         let budget = self.simulation.budget_state();
         budget.save(&mut |name, values| sink(&format!("books.{name}"), values));
@@ -56,6 +59,7 @@ impl Checkpoint for Whole<'_> {
     fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
         RestartError::fill(source, "extremes", &mut self.extremes.steps)?;
         self.extremes.deepest = Deepest::restore(source)?;
+        self.stop.restore(source)?;
         self.simulation.restore(source)?;
         self.simulation.budget_state_mut().restore(&|name| source(&format!("books.{name}")))
     }
@@ -77,6 +81,7 @@ pub(crate) struct Look<'a> {
     pub(crate) audience: Audience,
     pub(crate) history: History,
     pub(crate) extremes: Extremes,
+    pub(crate) stop: Option<StopCheck>,
     pub(crate) progress: Option<Progress>,
     pub(crate) log: Log,
     pub(crate) state: PathBuf,
@@ -106,6 +111,7 @@ impl Look<'_> {
         let whole = Whole {
             simulation,
             extremes: &mut self.extremes,
+            stop: &mut self.stop,
             identity: self.identity,
             audience: Some(&self.audience),
         };
@@ -120,6 +126,9 @@ impl Look<'_> {
 impl Observer<dyn AnySimulation> for Look<'_> {
     fn begin(&mut self, simulation: &mut (dyn AnySimulation + 'static)) {
         simulation.begin_budget();
+        if let Some(stop) = &mut self.stop {
+            stop.begin(&mut *simulation.view(self.setup));
+        }
     }
     fn step(
         &mut self,
@@ -134,6 +143,9 @@ impl Observer<dyn AnySimulation> for Look<'_> {
         let (mut seen, budget) = simulation.view_with_budget(self.setup);
         self.audience.step(&mut *seen, info)?;
         self.history.step(&mut *seen, info, budget)?;
+        if let Some(stop) = &mut self.stop {
+            stop.step(&mut *seen, info);
+        }
         let deep = self.extremes.deepest.look(&*seen, info);
         if let Some(progress) = &mut self.progress {
             progress.tell(info.step, info.time, || seen.status(info));
@@ -142,7 +154,7 @@ impl Observer<dyn AnySimulation> for Look<'_> {
         if deep && let Some(warning) = self.extremes.deepest.warning(self.setup) {
             warn(&mut self.log, &warning, self.progress.is_none())?;
         }
-        if info.snapshot.is_none() {
+        if info.snapshot.is_none() && !self.finished() {
             self.save_if_due(simulation)?;
         }
         Ok(())
@@ -166,5 +178,8 @@ impl Observer<dyn AnySimulation> for Look<'_> {
             if iterations > 0 { format!(", {iterations} pressure iterations") } else { String::new() }
         ))?;
         self.save_if_due(simulation)
+    }
+    fn finished(&self) -> bool {
+        self.stop.as_ref().is_some_and(|stop| stop.ending().is_some())
     }
 }

@@ -16,6 +16,10 @@ use std::path::{Path, PathBuf};
 pub enum Ending {
     /// It came to its end.
     Done,
+    /// Its flow was steady before its time (`time.stop`).
+    Steady,
+    /// The event that ends it came before its time (`time.stop`).
+    Event,
     /// It was stopped and can go on.
     Stopped,
     /// The iterations allowed were not enough for a steady flow.
@@ -27,9 +31,15 @@ impl Ending {
     fn word(self) -> &'static str {
         match self {
             Self::Done => "done",
+            Self::Steady => "steady",
+            Self::Event => "event",
             Self::Stopped => "stopped",
             Self::NotConverged => "not converged",
         }
+    }
+    /// Whether nothing is left to run.
+    fn is_complete(self) -> bool {
+        matches!(self, Self::Done | Self::Steady | Self::Event)
     }
 }
 
@@ -136,7 +146,7 @@ impl RunResult {
         let mut result = json!({
             "scene": setup.name,
             "title": setup.title,
-            "complete": ending == Ending::Done,
+            "complete": ending.is_complete(),
             "ending": ending.word(),
             "versions": versions(),
             "dimension": dim,
@@ -160,6 +170,10 @@ impl RunResult {
             });
         } else {
             result["kinetic_energy"] = number(view.kinetic_energy());
+        }
+        if setup.flow_rate.is_some() {
+            let force = view.body_force();
+            result["body_force"] = (0..dim).map(|a| number(force[a])).collect();
         }
         let fields = fields(view);
         if !fields.is_empty() {

@@ -12,6 +12,7 @@ use crate::problem::Problems;
 use crate::record::Record;
 use crate::result::{Ending, RunResult};
 use crate::setup::Setup;
+use crate::stop::StopCheck;
 use crate::watch::output;
 use coupling::{CheckpointError, CouplingError, SavedState};
 use interfaces::{RestartError, ThinPart};
@@ -218,6 +219,7 @@ impl Stage<'_> {
         let _lock = self.take_folder()?;
         let state = self.folder().join(STATE);
         let mut extremes = Extremes::default();
+        let mut stop = setup.stop.clone().map(StopCheck::new);
         // Schedule of the flow at its start, also of a run that goes on.
         let schedule = setup.schedule(simulation);
         schedule.check()?;
@@ -225,8 +227,8 @@ impl Stage<'_> {
         let saved = self.saved_state()?;
         if let Some(saved) = &saved {
             // First the simulation and its time; then what the observers have kept, in files that go on from that time.
-            let mut whole =
-                Whole { simulation, extremes: &mut extremes, identity: self.identity, audience: None };
+            let (extremes, stop) = (&mut extremes, &mut stop);
+            let mut whole = Whole { simulation, extremes, stop, identity: self.identity, audience: None };
             saved.restore(&mut whole).map_err(|e| self.not_resumed(e))?;
             self.reopen()?;
             resume = Some(simulation.time());
@@ -236,7 +238,8 @@ impl Stage<'_> {
             saved.restore(&mut Kept(&mut audience)).map_err(|e| self.not_resumed(e))?;
         }
         let ledger = simulation.budget().is_some();
-        let history = History::open(self.folder(), setup.end, ledger, resume)?;
+        let flow_rate = setup.flow_rate.as_ref().map(|(axis, _)| *axis);
+        let history = History::open(self.folder(), setup.end, ledger, flow_rate, resume)?;
         self.record.write(setup, self.folder(), audience.tables(HISTORY))?;
         let mut log = Log::open(self.folder(), self.resumes())?;
         let begin = simulation.time();
@@ -255,6 +258,7 @@ impl Stage<'_> {
             audience,
             history,
             extremes,
+            stop,
             progress: (!self.options.quiet).then(|| Progress::new(begin, setup.end)),
             log,
             state: state.clone(),
@@ -281,7 +285,7 @@ impl Stage<'_> {
         if let Some(progress) = look.progress.take() {
             progress.finish(summary.steps, if summary.stopped { "stopped" } else { "done" });
         }
-        let Look { mut audience, mut history, extremes, mut log, output, ledger, .. } = look;
+        let Look { mut audience, mut history, extremes, stop, mut log, output, ledger, .. } = look;
         history.flush()?;
         let (mut seen, budget) = simulation.view_with_budget(setup);
         if summary.stopped {
@@ -290,14 +294,20 @@ impl Stage<'_> {
             audience.finish(&mut *seen, self.stop)?;
         }
         let stopped = summary.stopped || self.stop.load(Ordering::Relaxed);
-        let ending = if stopped { Ending::Stopped } else { Ending::Done };
+        let early = stop.and_then(|stop| stop.ending());
+        let ending = if stopped { Ending::Stopped } else { early.unwrap_or(Ending::Done) };
         if summary.repeats > 0 {
             log.line(&format!(
                 "steps repeated with a shorter one, to keep to the Courant number: {}",
                 summary.repeats
             ))?;
         }
-        log.line(if stopped { "stopped; `siltflow resume` goes on" } else { "done" })?;
+        log.line(match ending {
+            Ending::Stopped => "stopped; `siltflow resume` goes on",
+            Ending::Steady => "steady: time.stop.steady ends the run",
+            Ending::Event => "event: time.stop.event ends the run",
+            Ending::Done | Ending::NotConverged => "done",
+        })?;
         let seconds = [audience.seconds + output, ledger];
         let result = RunResult::new(setup, &mut *seen, &extremes, budget, &audience, ending, self.folder());
         Ok(result.with_timings(watch.elapsed(), self.options.threads, seconds, &*seen).write()?)

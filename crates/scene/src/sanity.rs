@@ -114,7 +114,10 @@ impl Setup {
             let prescribed = self.instants().map(|t| self.prescribed_speed(b, t)).fold(0.0, f64::max);
             fall.max(slides).max(prescribed).max(b.twist.linear.norm() + b.twist.angular.norm() * radius)
         });
-        sides.max(initial).max(bodies.fold(0.0, f64::max))
+        let rate = self.flow_rate.as_ref().map_or(0.0, |(_, velocity)| {
+            self.instants().map(|t| velocity.at(&[t]).abs()).fold(0.0, f64::max)
+        });
+        sides.max(initial).max(rate).max(bodies.fold(0.0, f64::max))
     }
 
     /// Speed \[m/s\] at the start in the middle of the box.

@@ -14,6 +14,7 @@ mod run;
 pub(crate) use check::{FileKey, check, number, whole};
 pub use json::json_schema;
 pub use manual::manual;
+pub(crate) use run::EVENT;
 
 /// A table of a scene file.
 #[derive(Debug)]
@@ -183,6 +184,13 @@ pub(crate) static SCENE: Table = Table {
             "[\"0.1*min(t, 1)\", 0.0]",
         ),
         optional(
+            "flow_rate",
+            Kind::Table(&flow::FLOW_RATE),
+            "none",
+            "Mean velocity that a further body force holds.",
+            "{ axis = \"x\", velocity = 0.1 }",
+        ),
+        optional(
             "initial",
             Kind::Table(&flow::INITIAL),
             "fluid at rest",
@@ -279,6 +287,13 @@ pub(crate) static SCENE: Table = Table {
             "none",
             "Points where the flow is written down.",
             "[{ name = \"wake\", points = [[0.3, 0.2]] }]",
+        ),
+        optional(
+            "lines",
+            Kind::List(&Kind::Table(&run::LINES), 0, 100),
+            "none",
+            "Straight lines along which the flow is written down.",
+            "[{ name = \"centre\", from = [0.5, 0.0], to = [0.5, 1.0] }]",
         ),
         optional(
             "forces",

@@ -11,6 +11,7 @@ mod physics;
 mod shapes;
 mod sides;
 mod steady;
+mod stop;
 mod surfaces;
 mod tables;
 mod time;
@@ -20,10 +21,13 @@ pub(crate) use bodies::{
 };
 pub(crate) use factories::InflowSetup;
 pub(crate) use flow::{Algorithm, FlowSetup};
-pub(crate) use measures::{Averages, Forces, Images, Output, ProbeSetup, Quantity, Reference};
+pub(crate) use measures::{
+    Averages, FieldChoice, Forces, Images, LineSetup, Output, ProbeSetup, Quantity, Reference,
+};
 pub(crate) use models::{Coefficients, ModelSetup};
 pub(crate) use physics::{ModelChoice, ScalarSetup, ScaleChoice, TurbulenceSetup};
 pub(crate) use sides::is_open;
+pub(crate) use stop::StopSetup;
 pub(crate) use surfaces::SurfaceVelocity;
 
 use crate::document::{Document, Place};
@@ -52,6 +56,8 @@ pub(crate) struct Setup {
     pub(crate) gravity: Vector,
     /// Body force per mass, of the time.
     pub(crate) force: Option<[Expression; 3]>,
+    /// Axis and mean velocity along it, of the time.
+    pub(crate) flow_rate: Option<(usize, Expression)>,
     pub(crate) initial: Option<[Expression; 3]>,
     pub(crate) flow: FlowSetup,
     pub(crate) turbulence: Option<TurbulenceSetup>,
@@ -63,7 +69,10 @@ pub(crate) struct Setup {
     pub(crate) courant: f64,
     pub(crate) ramp: bool,
     pub(crate) output: Output,
+    /// Conditions that end the run before its time.
+    pub(crate) stop: Option<StopSetup>,
     pub(crate) probes: Vec<ProbeSetup>,
+    pub(crate) lines: Vec<LineSetup>,
     pub(crate) forces: Option<Forces>,
     pub(crate) averages: Option<Averages>,
     pub(crate) references: Vec<Reference>,
@@ -160,7 +169,9 @@ impl Setup {
         let mut setup = Self {
             title: root.text("title").map_or_else(|| name.clone(), Into::into),
             output: measures::output(&output, &name, &axes, snapshots)?,
+            stop: stop::read(&time, &bodies, (dim, fluid.is_some(), steady))?,
             probes: measures::probes(root, &context, &axes, &sides, steady)?,
+            lines: measures::lines(root, &context, &axes, &sides)?,
             forces: root.table("forces").map(|t| measures::forces(&t, end, dim, steady)),
             averages: root.table("averages").map(|t| measures::averages(&t, end, dim)).transpose()?,
             references: measures::references(root)?,
@@ -168,6 +179,7 @@ impl Setup {
             fluid,
             gravity,
             force,
+            flow_rate: flow::flow_rate(root, &sides, steady)?,
             initial,
             balance,
             end,
@@ -213,6 +225,10 @@ impl Setup {
             )?,
         }
         self.planes_slide(root)?;
+        if self.flow_rate.is_some() && self.balance == WeightBalance::ZeroFlow {
+            let message = "`coupling.balance` = \"zero-flow\" holds the mean velocity at zero; leave out one of the two";
+            return Err(root.fail("flow_rate", message));
+        }
         let bodies = !self.bodies.list.is_empty() || !self.bodies.inflows.is_empty();
         let flow = root.table("flow");
         let fail = |key: &str, message: &str| match &flow {

@@ -14,7 +14,7 @@ use coupling::StepInfo;
 use cpu_time::ThreadTime;
 use fv_mesh::{FlowError, ScalarTransport, Simple, SimpleInfo, SimpleParams, TransportParams, WallStress};
 use ibm::cut_cells;
-use interfaces::{Checkpoint, Kinematics, RestartError, ThinPart, Wrench};
+use interfaces::{Checkpoint, Kinematics, RestartError, ThinPart, Vector, Wrench};
 use render::cpu::Stopwatch;
 use render::progress::Progress;
 use std::io;
@@ -257,7 +257,7 @@ impl Stage<'_> {
         if let Some(progress) = progress.take() {
             let word = match ending {
                 Ending::Done if iterations == begin => "converged already: nothing was left to do",
-                Ending::Done => "converged",
+                Ending::Done | Ending::Steady | Ending::Event => "converged",
                 Ending::Stopped => "stopped",
                 Ending::NotConverged => "not converged",
             };
@@ -269,7 +269,8 @@ impl Stage<'_> {
             flow.settle().map_err(BuildError::from)?;
         }
         let given_off = flow.scalars.given_off();
-        let mut seen = Seen { flow: &mut flow, guests: &still, timings: coupling::Timings::default() };
+        let timings = coupling::Timings::default();
+        let mut seen = Seen { flow: &mut flow, guests: &still, timings, force: Vector::zeros() };
         // One "step" of a second, whose impulses are the loads.
         let info = StepInfo { step: seen.steps(), time: setup.end, dt: 1.0, courant: 0.0, snapshot: None };
         audience.step(&mut seen, &info)?;

@@ -44,6 +44,11 @@ impl Compared {
     }
 }
 
+/// Note of a run that ended before its time, and why.
+fn ended(result: &Value, why: &str) -> String {
+    format!("{why} at {}", shown(&result["time"], |x| format!("{x:.4} s")))
+}
+
 impl RunResult {
     /// Share of the wall time that went into files and pictures.
     fn output_share(&self) -> f64 {
@@ -68,6 +73,8 @@ impl RunResult {
             Ending::NotConverged => notes.push(format!("**not converged**, {residual}")),
             Ending::Done if r.get("residual").is_some() => notes.push(residual),
             Ending::Done => {}
+            Ending::Steady => notes.push(ended(r, "steady")),
+            Ending::Event => notes.push(ended(r, "event")),
         }
         if self.ending != Ending::Stopped {
             notes.extend(self.compared.iter().map(|c| c.line(5)));
@@ -94,13 +101,20 @@ impl RunResult {
     pub fn summary(&self) -> String {
         let (r, t) = (&self.result, &self.timings);
         let word = match self.ending {
-            Ending::Done => "converged after",
+            Ending::Done | Ending::Steady | Ending::Event => "converged after",
             Ending::Stopped => "stopped after",
             Ending::NotConverged => "not converged after",
         };
         let way = match r.get("iterations") {
             Some(_) => format!("{word} {}", counted(r)),
-            None => format!("{} steps to t = {} s", counted(r), shown(&r["time"], |x| format!("{x:.6}"))),
+            None => {
+                let early = match self.ending {
+                    Ending::Steady => ", where the flow is steady",
+                    Ending::Event => ", where the event of time.stop came",
+                    _ => "",
+                };
+                format!("{} steps to t = {} s{early}", counted(r), shown(&r["time"], |x| format!("{x:.6}")))
+            }
         };
         let mut out = format!(
             "{}: {way}, {} CPU s ({:.0} % of the wall time for files and pictures)\n",

@@ -265,7 +265,8 @@ impl Trial<'_> {
         }
         let (mut files, mut cost) = (Files::new(self)?, Cost { step: timer.shortest(), ..Cost::default() });
         let still = Still { bodies: self.setup.still(), thin: std::mem::take(&mut steady.thin) };
-        let mut view = Seen { flow: &mut steady, guests: &still, timings: coupling::Timings::default() };
+        let (timings, force) = (coupling::Timings::default(), interfaces::Vector::zeros());
+        let mut view = Seen { flow: &mut steady, guests: &still, timings, force };
         files.write(&mut view, &mut cost)?;
         self.check_references(&mut view)?;
         let pressure = view.pressure_solver();

@@ -1,6 +1,7 @@
 //! A running simulation as those see it who look on, whatever its types.
 use crate::cast::Cast;
 use crate::physics::{Model, Physics, Scalars, Segregated};
+use crate::setup::FieldChoice;
 use crate::steady::Steady;
 use crate::still::Still;
 use crate::watch::Solids;
@@ -11,7 +12,7 @@ use fv_mesh::{
     Sampler, Sides, Velocity,
 };
 use ibm::{FluidSampler, Forcing};
-use interfaces::{Bodies, BodyId, Closure, Lattice, Point, ThinPart, Wrench};
+use interfaces::{Bodies, BodyId, Closure, Lattice, Point, ThinPart, Vector, Wrench};
 use render::progress::Status;
 use std::io::{self, Write};
 use turb::YPlus;
@@ -37,6 +38,10 @@ pub(crate) trait View {
         Status { time: info.time, dt: info.dt, courant: info.courant, divergence }.to_string()
     }
     fn timings(&self) -> &Timings;
+    /// Uniform body force per mass in the last step \[m/s²\].
+    fn body_force(&self) -> Vector {
+        Vector::zeros()
+    }
     /// The lattice of the cells' centres.
     fn lattice(&self) -> Lattice;
     /// The components of the velocity at the centres, x fastest, into the first of `out`.
@@ -80,9 +85,16 @@ pub(crate) trait View {
     fn pressure_solver(&self) -> String {
         "no fluid".into()
     }
-    /// Writes λ, velocity and pressure for ParaView; the name's extension is [`extension`](Self::extension).
-    fn write_fields(&self, lambda: &[f64], out: &mut dyn Write) -> Result<(), OutputError> {
-        let _ = (lambda, out);
+    /// Writes λ, the fields of a choice, and derived ones (name and components) for ParaView; the
+    /// name's extension is [`extension`](Self::extension).
+    fn write_fields(
+        &self,
+        choice: FieldChoice,
+        lambda: &[f64],
+        derived: &[(&str, Vec<&[f64]>)],
+        out: &mut dyn Write,
+    ) -> Result<(), OutputError> {
+        let _ = (choice, lambda, derived, out);
         Ok(())
     }
     /// Writes other fields: name, and one, two or three components.
@@ -265,6 +277,8 @@ pub(crate) struct Seen<'a, const D: usize> {
     pub(crate) flow: &'a mut dyn Flow<D>,
     pub(crate) guests: &'a dyn Guests,
     pub(crate) timings: Timings,
+    /// Uniform body force per mass in the last step \[m/s²\].
+    pub(crate) force: Vector,
 }
 
 /// What is immersed, as observers ask for it.
@@ -354,6 +368,20 @@ fn in_single_or_double<'a, const D: usize>(
     }
 }
 
+/// `writer` with fields of one, two or three components.
+fn with_named<'a, const D: usize>(
+    writer: CellWriter<'a, D>,
+    fields: &'a [(&str, Vec<&[f64]>)],
+) -> CellWriter<'a, D> {
+    fields.iter().fold(writer, |writer, (name, components)| match components.as_slice() {
+        [one] => writer.scalar(name, one.iter().copied()),
+        many => {
+            let component = |c: usize| many[c.min(many.len() - 1)].iter().copied();
+            writer.vector(name, std::array::from_fn(component))
+        }
+    })
+}
+
 impl<const D: usize> View for Seen<'_, D> {
     fn axis(&self, a: usize) -> &Axis {
         self.flow.grid().axis(a)
@@ -375,6 +403,9 @@ impl<const D: usize> View for Seen<'_, D> {
     }
     fn timings(&self) -> &Timings {
         &self.timings
+    }
+    fn body_force(&self) -> Vector {
+        self.force
     }
     fn lattice(&self) -> Lattice {
         self.flow.grid().lattice(None, self.flow.sides())
@@ -430,14 +461,24 @@ impl<const D: usize> View for Seen<'_, D> {
     fn pressure_solver(&self) -> String {
         self.flow.pressure_solver()
     }
-    fn write_fields(&self, lambda: &[f64], mut out: &mut dyn Write) -> Result<(), OutputError> {
+    fn write_fields(
+        &self,
+        choice: FieldChoice,
+        lambda: &[f64],
+        derived: &[(&str, Vec<&[f64]>)],
+        mut out: &mut dyn Write,
+    ) -> Result<(), OutputError> {
         in_single_or_double(self.flow.grid(), |writer| {
-            let writer = writer
-                .scalar("lambda", lambda.iter().copied())
-                .vector("velocity", std::array::from_fn(|c| self.flow.centred_velocity(c)))
-                .scalar("pressure", self.flow.pressure().values());
-            let others = self.flow.others();
-            others.into_iter().fold(writer, |w, other| w.scalar(other.name, other.values)).write(&mut out)
+            let mut writer = writer.scalar("lambda", lambda.iter().copied());
+            if choice.velocity {
+                writer = writer.vector("velocity", std::array::from_fn(|c| self.flow.centred_velocity(c)));
+            }
+            if choice.pressure {
+                writer = writer.scalar("pressure", self.flow.pressure().values());
+            }
+            let others = if choice.others { self.flow.others() } else { Vec::new() };
+            writer = others.into_iter().fold(writer, |w, other| w.scalar(other.name, other.values));
+            with_named(writer, derived).write(&mut out)
         })
     }
     fn write_named(
@@ -445,18 +486,7 @@ impl<const D: usize> View for Seen<'_, D> {
         fields: &[(&str, Vec<&[f64]>)],
         mut out: &mut dyn Write,
     ) -> Result<(), OutputError> {
-        in_single_or_double(self.flow.grid(), |mut writer| {
-            for (name, components) in fields {
-                writer = match components.as_slice() {
-                    [one] => writer.scalar(name, one.iter().copied()),
-                    many => {
-                        let component = |c: usize| many[c.min(many.len() - 1)].iter().copied();
-                        writer.vector(name, std::array::from_fn(component))
-                    }
-                };
-            }
-            writer.write(&mut out)
-        })
+        in_single_or_double(self.flow.grid(), |writer| with_named(writer, fields).write(&mut out))
     }
     fn extension(&self) -> &'static str {
         CellWriter::new(self.flow.grid()).extension()

@@ -1,8 +1,10 @@
 //! Who looks on while a scene runs.
 mod averages;
+mod derivatives;
 mod fields;
 mod forces;
 mod images;
+mod lines;
 mod models;
 mod probes;
 mod table;
@@ -12,6 +14,7 @@ use averages::AveragesWatch;
 use fields::FieldsWatch;
 use forces::ForcesWatch;
 use images::ImagesWatch;
+use lines::LinesWatch;
 use models::ModelsWatch;
 use probes::ProbesWatch;
 pub(crate) use table::{Pace, Table};
@@ -171,8 +174,10 @@ impl Setup {
         let bodies = !names.is_empty() || !self.bodies.inflows.is_empty();
         let moves = self.bodies.any_moves();
         let out = &self.output;
-        let fields = [out.fields && self.fluid.is_some(), out.bodies && moves];
-        let mut watches: Vec<Box<dyn Watch>> = vec![Box::new(FieldsWatch::new(folder, fields, resume)?)];
+        let fields = out.fields.filter(|_| self.fluid.is_some());
+        let frames = out.bodies && moves;
+        let mut watches: Vec<Box<dyn Watch>> =
+            vec![Box::new(FieldsWatch::new(folder, fields, frames, resume)?)];
         if out.bodies && moves {
             watches.push(Box::new(TrajectoriesWatch::new(folder, names.clone(), resume)?));
         }
@@ -181,6 +186,9 @@ impl Setup {
         }
         if !self.probes.is_empty() {
             watches.push(Box::new(ProbesWatch::new(folder, &self.probes, self.dim(), resume)?));
+        }
+        if !self.lines.is_empty() {
+            watches.push(Box::new(LinesWatch::new(folder, &self.lines, self.dim(), resume)?));
         }
         if let Some(forces) = self.forces.filter(|_| bodies) {
             watches.push(Box::new(ForcesWatch::new(folder, forces, names, self.fluid().density, resume)?));

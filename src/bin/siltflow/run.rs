@@ -113,7 +113,7 @@ impl Common {
         }
         *table += &result.row();
         Ok(match result.ending {
-            Ending::Done => 0,
+            Ending::Done | Ending::Steady | Ending::Event => 0,
             Ending::NotConverged => 3,
             Ending::Stopped => 130,
         })

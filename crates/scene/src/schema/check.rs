@@ -211,6 +211,7 @@ fn check_choice(
 fn fits(kind: &Kind, value: &Value) -> bool {
     match kind {
         Kind::Number(..) | Kind::Formula(..) => number(value).is_some() || matches!(value, Value::Text(_)),
+        Kind::Flag => matches!(value, Value::Flag(_)),
         Kind::List(..) => matches!(value, Value::List(_)),
         Kind::Table(_) => matches!(value, Value::Table(_)),
         _ => false,
@@ -220,7 +221,9 @@ fn fits(kind: &Kind, value: &Value) -> bool {
 fn form(kind: &Kind) -> String {
     match kind {
         Kind::Number(range, unit) => with_unit(&range.phrase(), unit),
+        Kind::Flag => "true or false".into(),
         Kind::List(_, least, most) if least == most => format!("a list of {least}"),
+        Kind::List(..) => "a list".into(),
         Kind::Formula(variables, unit) => {
             with_unit(&format!("a number or a formula of {}", variables.join(", ")), unit)
         }

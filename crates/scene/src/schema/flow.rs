@@ -1,5 +1,5 @@
 //! Box, sides, fluid, flow.
-use super::{Key, Kind, LENGTH, METRES, POINT, Range, SPACE, SPACE_TIME, Table, optional, required};
+use super::{Key, Kind, LENGTH, METRES, POINT, Range, SPACE, SPACE_TIME, TIME, Table, optional, required};
 
 const SPEED: Kind = Kind::Number(Range::Any, "m/s");
 
@@ -295,6 +295,14 @@ pub(super) static FLUID: Table = Table {
             "1e-6",
         ),
         optional("mu", Kind::Number(Range::NotNegative, "Pa s"), "`nu` tells", "Dynamic viscosity.", "1e-3"),
+    ],
+};
+
+pub(super) static FLOW_RATE: Table = Table {
+    about: "A uniform body force along a periodic axis that gives the flow this mean velocity over the box, bodies included (the superficial velocity). Results have it as `body_force`, `history.csv` as `force`. A first velocity other than the initial one is an impulsive start.",
+    keys: &[
+        required("axis", Kind::Word(&[("x", "x"), ("y", "y"), ("z", "z")]), "The axis.", "\"x\""),
+        required("velocity", Kind::Formula(TIME, "m/s"), "Mean velocity along it.", "\"0.1*min(t, 1)\""),
     ],
 };
 

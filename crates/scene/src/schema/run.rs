@@ -1,5 +1,5 @@
 //! Time, output, what is measured.
-use super::{Kind, METRES, POINT, Range, Table, optional, required};
+use super::{Key, Kind, METRES, POINT, Range, Table, optional, required};
 
 const SECONDS: Kind = Kind::Number(Range::Positive, "s");
 
@@ -29,8 +29,53 @@ pub(super) static TIME_TABLE: Table = Table {
             "Do steps begin small and grow, as a start from rest wants it?",
             "false",
         ),
+        optional(
+            "stop",
+            Kind::Table(&STOP),
+            "at `end`",
+            "Conditions of which the first to hold ends the run before its time; `ending` in the results tells which.",
+            "{ steady = 1e-4 }",
+        ),
     ],
 };
+
+static STOP: Table = Table {
+    about: "The end of a run before its time, with a last snapshot. `siltflow resume` goes on from there with other conditions.",
+    keys: &[
+        optional(
+            "steady",
+            Kind::Number(Range::Positive, "1/s"),
+            "none",
+            "Rate of change of the flow: max|u − u of the step before| over all cells, over max|u| and the step. The run ends when it is below this (`ending` = \"steady\").",
+            "1e-4",
+        ),
+        optional(
+            "event",
+            Kind::Formula(EVENT, "1"),
+            "none",
+            "The run ends when this formula is above 0 (`ending` = \"event\"): of the time t, the kinetic energy `energy` [J] of the flow (without `fluid` of the bodies), and place x, y, z [m] and velocity u, v, w [m/s] of `body`.",
+            "\"0.01 - y\"",
+        ),
+        optional(
+            "body",
+            Kind::Text,
+            "none",
+            "Name of the body whose place and velocity `event` has.",
+            "\"heavy\"",
+        ),
+    ],
+};
+
+/// Variables of an event.
+pub(crate) const EVENT: &[&str] = &["t", "energy", "x", "y", "z", "u", "v", "w"];
+
+const FIELD: Kind = Kind::Word(&[
+    ("velocity", "velocity"),
+    ("pressure", "pressure"),
+    ("scalars", "scalars, and k and eddy viscosity of a turbulence model"),
+    ("vorticity", "∇×u, in the plane its component along z"),
+    ("q_criterion", "Q = (|Ω|² − |S|²)/2, positive in vortices"),
+]);
 
 pub(super) static OUTPUT: Table = Table {
     about: "What is written to the folder.",
@@ -51,10 +96,10 @@ pub(super) static OUTPUT: Table = Table {
         ),
         optional(
             "fields",
-            Kind::Flag,
+            Kind::Either(&[Kind::Flag, Kind::List(&FIELD, 0, 10)]),
             "true",
-            "VTK files of λ, velocity and pressure at the snapshots, for ParaView.",
-            "false",
+            "VTK files at the snapshots, for ParaView: λ, velocity, pressure, scalars and those of a turbulence model; or λ and the fields of a list. Vorticity and Q are of central differences of the velocity at the cells' centres, one-sided at bounded sides.",
+            "[\"velocity\", \"pressure\", \"vorticity\", \"q_criterion\"]",
         ),
         optional(
             "bodies",
@@ -144,10 +189,22 @@ static SLICE: Table = Table {
     ],
 };
 
+const NAME: Key = required("name", Kind::Text, "Name of the file.", "\"wake\"");
+
+pub(super) static LINES: Table = Table {
+    about: "A straight line along which velocity and pressure at equally spaced points go to `lines/NAME.csv` at every snapshot; sampled as at probes.",
+    keys: &[
+        NAME,
+        required("from", POINT, "One end.", "[0.5, 0.0]"),
+        required("to", POINT, "The other end.", "[0.5, 1.0]"),
+        optional("points", Kind::Whole(2, 100_000), "101", "Points, with both ends.", "65"),
+    ],
+};
+
 pub(super) static PROBES: Table = Table {
     about: "Points whose velocity and pressure go to `probes/NAME.csv`; on and near walls at rest (cut links, steady flow) from the fluid on their side.",
     keys: &[
-        required("name", Kind::Text, "Name of the file.", "\"wake\""),
+        NAME,
         required("points", Kind::List(&POINT, 1, 10_000), "The points.", "[[0.15, 0.2], [0.25, 0.2]]"),
         optional("every", SECONDS, "every step", "How often.", "0.01"),
     ],

@@ -5,8 +5,9 @@ use crate::reader::Reader;
 use fv_mesh::Side;
 
 /// What only a fluid gives a meaning.
-const WET: [&str; 11] = [
+const WET: [&str; 13] = [
     "force",
+    "flow_rate",
     "initial",
     "flow",
     "turbulence",
@@ -14,6 +15,7 @@ const WET: [&str; 11] = [
     "lubrication",
     "coupling",
     "probes",
+    "lines",
     "forces",
     "averages",
     "models",
@@ -45,7 +47,7 @@ pub(super) fn agrees(root: &Reader<'_>, setup: &Setup) -> Result<(), Problem> {
         }
     }
     let output = root.table("output");
-    if output.as_ref().and_then(|t| t.flag("fields")) == Some(true) {
+    if output.as_ref().is_some_and(|t| t.flag("fields") == Some(true) || !t.texts("fields").is_empty()) {
         return Err(root.fail("output", "without `fluid` there are no fields to write; leave out `fields`"));
     }
     let quantity = setup.output.images.as_ref().map(|i| &i.quantity);

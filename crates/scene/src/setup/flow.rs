@@ -1,8 +1,9 @@
 //! The fluid and how its flow is computed.
+use crate::expression::Expression;
 use crate::problem::Problem;
 use crate::reader::Reader;
 use fv_mesh::poisson::multigrid::MultigridParams;
-use fv_mesh::{Convection, Diffusion, Fluid, PressureSolver};
+use fv_mesh::{Convection, Diffusion, Fluid, PressureSolver, Side};
 
 /// The algorithm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,6 +69,30 @@ pub(super) fn fluid(root: &Reader<'_>) -> Result<Option<Fluid>, Problem> {
         ));
     }
     Ok(Some(Fluid { density, viscosity }))
+}
+
+/// Axis and mean velocity of a flow that is driven at a given flow rate.
+pub(super) fn flow_rate(
+    root: &Reader<'_>,
+    sides: &[[Side; 2]],
+    steady: bool,
+) -> Result<Option<(usize, Expression)>, Problem> {
+    let Some(t) = root.table("flow_rate") else { return Ok(None) };
+    let word = t.text("axis").unwrap_or_default();
+    let axis = ["x", "y", "z"].iter().position(|name| *name == word).unwrap_or(0);
+    if steady {
+        let message = "a flow rate is held step by step; take flow.algorithm \"projection\" or \"piso\", or give `force`";
+        return Err(root.fail("flow_rate", message));
+    }
+    match sides.get(axis) {
+        Some([Side::Periodic, _]) => {}
+        Some(_) => {
+            let message = format!("{word} is not periodic; take an axis whose sides are, or give an inlet");
+            return Err(t.fail("axis", message));
+        }
+        None => return Err(t.fail("axis", "a plane scene has no axis z; take x or y")),
+    }
+    Ok(t.formula("velocity", &["t"])?.map(|velocity| (axis, velocity)))
 }
 
 /// The flow's algorithm and schemes; `averages` if a turbulence model of mean flows is there.

@@ -12,13 +12,40 @@ pub(crate) struct Output {
     pub(crate) folder: PathBuf,
     /// Intervals of the run; 0: the end alone.
     pub(crate) snapshots: usize,
-    pub(crate) fields: bool,
+    /// Fields of VTK files, if there are any.
+    pub(crate) fields: Option<FieldChoice>,
     pub(crate) bodies: bool,
     /// Are the books of momentum and energy kept?
     pub(crate) ledger: bool,
     /// Whether `report.html` is made.
     pub(crate) report: bool,
     pub(crate) images: Option<Images>,
+}
+
+/// Fields of VTK files besides λ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct FieldChoice {
+    pub(crate) velocity: bool,
+    pub(crate) pressure: bool,
+    /// Scalars and what a turbulence model has.
+    pub(crate) others: bool,
+    pub(crate) vorticity: bool,
+    pub(crate) q_criterion: bool,
+}
+
+impl FieldChoice {
+    fn read(t: &Reader<'_>) -> Option<Self> {
+        let given = t.texts("fields");
+        let all = given.is_empty() && t.flag("fields").unwrap_or(!t.has("fields"));
+        let has = |word: &str| given.contains(&word);
+        (all || !given.is_empty()).then(|| Self {
+            velocity: all || has("velocity"),
+            pressure: all || has("pressure"),
+            others: all || has("scalars"),
+            vorticity: has("vorticity"),
+            q_criterion: has("q_criterion"),
+        })
+    }
 }
 
 /// Pictures of a run.
@@ -61,6 +88,13 @@ pub(crate) struct ProbeSetup {
     pub(crate) name: String,
     pub(crate) points: Vec<[f64; 3]>,
     pub(crate) every: Option<f64>,
+}
+
+/// Equally spaced points on a straight line, along which the flow is written down.
+#[derive(Clone, Debug)]
+pub(crate) struct LineSetup {
+    pub(crate) name: String,
+    pub(crate) points: Vec<[f64; 3]>,
 }
 
 /// How loads are written down.
@@ -121,7 +155,7 @@ pub(super) fn output(t: &Reader<'_>, name: &str, axes: &[Axis], snapshots: usize
     Ok(Output {
         folder: t.text("folder").map_or_else(|| PathBuf::from("out").join(name), PathBuf::from),
         snapshots,
-        fields: flag("fields"),
+        fields: FieldChoice::read(t),
         bodies: flag("bodies"),
         ledger: flag("ledger"),
         report: flag("report"),
@@ -263,6 +297,49 @@ pub(super) fn probes(
             points.push(std::array::from_fn(|a| row.get(a).copied().unwrap_or(0.0)));
         }
         out.push(ProbeSetup { name, points, every: t.number("every").filter(|_| !steady) });
+    }
+    Ok(out)
+}
+
+/// Points of a line unless given.
+const LINE_POINTS: usize = 101;
+
+pub(super) fn lines(
+    root: &Reader<'_>,
+    context: &Context<'_>,
+    axes: &[Axis],
+    sides: &[[Side; 2]],
+) -> Result<Vec<LineSetup>, Problem> {
+    let mut out: Vec<LineSetup> = Vec::new();
+    for t in root.tables("lines") {
+        let name = file_name(&t)?;
+        if out.iter().any(|other| other.name == name) {
+            return Err(t.fail("name", format!("there is a line \"{name}\" already; give another name")));
+        }
+        let end = |key: &str| -> Result<[f64; 3], Problem> {
+            let x = t.point_of(key, context.dim)?.unwrap_or_default();
+            for (a, axis) in axes.iter().enumerate() {
+                let (lower, upper) = (axis.lower(), axis.upper());
+                if !matches!(sides[a][0], Side::Periodic) && !(lower..=upper).contains(&x[a]) {
+                    let axis = ["x", "y", "z"][a];
+                    return Err(t.fail(key, format!(
+                        "{} m along {axis} is outside the box, which reaches from {lower} to {upper} m; give a point inside",
+                        x[a]
+                    )));
+                }
+            }
+            Ok([x.x, x.y, x.z])
+        };
+        let (from, to) = (end("from")?, end("to")?);
+        if from == to {
+            return Err(t.fail("to", "both ends of the line are the same point; give another"));
+        }
+        let n = t.whole("points").unwrap_or(LINE_POINTS);
+        let point = |i: usize| {
+            let share = i as f64 / (n - 1) as f64;
+            std::array::from_fn(|a| from[a] * (1.0 - share) + to[a] * share)
+        };
+        out.push(LineSetup { name, points: (0..n).map(point).collect() });
     }
     Ok(out)
 }

@@ -1,5 +1,7 @@
 //! VTK files of the fields.
+use super::derivatives::VortexFields;
 use super::{Solids, Taken, Watch, output};
+use crate::setup::FieldChoice;
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
 use dem::BodyFrames;
@@ -13,7 +15,8 @@ use std::time::{Duration, Instant};
 /// Writes `fields/NNNNN.vti` and `bodies/NNNNN.vtp` at snapshots, and the series that list them.
 pub(crate) struct FieldsWatch {
     folder: PathBuf,
-    fields: Option<TimeSeries>,
+    fields: Option<(FieldChoice, TimeSeries)>,
+    vortices: VortexFields,
     bodies: Option<(BodyFrames, TimeSeries)>,
     listed: Option<Instant>,
 }
@@ -24,7 +27,8 @@ const LIST_EVERY: Duration = Duration::from_secs(1);
 impl FieldsWatch {
     pub(crate) fn new(
         folder: &Path,
-        [fields, bodies]: [bool; 2],
+        fields: Option<FieldChoice>,
+        bodies: bool,
         resume: Option<f64>,
     ) -> Result<Self, CouplingError> {
         // Nothing but the start is written before the first step, and it is written again.
@@ -42,11 +46,15 @@ impl FieldsWatch {
             open(folder, "bodies").map_err(output("making", &folder.join("bodies")))
         };
         let sub = folder.join("fields");
-        if fields {
+        if fields.is_some() {
             std::fs::create_dir_all(&sub).map_err(output("making", &sub))?;
         }
         Ok(Self {
-            fields: if fields { Some(series("fields")?) } else { None },
+            fields: match fields {
+                Some(choice) => Some((choice, series("fields")?)),
+                None => None,
+            },
+            vortices: VortexFields::default(),
             bodies: if bodies { Some((frames()?, series("bodies")?)) } else { None },
             folder: folder.into(),
             listed: None,
@@ -54,7 +62,8 @@ impl FieldsWatch {
     }
 
     fn list(&mut self) -> Result<(), CouplingError> {
-        for series in self.fields.iter().chain(self.bodies.iter().map(|(_, series)| series)) {
+        let fields = self.fields.iter().map(|(_, series)| series);
+        for series in fields.chain(self.bodies.iter().map(|(_, series)| series)) {
             series
                 .save()
                 .map_err(|e| output("listing the snapshots in", series.path())(io::Error::other(e)))?;
@@ -85,10 +94,21 @@ impl Watch for FieldsWatch {
         index: usize,
         info: &StepInfo,
     ) -> Result<(), CouplingError> {
-        if let Some(series) = &mut self.fields {
+        if let Some((choice, series)) = &mut self.fields {
             let name = format!("fields/{index:05}.{}", view.extension());
             let path = self.folder.join(&name);
-            write_over(&path, |out| Ok(view.write_fields(&solids.lambda, out)?))
+            let mut derived: Vec<(&str, Vec<&[f64]>)> = Vec::new();
+            if choice.vorticity || choice.q_criterion {
+                self.vortices.update(view);
+                let VortexFields { vorticity, q, .. } = &self.vortices;
+                if choice.vorticity {
+                    derived.push(("vorticity", vorticity.iter().map(Vec::as_slice).collect()));
+                }
+                if choice.q_criterion {
+                    derived.push(("q_criterion", vec![q]));
+                }
+            }
+            write_over(&path, |out| Ok(view.write_fields(*choice, &solids.lambda, &derived, out)?))
                 .map_err(output("writing", &path))?;
             series.add(info.time, name).map_err(|e| output("listing", &path)(io::Error::other(e)))?;
         }

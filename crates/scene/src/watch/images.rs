@@ -1,9 +1,9 @@
 //! Pictures of the fields.
+use super::derivatives::slope;
 use super::{Solids, Table, Taken, Watch, output};
 use crate::setup::{Algorithm, Images, Quantity, Setup};
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
-use fv_mesh::Axis;
 use interfaces::{BodyId, Checkpoint, Pose, RestartError};
 use render::section::{BodySection, Layer, Section, Sheet};
 use std::path::{Path, PathBuf};
@@ -62,15 +62,6 @@ impl ImagesWatch {
     fn vorticity(view: &dyn View, [a, b]: [usize; 2], u: &[f64], v: &[f64]) -> Vec<f64> {
         let (x, y) = (view.axis(a), view.axis(b));
         let (nx, ny) = (x.cells(), y.cells());
-        let slope = |axis: &Axis, i: usize, n: usize, periodic: bool, at: &dyn Fn(usize) -> f64| {
-            if periodic && n > 2 && axis.is_uniform() {
-                let (before, after) = ((i + n - 1) % n, (i + 1) % n);
-                return (at(after) - at(before)) / (2.0 * axis.mean_width());
-            }
-            let (before, after) = (i.saturating_sub(1), (i + 1).min(n - 1));
-            let room = axis.centre(after) - axis.centre(before);
-            if room > 0.0 { (at(after) - at(before)) / room } else { 0.0 }
-        };
         let mut out = Vec::with_capacity(nx * ny);
         for j in 0..ny {
             for i in 0..nx {

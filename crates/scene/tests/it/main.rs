@@ -1,5 +1,6 @@
 //! Scenes as their users have them: every file in `scenes/`, spoilt files, interrupted runs, folders that cannot be written to.
 mod contacts;
+mod driven;
 mod dry;
 mod exits;
 mod expressions;

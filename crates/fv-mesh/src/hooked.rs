@@ -94,11 +94,14 @@ where
     pub fn stable_dt(&self, courant: f64) -> f64 {
         self.flow.stable_dt(courant).min(self.hooks.scalars.longest_step(self.hooks.closure.fastest()))
     }
-    /// A window on a larger flow is for a [`Projection`] alone: what hooks remember would stay behind.
+    /// See [`Projection::move_window`].
     ///
     /// # Errors
-    /// [`FlowError::Window`].
-    pub fn move_window(&mut self, axis: usize, _cells: i64) -> Result<(), FlowError> {
+    /// See there; [`FlowError::Window`] with scalars or a closure, whose fields would stay behind.
+    pub fn move_window(&mut self, axis: usize, cells: i64) -> Result<(), FlowError> {
+        if self.hooks.scalars.is_absent() && self.hooks.closure.is_absent() {
+            return self.flow.move_window(axis, cells);
+        }
         let what = "scalars and turbulence models would stay behind; take them out, or give a box that is long enough";
         Err(FlowError::Window { axis, what })
     }

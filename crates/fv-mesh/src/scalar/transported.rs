@@ -187,6 +187,11 @@ pub trait ScalarTransport<const D: usize> {
     /// The longest step \[s\] that diffusion allows where the largest Σ ν_t/h² of eddies is `eddy_rate` \[1/s\].
     fn longest_step(&self, eddy_rate: f64) -> f64;
 
+    /// Whether there is no scalar at all, so that a box can move on over its fluid.
+    fn is_absent(&self) -> bool {
+        false
+    }
+
     /// The stress of eddies in the step to come, for those whom they mix, too ([`Scalar::mix`]); `viscosity` is that of the fluid \[m²/s\].
     fn mix(&mut self, eddy: &EddyStress<D>, viscosity: f64) {
         let _ = (eddy, viscosity);
@@ -217,6 +222,9 @@ impl<const D: usize> ScalarTransport<D> for () {
     fn longest_step(&self, _: f64) -> f64 {
         f64::INFINITY
     }
+    fn is_absent(&self) -> bool {
+        true
+    }
 }
 
 impl<const D: usize> ScalarTransport<D> for Vec<Scalar<D>> {
@@ -225,6 +233,9 @@ impl<const D: usize> ScalarTransport<D> for Vec<Scalar<D>> {
     }
     fn longest_step(&self, eddy_rate: f64) -> f64 {
         self.iter().map(|scalar| scalar.longest_step(eddy_rate)).fold(f64::INFINITY, f64::min)
+    }
+    fn is_absent(&self) -> bool {
+        self.is_empty()
     }
     fn mix(&mut self, eddy: &EddyStress<D>, viscosity: f64) {
         self.iter_mut().for_each(|scalar| scalar.mix(eddy, viscosity));

@@ -2,7 +2,8 @@
 use crate::setup::Setup;
 use crate::view::{Flow, Guests, Seen, View};
 use coupling::{
-    CouplingError, Evolving, FlowSolver, Immersed, Ledger, LedgerReport, Observer, Simulation, StepInfo,
+    CouplingError, Evolving, FlowSolver, Immersed, Ledger, LedgerReport, MovingWindow, Observer, Simulation,
+    StepInfo,
 };
 use interfaces::{Checkpoint, RestartError};
 
@@ -54,6 +55,45 @@ where
 {
     fn report(&self) -> Option<&LedgerReport> {
         self.as_ref().map(Ledger::report)
+    }
+}
+
+/// A window that follows a body, and the budget; the window moves before anything is written.
+pub(crate) struct Windowed {
+    pub(crate) window: Option<MovingWindow>,
+    pub(crate) ledger: Option<Ledger>,
+}
+
+impl<S> Observer<S> for Windowed
+where
+    Ledger: Observer<S>,
+    MovingWindow: Observer<S>,
+{
+    fn begin(&mut self, simulation: &mut S) {
+        self.ledger.begin(simulation);
+    }
+    fn step(&mut self, simulation: &mut S, info: &StepInfo) -> Result<(), CouplingError> {
+        self.window.step(simulation, info)?;
+        self.ledger.step(simulation, info)
+    }
+}
+
+impl Checkpoint for Windowed {
+    fn save(&self, sink: &mut dyn FnMut(&str, &[f64])) {
+        self.ledger.save(sink);
+    }
+    fn restore<'a>(&mut self, source: &dyn Fn(&str) -> Option<&'a [f64]>) -> Result<(), RestartError> {
+        self.ledger.restore(source)
+    }
+}
+
+impl<S> Budget<S> for Windowed
+where
+    Ledger: Observer<S>,
+    MovingWindow: Observer<S>,
+{
+    fn report(&self) -> Option<&LedgerReport> {
+        self.ledger.as_ref().map(Ledger::report)
     }
 }
 

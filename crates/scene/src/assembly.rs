@@ -1,5 +1,5 @@
 //! Assembly of a simulation, and the one choice of its types.
-use crate::any_simulation::{AnySimulation, Budget, Viewed, WithBudget};
+use crate::any_simulation::{AnySimulation, Budget, Viewed, Windowed, WithBudget};
 use crate::build_error::BuildError;
 use crate::cast::Cast;
 use crate::physics::Physics;
@@ -9,7 +9,7 @@ use crate::steady::Steady;
 use crate::still::Still;
 use coupling::{
     CouplingError, Evolving, Exchange, Explicit, FlowRate, FlowSolver, Grains, Immersed, Iterated, Ledger,
-    Particles, Schedule, Simulation, Strategy,
+    MovingWindow, Particles, Schedule, Simulation, Strategy,
 };
 use ibm::Forcing;
 
@@ -135,6 +135,8 @@ impl Setup {
     where
         S: Strategy + Exchange<D, Physics<D>> + 'static,
     {
-        Ok(unsteady(self.simulation(flow, particles)?, self.books()))
+        let window = self.window.map(|w| MovingWindow::following(w.body as u64, w.axis).at(w.place));
+        let budget = Windowed { window: window.transpose()?, ledger: self.books() };
+        Ok(unsteady(self.simulation(flow, particles)?, budget))
     }
 }

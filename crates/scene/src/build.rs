@@ -50,10 +50,17 @@ impl Setup {
         &self,
         grid: &CartesianGrid<D>,
     ) -> Result<Option<impl Fn([f64; D]) -> [f64; D] + '_>, BuildError> {
-        let Some(u) = &self.initial else { return Ok(None) };
+        if self.initial.is_none() && self.start.is_none() {
+            return Ok(None);
+        }
         let value = move |x: [f64; D]| {
             let x: [f64; 3] = std::array::from_fn(|a| x.get(a).copied().unwrap_or(0.0));
-            std::array::from_fn(|c| u[c].at(&x))
+            let u = match (&self.start, &self.initial) {
+                (Some(field), _) => field.at(x),
+                (None, Some(u)) => u.each_ref().map(|u| u.at(&x)),
+                (None, None) => [0.0; 3],
+            };
+            std::array::from_fn(|c| u[c])
         };
         for index in 0..grid.n_cells() {
             let cell = grid.cell(index);
@@ -164,6 +171,7 @@ impl Setup {
                 Some("what walls by cut links do is not in them")
             }
             Algorithm::Piso if self.lift().is_some() => Some("what buoyancy does by PISO is not in them"),
+            _ if self.window.is_some() => Some("the box leaves fluid behind and takes in other"),
             _ if !self.output.ledger => Some("switched off by output.ledger"),
             _ => None,
         }

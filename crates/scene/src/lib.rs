@@ -64,6 +64,7 @@ mod sanity;
 mod schema;
 mod setup;
 mod stand_in;
+mod start_field;
 mod steady;
 mod still;
 mod stop;

@@ -204,6 +204,9 @@ impl<const D: usize> ScalarTransport<D> for Scalars<D> {
     fn longest_step(&self, eddy_rate: f64) -> f64 {
         self.list.iter().map(|s| s.scalar.longest_step(eddy_rate)).fold(f64::INFINITY, f64::min)
     }
+    fn is_absent(&self) -> bool {
+        self.list.is_empty()
+    }
     fn mix(&mut self, eddy: &EddyStress<D>, viscosity: f64) {
         self.list.iter_mut().for_each(|one| one.scalar.mix(eddy, viscosity));
     }

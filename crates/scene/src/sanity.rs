@@ -124,7 +124,11 @@ impl Setup {
     pub(crate) fn initial_speed(&self) -> f64 {
         let middle =
             [0, 1, 2].map(|a| self.axes.get(a).map_or(0.0, |axis| 0.5 * (axis.lower() + axis.upper())));
-        self.initial.as_ref().map_or(0.0, |u| norm(u.each_ref().map(|u| u.at(&middle))))
+        match (&self.start, &self.initial) {
+            (Some(field), _) => field.speed(),
+            (None, Some(u)) => norm(u.each_ref().map(|u| u.at(&middle))),
+            (None, None) => 0.0,
+        }
     }
 
     /// Net weight of the bodies over the weight of all fluid, where the fluid has to bear it.

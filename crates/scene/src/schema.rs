@@ -268,6 +268,13 @@ pub(crate) static SCENE: Table = Table {
             "{ balance = \"net-weight\" }",
         ),
         optional(
+            "window",
+            Kind::Table(&run::WINDOW),
+            "the box stays",
+            "A box that follows a body.",
+            "{ body = \"heavy\", axis = \"y\" }",
+        ),
+        optional(
             "time",
             Kind::Table(&run::TIME_TABLE),
             "none, for a steady flow",

@@ -3,10 +3,12 @@ mod bodies;
 mod dry;
 mod factories;
 mod flow;
+mod forces;
 mod grid;
 mod inlets;
 mod measures;
 mod models;
+mod motions;
 mod physics;
 mod shapes;
 mod sides;
@@ -15,31 +17,35 @@ mod stop;
 mod surfaces;
 mod tables;
 mod time;
+mod window;
 
-pub(crate) use bodies::{
-    Bodies, BodySetup, ContactLawChoice, ForcingChoice, Motion, StrategyChoice, WallSetup,
-};
+pub(crate) use bodies::{Bodies, BodySetup, ContactLawChoice, ForcingChoice, StrategyChoice, WallSetup};
 pub(crate) use factories::InflowSetup;
 pub(crate) use flow::{Algorithm, FlowSetup};
+pub(crate) use forces::Forces;
 pub(crate) use measures::{
-    Averages, FieldChoice, Forces, Images, LineSetup, Output, ProbeSetup, Quantity, Reference,
+    Averages, FieldChoice, Images, LineSetup, Output, ProbeSetup, Quantity, Reference,
 };
 pub(crate) use models::{Coefficients, ModelSetup};
+pub(crate) use motions::Motion;
 pub(crate) use physics::{ModelChoice, ScalarSetup, ScaleChoice, TurbulenceSetup};
 pub(crate) use sides::is_open;
 pub(crate) use stop::StopSetup;
 pub(crate) use surfaces::SurfaceVelocity;
+pub(crate) use window::WindowSetup;
 
 use crate::document::{Document, Place};
 use crate::expression::Expression;
 use crate::problem::{Problem, Problems};
 use crate::reader::{Formula, Formulas, Reader};
 use crate::schema::{self, FileKey};
+use crate::start_field::StartField;
 use coupling::WeightBalance;
 use fv_mesh::{Axis, Fluid, Side, Sides};
 use interfaces::{Lattice, Point, Vector};
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use time::Span;
 
 /// Everything that a scene says.
@@ -59,6 +65,8 @@ pub(crate) struct Setup {
     /// Axis and mean velocity along it, of the time.
     pub(crate) flow_rate: Option<(usize, Expression)>,
     pub(crate) initial: Option<[Expression; 3]>,
+    /// The same from a file.
+    pub(crate) start: Option<Arc<StartField>>,
     pub(crate) flow: FlowSetup,
     pub(crate) turbulence: Option<TurbulenceSetup>,
     pub(crate) scalars: Vec<ScalarSetup>,
@@ -69,6 +77,8 @@ pub(crate) struct Setup {
     pub(crate) courant: f64,
     pub(crate) ramp: bool,
     pub(crate) output: Output,
+    /// Window that follows a body.
+    pub(crate) window: Option<WindowSetup>,
     /// Conditions that end the run before its time.
     pub(crate) stop: Option<StopSetup>,
     pub(crate) probes: Vec<ProbeSetup>,
@@ -151,7 +161,13 @@ impl Setup {
         let sides = sides::read(root, &context)?;
         let fluid = flow::fluid(root)?;
         let gravity = root.vector_of("gravity", dim)?.unwrap_or_default();
-        let bodies = bodies::read(root, &context, &axes, &sides, (fluid, gravity))?;
+        let mut bodies = bodies::read(root, &context, &axes, &sides, (fluid, gravity))?;
+        let window = window::read(root, &context, &bodies, &sides)?;
+        if let Some(WindowSetup { axis, .. }) = window {
+            // Sides that move with the box are no walls of bodies, which keep their places.
+            let side = ["sides.x_", "sides.y_", "sides.z_"][axis];
+            bodies.walls.retain(|wall| !wall.name.starts_with(side));
+        }
         let force = root.formulas("force", &["t"], dim)?;
         let initial = match root.table("initial") {
             Some(table) => table.formulas("velocity", &["x", "y", "z"], dim)?,
@@ -172,7 +188,7 @@ impl Setup {
             stop: stop::read(&time, &bodies, (dim, fluid.is_some(), steady))?,
             probes: measures::probes(root, &context, &axes, &sides, steady)?,
             lines: measures::lines(root, &context, &axes, &sides)?,
-            forces: root.table("forces").map(|t| measures::forces(&t, end, dim, steady)),
+            forces: root.table("forces").map(|t| forces::read(&t, end, dim, steady)).transpose()?,
             averages: root.table("averages").map(|t| measures::averages(&t, end, dim)).transpose()?,
             references: measures::references(root)?,
             name,
@@ -181,6 +197,8 @@ impl Setup {
             force,
             flow_rate: flow::flow_rate(root, &sides, steady)?,
             initial,
+            start: flow::start(root, &context, &axes, &sides)?,
+            window,
             balance,
             end,
             dt: time.number("dt"),
@@ -311,6 +329,7 @@ impl Setup {
         if self.forces.is_some() && !bodies {
             return Err(root.fail("forces", "loads are those on bodies, and there are none; leave this out"));
         }
+        forces::agrees(root, self)?;
         if dim == 2 && self.bodies.lubrication.is_some() {
             return Err(
                 root.fail("lubrication", "films are for solids in space; leave this out in a plane scene")

@@ -11,7 +11,7 @@ use fv_mesh::{
     Axis, CartesianGrid, CellWriter, Field, FlowStatistics, Hooked, InverseOutlook, OutputError, SampleError,
     Sampler, Sides, Velocity,
 };
-use ibm::{FluidSampler, Forcing};
+use ibm::{FluidSampler, Forcing, IbmError, SurfaceLoads, SurfaceStress};
 use interfaces::{Bodies, BodyId, Closure, Lattice, Point, ThinPart, Vector, Wrench};
 use render::progress::Status;
 use std::io::{self, Write};
@@ -114,6 +114,17 @@ pub(crate) trait View {
     fn serial(&self, b: BodyId) -> u64;
     /// Loads of fluid (without buoyancy) and contacts over the last step of length `dt`.
     fn loads(&self, b: BodyId, dt: f64) -> [Wrench; 2];
+    /// Pressure and viscous stress along the surface of a wall by cut links or cut cells in a fluid of
+    /// this dynamic viscosity \[Pa s\]; nothing of other bodies.
+    fn surface(&self, b: BodyId, viscosity: f64) -> Result<SurfaceLoads, IbmError> {
+        let _ = (b, viscosity);
+        Ok(SurfaceLoads::default())
+    }
+    /// Pressure and friction of the load on such a wall.
+    fn load_parts(&self, b: BodyId, viscosity: f64) -> Result<[Wrench; 2], IbmError> {
+        let surface = self.surface(b, viscosity)?;
+        Ok([surface.pressure(), surface.friction()])
+    }
     fn contacts(&self) -> usize;
     /// The deepest overlap of the last step.
     fn deepest(&self) -> Option<Depth>;
@@ -173,6 +184,10 @@ pub(crate) trait Flow<const D: usize> {
     }
     /// How far from walls a turbulence model finds the first cells.
     fn y_plus(&self) -> Option<YPlus> {
+        None
+    }
+    /// Pressure and friction of the loads on walls inside the box, where the flow knows them.
+    fn wall_parts(&self) -> Option<[Vec<Wrench>; 2]> {
         None
     }
 }
@@ -263,6 +278,9 @@ impl<const D: usize> Flow<D> for Steady<D> {
     }
     fn wall_impulses(&self) -> &[Wrench] {
         &self.loads
+    }
+    fn wall_parts(&self) -> Option<[Vec<Wrench>; 2]> {
+        Some([self.flow.wall_pressure_force(), self.flow.wall_friction()])
     }
     fn others(&self) -> Vec<Other<'_>> {
         of_scalars(&self.scalars).chain(of_model(self.model.as_ref())).collect()
@@ -502,6 +520,19 @@ impl<const D: usize> View for Seen<'_, D> {
     }
     fn loads(&self, b: BodyId, dt: f64) -> [Wrench; 2] {
         self.guests.loads(b, dt, self.flow.wall_impulses())
+    }
+    fn surface(&self, b: BodyId, viscosity: f64) -> Result<SurfaceLoads, IbmError> {
+        let Some(walls) = self.guests.walls() else { return Ok(SurfaceLoads::default()) };
+        let (lattice, pressure) = (self.lattice(), self.flow.pressure().data());
+        let spacing = (0..D).map(|a| self.axis(a).narrowest()).fold(f64::INFINITY, f64::min);
+        SurfaceStress::new(self.flow.velocity(), &lattice, pressure, viscosity).on(walls, b, spacing)
+    }
+    fn load_parts(&self, b: BodyId, viscosity: f64) -> Result<[Wrench; 2], IbmError> {
+        if let Some(parts) = self.flow.wall_parts() {
+            return Ok(parts.map(|part| part.get(b.0).copied().unwrap_or_default()));
+        }
+        let surface = self.surface(b, viscosity)?;
+        Ok([surface.pressure(), surface.friction()])
     }
     fn contacts(&self) -> usize {
         self.guests.contacts()

@@ -7,6 +7,7 @@ mod images;
 mod lines;
 mod models;
 mod probes;
+mod surfaces;
 mod table;
 mod trajectories;
 
@@ -17,6 +18,7 @@ use images::ImagesWatch;
 use lines::LinesWatch;
 use models::ModelsWatch;
 use probes::ProbesWatch;
+use surfaces::SurfacesWatch;
 pub(crate) use table::{Pace, Table};
 use trajectories::TrajectoriesWatch;
 
@@ -191,7 +193,11 @@ impl Setup {
             watches.push(Box::new(LinesWatch::new(folder, &self.lines, self.dim(), resume)?));
         }
         if let Some(forces) = self.forces.filter(|_| bodies) {
-            watches.push(Box::new(ForcesWatch::new(folder, forces, names, self.fluid().density, resume)?));
+            if let Some(reference) = forces.surfaces {
+                let watch = SurfacesWatch::new(folder, names.clone(), self.fluid(), reference, resume)?;
+                watches.push(Box::new(watch));
+            }
+            watches.push(Box::new(ForcesWatch::new(folder, forces, names, self.fluid(), resume)?));
         }
         if let Some(averages) = self.averages {
             watches.push(Box::new(AveragesWatch::new(folder, averages, self.dim(), self.cells())));

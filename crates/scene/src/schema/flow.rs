@@ -307,14 +307,23 @@ pub(super) static FLOW_RATE: Table = Table {
 };
 
 pub(super) static INITIAL: Table = Table {
-    about: "The flow at time 0; it is made free of divergence by the first step.",
-    keys: &[optional(
-        "velocity",
-        Kind::List(&Kind::Formula(SPACE, "m/s"), 2, 3),
-        "at rest",
-        "Velocity.",
-        "[\"-cos(x)*sin(y)\", \"sin(x)*cos(y)\"]",
-    )],
+    about: "The flow at time 0, by formulas or from a file; it is made free of divergence by the first step.",
+    keys: &[
+        optional(
+            "velocity",
+            Kind::List(&Kind::Formula(SPACE, "m/s"), 2, 3),
+            "at rest",
+            "Velocity.",
+            "[\"-cos(x)*sin(y)\", \"sin(x)*cos(y)\"]",
+        ),
+        optional(
+            "file",
+            Kind::File,
+            "`velocity` tells",
+            "Velocity from a snapshot of another run, `fields/NNNNN.vti` of a scene with equal cells: interpolated linearly between the centres of its cells, on any grid whose box is inside of its box. Along axes that are periodic and as long as in the file it goes on periodically; at other ends it is the nearest cell's.",
+            "\"../coarse/fields/00050.vti\"",
+        ),
+    ],
 };
 
 pub(super) static FLOW: Table = Table {

@@ -189,6 +189,21 @@ static SLICE: Table = Table {
     ],
 };
 
+pub(super) static WINDOW: Table = Table {
+    about: "The box moves by whole cells along an axis, so that a body that moves (smooth forcing or hfdib, projection) keeps its place in it, for bodies that sink or rise for longer than a box can be. Places that are written are those in the laboratory. Fluid that comes in is as the last cells before it: ahead it has to be at rest or stream uniformly, behind it has to be able to flow out; the axis is not periodic and its cells are equal. Walls along the axis move with the box; bodies do not touch them. Other bodies must not be left behind; there are no scalars and no turbulence model.",
+    keys: &[
+        required("body", Kind::Text, "Name of the body.", "\"heavy\""),
+        required("axis", Kind::Word(&[("x", "x"), ("y", "y"), ("z", "z")]), "The axis.", "\"y\""),
+        optional(
+            "place",
+            Kind::Number(Range::Within(0.05, 0.95), "1"),
+            "0.5",
+            "Where it stays, as a share of the box's length from the lower end.",
+            "0.75",
+        ),
+    ],
+};
+
 const NAME: Key = required("name", Kind::Text, "Name of the file.", "\"wake\"");
 
 pub(super) static LINES: Table = Table {
@@ -249,6 +264,21 @@ pub(super) static FORCES: Table = Table {
             "How often a line is written; means are of every step.",
             "0.01",
         ),
+        optional(
+            "parts",
+            Kind::Flag,
+            "false",
+            "Pressure and friction of each load, as `px`, …, `vx`, … in `forces.csv` and as `pressure` and `friction` in the results: of walls by cut links integrals of the stress along the surface (polynomials of third degree through nodes in the fluid), whose sum differs from the load by their error; of a steady flow the sums over cut cells that are the load. Bodies by smooth forcing or hfdib have none: the force there is one distributed over cells on both sides of the surface, next to which velocity and pressure are smeared.",
+            "true",
+        ),
+        optional(
+            "surfaces",
+            Kind::Flag,
+            "false",
+            "In plane scenes `surfaces/BODY.csv` at every snapshot: pressure, wall shear stress, c_p = 2(p − p₀)/(ρU²) and c_f = 2τ/(ρU²) along the surface by the angle about the centre of mass, of the same bodies as `parts`. τ is positive anticlockwise. It needs `velocity`.",
+            "true",
+        ),
+        optional("pressure", Kind::Number(Range::Any, "Pa"), "0", "Reference pressure p₀ of c_p.", "0.0"),
     ],
 };
 

@@ -1,16 +1,15 @@
 //! Bodies, their contacts and how they are coupled to the flow.
 use super::factories::{self, InflowSetup};
+use super::motions::{self, Motion};
 use super::surfaces::{self, SurfaceVelocity};
-use super::{Context, shapes, tables};
-use crate::expression::Expression;
+use super::{Context, shapes};
 use crate::problem::Problem;
 use crate::reader::Reader;
 use coupling::WeightBalance;
-use dem::{HalfSpace, Material, PairProperties, PrescribedMotion, Shape, Tether};
+use dem::{HalfSpace, Material, PairProperties, Shape, Tether};
 use fv_mesh::{Axis, Fluid, Side};
 use ibm::Kernel;
-use interfaces::{Aabb, Freedom, Point, Pose, Twist, Vector};
-use nalgebra::Unit;
+use interfaces::{Aabb, Point, Pose, Twist, Vector};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -40,54 +39,6 @@ pub(crate) struct WallSetup {
     pub(crate) plane: HalfSpace,
     /// A wall with the velocity of its surface.
     pub(crate) surface: Side,
-}
-
-/// What moves a body.
-#[derive(Clone, Debug)]
-pub(crate) enum Motion {
-    /// The flow, gravity and contacts, as far as it is free.
-    Free(Freedom),
-    Fixed,
-    /// Formulas of the time: displacement or velocity, and angle about an axis through the pivot, or
-    /// the centre of mass without one, or angular velocity.
-    Prescribed {
-        shift: Option<[Expression; 3]>,
-        velocity: Option<[Expression; 3]>,
-        turn: Option<(Expression, Unit<Vector>)>,
-        spin: Option<[Expression; 3]>,
-        pivot: Option<Point>,
-    },
-}
-
-impl Motion {
-    /// The motion by formulas of a body whose centre of mass is here at the start, if it is one.
-    pub(crate) fn prescribed(&self, centre: Point) -> Option<PrescribedMotion> {
-        let Self::Prescribed { shift, velocity, turn, spin, pivot } = self.clone() else { return None };
-        let mut motion = PrescribedMotion::default().with_pivot(pivot.unwrap_or(centre), centre);
-        let vector = |f: [Expression; 3]| move |t: f64| Vector::from(f.each_ref().map(|f| f.at(&[t])));
-        if let Some(shift) = shift {
-            motion = motion.with_shift(vector(shift));
-        }
-        if let Some(velocity) = velocity {
-            motion = motion.with_velocity(vector(velocity));
-        }
-        if let Some(spin) = spin {
-            motion = motion.with_spin(vector(spin));
-        }
-        if let Some((angle, axis)) = turn {
-            motion = motion.with_turn(axis, move |t| angle.at(&[t]));
-        }
-        Some(motion)
-    }
-    /// Notes whether the formulas have a value at `t` \[s\].
-    pub(crate) fn try_at(&self, t: f64) {
-        if let Self::Prescribed { shift, velocity, turn, spin, .. } = self {
-            let vectors = [shift, velocity, spin].into_iter().flatten().flatten();
-            vectors.chain(turn.iter().map(|(angle, _)| angle)).for_each(|f| {
-                f.needed(&[t]);
-            });
-        }
-    }
 }
 
 /// All about bodies.
@@ -468,11 +419,6 @@ impl Materials {
     }
 }
 
-/// What a body is free to do in a scene of so many dimensions.
-pub(super) fn freedom(dim: usize) -> Freedom {
-    if dim == 2 { Freedom::PLANAR } else { Freedom::FREE }
-}
-
 fn body(
     t: &Reader<'_>,
     context: &Context<'_>,
@@ -487,7 +433,7 @@ fn body(
     if dim == 2 && (spin.x != 0.0 || spin.y != 0.0) {
         return Err(t.fail("spin", "bodies of a plane scene turn about z only; give a number"));
     }
-    let motion = motion(t, context)?;
+    let motion = motions::read(t, context)?;
     let twist = Twist { linear: t.vector_of("velocity", dim)?.unwrap_or_default(), angular: spin };
     if matches!(motion, Motion::Fixed) && twist != Twist::default() {
         return Err(t.fail("motion", "a body that is fixed has no velocity; give motion \"prescribed\", or leave out velocity and spin"));
@@ -518,66 +464,4 @@ fn body(
         tether,
         surface,
     })
-}
-
-fn motion(t: &Reader<'_>, context: &Context<'_>) -> Result<Motion, Problem> {
-    let dim = context.dim;
-    let Some((kind, motion)) = t.choice("motion", "type") else { return Ok(Motion::Free(freedom(dim))) };
-    Ok(match kind {
-        "fixed" => Motion::Fixed,
-        "planar" => Motion::Free(Freedom::PLANAR),
-        "axes" => {
-            let all = freedom(dim);
-            let both = |a: [bool; 3], b: [bool; 3]| std::array::from_fn(|i| a[i] && b[i]);
-            let linear = both(motion.flags("linear").unwrap_or_default(), all.linear);
-            let angular = both(motion.flags("angular").unwrap_or_default(), all.angular);
-            Motion::Free(Freedom { linear, angular })
-        }
-        "prescribed" => {
-            for [one, other] in [["shift", "velocity"], ["angle", "spin"]] {
-                if motion.has(one) && motion.has(other) {
-                    let message = format!("`{one}` is given already; leave out one of the two");
-                    return Err(motion.fail(other, message));
-                }
-            }
-            let turn = motion.formula("angle", &["t"])?;
-            let spin = surfaces::spin(&motion, "spin", dim)?;
-            let shift = motion.formulas("shift", &["t"], dim)?;
-            let velocity = motion.formulas("velocity", &["t"], dim)?;
-            if shift.is_none() && velocity.is_none() && turn.is_none() && spin.is_none() {
-                return Err(motion.fail_here(
-                    "how does it move? Give `shift`, `velocity`, `angle` or `spin`, or make it \"fixed\"",
-                ));
-            }
-            prescribed(&motion, dim, [shift, velocity], turn, spin)?
-        }
-        "table" => {
-            let [x, y, z, turn] = tables::read(&motion, "file", context, ["x", "y", "z", "angle"], 0)?;
-            if dim == 2 && z.is_some() {
-                return Err(motion.fail("file", "a plane scene has no axis z; leave out that column"));
-            }
-            let shift = [x, y, z].map(|column| column.unwrap_or(Expression::constant(0.0)));
-            prescribed(&motion, dim, [Some(shift), None], turn, None)?
-        }
-        _ => Motion::Free(freedom(dim)),
-    })
-}
-
-/// The motion by functions of time of the table `t`, about its axis and pivot.
-fn prescribed(
-    t: &Reader<'_>,
-    dim: usize,
-    [shift, velocity]: [Option<[Expression; 3]>; 2],
-    turn: Option<Expression>,
-    spin: Option<[Expression; 3]>,
-) -> Result<Motion, Problem> {
-    let axis = shapes::axis(t, "axis")?;
-    if dim == 2 && (axis.x != 0.0 || axis.y != 0.0) {
-        return Err(t.fail("axis", "bodies of a plane scene turn about z only; leave this out"));
-    }
-    let pivot = t.point_of("pivot", dim)?;
-    if pivot.is_some() && turn.is_none() {
-        return Err(t.fail("pivot", "nothing turns about it; give `angle`, or leave this out"));
-    }
-    Ok(Motion::Prescribed { shift, velocity, turn: turn.map(|angle| (angle, axis)), spin, pivot })
 }

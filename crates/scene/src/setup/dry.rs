@@ -5,7 +5,7 @@ use crate::reader::Reader;
 use fv_mesh::Side;
 
 /// What only a fluid gives a meaning.
-const WET: [&str; 13] = [
+const WET: [&str; 14] = [
     "force",
     "flow_rate",
     "initial",
@@ -16,6 +16,7 @@ const WET: [&str; 13] = [
     "coupling",
     "probes",
     "lines",
+    "window",
     "forces",
     "averages",
     "models",

@@ -1,5 +1,6 @@
 //! Many bodies at once.
-use super::bodies::{BodySetup, Materials, Motion, freedom};
+use super::bodies::{BodySetup, Materials};
+use super::motions::{Motion, freedom};
 use super::shapes::PlacedShape;
 use super::{Context, is_open, of_file, shapes};
 use crate::problem::Problem;

@@ -1,9 +1,12 @@
 //! The fluid and how its flow is computed.
+use super::{Context, of_file};
 use crate::expression::Expression;
 use crate::problem::Problem;
 use crate::reader::Reader;
+use crate::start_field::StartField;
 use fv_mesh::poisson::multigrid::MultigridParams;
-use fv_mesh::{Convection, Diffusion, Fluid, PressureSolver, Side};
+use fv_mesh::{Axis, Convection, Diffusion, Fluid, PressureSolver, Side};
+use std::sync::Arc;
 
 /// The algorithm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,6 +72,23 @@ pub(super) fn fluid(root: &Reader<'_>) -> Result<Option<Fluid>, Problem> {
         ));
     }
     Ok(Some(Fluid { density, viscosity }))
+}
+
+/// Velocity at the start from the file of the table `initial`.
+pub(super) fn start(
+    root: &Reader<'_>,
+    context: &Context<'_>,
+    axes: &[Axis],
+    sides: &[[Side; 2]],
+) -> Result<Option<Arc<StartField>>, Problem> {
+    let Some(t) = root.table("initial").filter(|t| t.has("file")) else { return Ok(None) };
+    if t.has("velocity") {
+        return Err(t.fail("file", "`velocity` is given already; leave out one of the two"));
+    }
+    let path = context.path(t.text("file").unwrap_or_default());
+    let periodic: Vec<bool> = sides.iter().map(|pair| matches!(pair[0], Side::Periodic)).collect();
+    let field = StartField::read(&path, axes, &periodic);
+    field.map(|field| Some(Arc::new(field))).map_err(|e| t.fail("file", of_file(&path, &e)))
 }
 
 /// Axis and mean velocity of a flow that is driven at a given flow rate.

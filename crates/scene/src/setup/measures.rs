@@ -97,19 +97,6 @@ pub(crate) struct LineSetup {
     pub(crate) points: Vec<[f64; 3]>,
 }
 
-/// How loads are written down.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Forces {
-    /// Speed U and area A of coefficients.
-    pub(crate) reference: Option<(f64, f64)>,
-    pub(crate) start: f64,
-    pub(crate) every: Option<f64>,
-    /// Measures of a steady flow: one load.
-    pub(crate) steady: bool,
-    /// D of Strouhal numbers \[m\].
-    pub(crate) length: Option<f64>,
-}
-
 /// Means in time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Averages {
@@ -342,17 +329,6 @@ pub(super) fn lines(
         out.push(LineSetup { name, points: (0..n).map(point).collect() });
     }
     Ok(out)
-}
-
-pub(super) fn forces(t: &Reader<'_>, end: f64, dim: usize, steady: bool) -> Forces {
-    let area = t.number("area");
-    Forces {
-        reference: t.number("velocity").zip(area),
-        start: t.number("start").filter(|_| !steady).unwrap_or(0.5 * end),
-        every: t.number("every").filter(|_| !steady),
-        steady,
-        length: t.number("length").or(area.filter(|_| dim == 2)),
-    }
 }
 
 pub(super) fn averages(t: &Reader<'_>, end: f64, dim: usize) -> Result<Averages, Problem> {

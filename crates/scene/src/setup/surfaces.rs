@@ -1,5 +1,5 @@
 //! Velocities of walls and of bodies' surfaces.
-use super::bodies::Motion;
+use super::motions::Motion;
 use crate::expression::Expression;
 use crate::problem::Problem;
 use crate::reader::Reader;

@@ -5,9 +5,11 @@ use super::trajectories::called;
 use crate::setup::Forces;
 use crate::view::View;
 use coupling::{CouplingError, StepInfo};
-use interfaces::{BodyId, Checkpoint, RestartError};
+use fv_mesh::Fluid;
+use interfaces::{BodyId, Checkpoint, RestartError, Wrench};
 use serde_json::{Value, json};
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 /// Writes the fluid's loads on every body to `forces.csv` and keeps sums of those that were there from the start.
 pub(crate) struct ForcesWatch {
@@ -15,8 +17,10 @@ pub(crate) struct ForcesWatch {
     table: Table,
     pace: Pace,
     names: Vec<String>,
-    density: f64,
+    fluid: Fluid,
     sums: Vec<Sums>,
+    /// Pressure and friction at the end.
+    parts: Vec<[Wrench; 2]>,
 }
 
 /// Statistics of one body's load (fx, fy, fz and the torque's components) since means began.
@@ -109,14 +113,31 @@ impl ForcesWatch {
         folder: &Path,
         forces: Forces,
         names: Vec<String>,
-        density: f64,
+        fluid: Fluid,
         resume: Option<f64>,
     ) -> Result<Self, CouplingError> {
-        let header = "# time s; f N and t N m (plane scenes per m of depth): load of the fluid without buoyancy\ntime,body,fx,fy,fz,tx,ty,tz";
-        let table = Table::open(&folder.join("forces.csv"), header, resume)?;
+        let mut header =
+            "# time s; f N and t N m (plane scenes per m of depth): load of the fluid without buoyancy"
+                .to_owned();
+        if forces.parts {
+            header += "; p and v N: its pressure and its friction";
+        }
+        header += "\ntime,body,fx,fy,fz,tx,ty,tz";
+        if forces.parts {
+            header += ",px,py,pz,vx,vy,vz";
+        }
+        let table = Table::open(&folder.join("forces.csv"), &header, resume)?;
         let names: Vec<String> = names.into_iter().map(|name| name.replace([',', '\n', '"'], "_")).collect();
         let sums = vec![Sums::default(); names.len()];
-        Ok(Self { pace: Pace::new(forces.every), forces, table, names, density, sums })
+        let parts = Vec::new();
+        Ok(Self { pace: Pace::new(forces.every), forces, table, names, fluid, sums, parts })
+    }
+}
+
+impl ForcesWatch {
+    /// Dynamic viscosity \[Pa s\].
+    fn viscosity(&self) -> f64 {
+        self.fluid.density * self.fluid.viscosity
     }
 }
 
@@ -152,8 +173,23 @@ impl Watch for ForcesWatch {
                 }
             }
             if due {
-                self.table.row(info.time, Some(&called(&self.names, serial)), values)?;
+                let parts =
+                    if self.forces.parts { Some(view.load_parts(b, self.viscosity())?) } else { None };
+                let parts = parts.iter().flatten().flat_map(|part| part.force.iter().copied());
+                self.table.row(
+                    info.time,
+                    Some(&called(&self.names, serial)),
+                    values.into_iter().chain(parts),
+                )?;
             }
+        }
+        Ok(())
+    }
+    fn finish(&mut self, view: &mut dyn View, _: &AtomicBool) -> Result<(), CouplingError> {
+        if self.forces.parts {
+            let all = (0..view.bodies().n_bodies()).map(BodyId);
+            let parts = all.map(|b| view.load_parts(b, self.viscosity()));
+            self.parts = parts.collect::<Result<_, _>>()?;
         }
         Ok(())
     }
@@ -161,7 +197,7 @@ impl Watch for ForcesWatch {
         self.table.flush()
     }
     fn results(&self) -> Option<Value> {
-        let scale = self.forces.reference.map(|(u, a)| 2.0 / (self.density * u * u * a));
+        let scale = self.forces.reference.map(|(u, a)| 2.0 / (self.fluid.density * u * u * a));
         let of = |sums: &Sums, factor: f64, n: usize| {
             let column = |f: &dyn Fn(usize) -> f64| (0..n).map(|i| factor * f(i)).collect::<Vec<f64>>();
             if sums.seconds == 0.0 {
@@ -182,10 +218,21 @@ impl Watch for ForcesWatch {
                 "highest": column(&|i| sums.high[i]),
             })
         };
-        let body = |(name, sums): (&String, &Sums)| {
+        let body = |(number, (name, sums)): (usize, (&String, &Sums))| {
             let mut out = json!({ "body": name, "load": of(sums, 1.0, 6) });
             if !self.forces.steady {
                 out["seconds"] = json!(sums.seconds);
+            }
+            if let Some([pressure, friction]) = self.parts.get(number) {
+                let part = |part: &Wrench, factor: f64| -> Vec<f64> {
+                    part.force.iter().map(|f| factor * f).collect()
+                };
+                out["pressure"] = json!({ "last": part(pressure, 1.0) });
+                out["friction"] = json!({ "last": part(friction, 1.0) });
+                if let Some(scale) = scale {
+                    out["pressure"]["coefficients"] = json!(part(pressure, scale));
+                    out["friction"]["coefficients"] = json!(part(friction, scale));
+                }
             }
             if let Some(scale) = scale {
                 out["coefficients"] = of(sums, scale, 3);
@@ -199,7 +246,7 @@ impl Watch for ForcesWatch {
             }
             out
         };
-        Some(json!(self.names.iter().zip(&self.sums).map(body).collect::<Vec<Value>>()))
+        Some(json!(self.names.iter().zip(&self.sums).enumerate().map(body).collect::<Vec<Value>>()))
     }
 }
 

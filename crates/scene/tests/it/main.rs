@@ -9,6 +9,7 @@ mod first_steps;
 mod heat;
 mod ledger;
 mod many;
+mod measured;
 mod mesh_files;
 mod messages;
 mod models;

@@ -78,17 +78,33 @@ impl<const D: usize> Steady<D> {
     }
 }
 
-/// Cells of the coarse grid whose iterations are counted, in the plane and in space, and CPU time
-/// that this may take \[s\].
-const COARSE: [usize; 2] = [2_000, 8_000];
+/// Cells of the finer of two coarse grids whose iterations are counted, in the plane and in space,
+/// and CPU time that each may take \[s\]. The other has half as many along each axis.
+const COARSE: [usize; 2] = [4_000, 16_000];
 const TIME: f64 = 1.0;
 
 impl Setup {
-    /// Iterations to convergence on a coarse grid, extrapolated by the last residuals where they
-    /// take long; none if it needs more than are allowed, diverges or cannot be built.
+    /// Iterations to convergence, extrapolated from two coarse grids as a power of the cells; none
+    /// if the finer one needs more than are allowed, diverges or cannot be built.
     pub(crate) fn expected_iterations<const D: usize>(&self) -> Option<f64> {
+        let cells = COARSE[D - 2];
+        let (coarse, known) = self.iterations_with::<D>(cells)?;
+        let Some((coarser, fewer)) = self.iterations_with::<D>(cells >> D) else { return Some(known) };
+        let ratio = |fine: f64, coarse: f64| (fine / coarse).ln();
+        if coarser >= coarse || known <= fewer {
+            return Some(known);
+        }
+        let power = ratio(known, fewer) / ratio(coarse, coarser);
+        Some((known * (self.cells() as f64 / coarse).powf(power)).ceil().min(self.flow.iterations as f64))
+    }
+
+    /// Cells of a coarse grid with at most `most` of them, and iterations to convergence there,
+    /// extrapolated by the last residuals where they take long.
+    fn iterations_with<const D: usize>(&self, most: usize) -> Option<(f64, f64)> {
         let (tolerance, allowed) = (self.flow.tolerance, self.flow.iterations);
-        let mut steady = self.coarser(COARSE[D - 2]).ok()?.steady::<D>().ok()?;
+        let coarse = self.coarser(most).ok()?;
+        let cells = coarse.cells() as f64;
+        let mut steady = coarse.steady::<D>().ok()?;
         let start = ThreadTime::now();
         let mut residuals = Vec::new();
         for done in 1..=allowed {
@@ -96,13 +112,14 @@ impl Setup {
             let residual = info.largest().max(change);
             residuals.push(residual.ln());
             if residual <= tolerance {
-                return Some(done as f64);
+                return Some((cells, done as f64));
             }
             if start.elapsed().as_secs_f64() > TIME {
                 let half = done / 2;
                 let slope = (residuals[half] - residual.ln()) / (done - 1 - half).max(1) as f64;
                 let left = (residual / tolerance).ln() / slope.max(f64::MIN_POSITIVE);
-                return Some((done as f64 + left).ceil()).filter(|&expected| expected <= allowed as f64);
+                let all = (done as f64 + left).ceil();
+                return (all <= allowed as f64).then_some((cells, all));
             }
         }
         None
